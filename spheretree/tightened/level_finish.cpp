@@ -52,7 +52,8 @@ class Finish {
   // Settles what is left by growing.
   void grow(TightenReport::Level& report) {
     take_balls();
-    for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
+    if (!options_.as_given)
+      for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
     std::vector<std::vector<Index>> places;
     SphereTree closed = partial_.tree(places);
     const Index first = options_.keep_above ? static_cast<Index>(partial_.size() - 1) : 0;

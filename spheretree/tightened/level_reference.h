@@ -23,6 +23,7 @@ class OctreeReference {
   // spheres: how many each level of the tree may have.
   OctreeReference(const Surface& surface, std::span<const Index> spheres);
 
+  const Sphere& root() const { return octree_.nodes[0].sphere; }
   // The least mean and the least maximum of the octree's levels below the root that have at most so many spheres;
   // infinite if there are none.
   LevelTightness bound(Index balls);

@@ -1,17 +1,15 @@
 #include "orchard/spheretree/tightened.h"
 
-#include <array>
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "canonical_frame.h"
 #include "level_samples.h"
 #include "orchard/geometry/error.h"
-#include "orchard/spheretree/measure.h"
-#include "orchard/spheretree/outside_volume.h"
-#include "orchard/spheretree/redundancy.h"
 #include "tightened_in_frame.h"
 #include "tightener.h"
+#include "tree_looseness.h"
 
 namespace orchard {
 namespace {
@@ -23,33 +21,9 @@ detail::Work work_for(Effort effort) {
     case Effort::standard:
       return {0.7, 14, 0, 48, {6, 1}};
     case Effort::high:
-      return {3, 24, 12, 96, {12, 2}};
+      return {3, 24, 12, 96, {12, 3}};
   }
   return {0.7, 14, 0, 48, {6, 1}};
-}
-
-// What a tree is compared by, for each level: mean and largest inaccuracy, and the volume outside.
-std::vector<std::array<double, 3>> figures(SphereTree tree, const Surface& surface) {
-  remove_redundant(tree, surface);
-  measure_inaccuracy(tree, surface);
-  std::vector<std::array<double, 3>> figures;
-  Index level = 0;
-  for (const LevelFigures& of_level : level_figures(tree, 1)) {
-    std::vector<Sphere> spheres;  // with those of leaves above
-    for (const SphereNode& node : tree.nodes)
-      if (node.level == level || (node.level < level && node.child_count == 0)) spheres.push_back(node.sphere);
-    figures.push_back({of_level.mean_inaccuracy, of_level.max_inaccuracy, outside_volume(surface, spheres)});
-    ++level;
-  }
-  return figures;
-}
-
-bool is_looser(const std::vector<std::array<double, 3>>& one, const std::vector<std::array<double, 3>>& other) {
-  if (one.size() != other.size()) return one.size() < other.size();
-  for (std::size_t level = 0; level < one.size(); ++level)
-    for (std::size_t i = 0; i < 3; ++i)
-      if (one[level][i] > other[level][i]) return true;
-  return false;
 }
 
 }  // namespace
@@ -92,10 +66,19 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   own.effort = Effort::standard;
   Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), progress);
   TightenBuild usual = standard.run();
+  const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, surface);
   own.effort = Effort::high;
-  TightenBuild best =
-      Tightener(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), progress).run_beside(standard);
-  return is_looser(figures(best.tree, surface), figures(usual.tree, surface)) ? usual : best;
+  // Levels below may have spheres removed above: then those above are left as they are.
+  for (Index same = 0; same < usual.report.levels.size();) {
+    Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), progress);
+    TightenBuild best = thorough.run_beside(standard, same, allowed);
+    const std::vector<LevelLooseness> figures = looseness_by_level(best.tree, surface);
+    Index within = 0;
+    while (within < figures.size() && figures[within].is_within(allowed[within])) ++within;
+    if (within == allowed.size()) return best;
+    same = std::max(same + 1, within);
+  }
+  return usual;
 }
 
 }  // namespace orchard

@@ -17,6 +17,7 @@
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/outside_volume.h"
+#include "uncovered_regions.h"
 
 namespace orchard::detail {
 namespace {
@@ -52,6 +53,9 @@ constexpr double kTightenedTwiceShare = 0.1;  // below it, a closed level is tig
 
 constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
 constexpr Index kStartsForMaximum = 2;          // carried through with that objective, too, of the first level
+// A level that begins with a cover of as many balls gets no more trials than others, and one of fewer up to so many
+// times as many.
+constexpr double kResumedBalls = 512, kMostResumed = 8;
 // Levels whose figures differ by less, in R, are as tight as each other: they are not known any better.
 constexpr double kSameTightness = tolerance::kInaccuracy;
 // Where the balls' mean reach is so many times their mean inaccuracy, other measures may fit them better.
@@ -83,6 +87,9 @@ Index carried_starts(Index level, Index balls, const Work& work) {
   const Index worthwhile = std::max<Index>(2, kCarriedBalls / std::max<Index>(1, balls));
   return std::min({starts, worthwhile, tried_starts(balls, work)});
 }
+
+// How many times as long levels are searched that are tight already.
+double resumed_share(Index balls) { return std::clamp(kResumedBalls / std::max<Index>(1, balls), 1.0, kMostResumed); }
 
 // As many as it is worth. Yet the text format has room for as many below every node: it is to stay small.
 Index max_children(const TightenOptions& options) {
@@ -158,36 +165,38 @@ Tightener::Tightener(const Surface& surface, const Samples& samples, const Spher
   inaccuracies_ = inaccuracies(surface, partial_.last());
 }
 
-TightenBuild Tightener::run() { return run(nullptr); }
+TightenBuild Tightener::run() {
+  for (Index level = 1; level <= options_.depth && build_level(level); ++level)
+    states_.push_back({partial_, excesses_, inaccuracies_, octree_levels_});
+  return result();
+}
 
-TightenBuild Tightener::run_beside(const Tightener& other) { return run(&other); }
-
-TightenBuild Tightener::run(const Tightener* other) {
-  for (Index level = 1; level <= options_.depth; ++level) {
-    if (!build_level(level)) break;
-    if (other != nullptr && level <= other->states_.size() && is_looser_than(other->states_[level - 1])) {
-      const State& state = other->states_[level - 1];
-      partial_ = state.partial;
-      excesses_ = state.excesses;
-      inaccuracies_ = state.inaccuracies;
-      octree_levels_ = state.octree_levels;
+TightenBuild Tightener::run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed) {
+  for (Index level = 1; level < allowed.size(); ++level) {
+    if (level <= same) {
+      restore(other.states_[level - 1]);
+      report_.levels.push_back(other.report_.levels[level - 1]);
+    } else if (!build_level_beside(level, other, allowed[level])) {
+      break;
     }
     states_.push_back({partial_, excesses_, inaccuracies_, octree_levels_});
   }
+  return result();
+}
+
+TightenBuild Tightener::result() {
   SphereTree tree = partial_.tree();
+  // It holds the surface, however it may have grown with what is below it.
+  if (octree_.root().radius < tree.nodes[0].sphere.radius) tree.nodes[0].sphere = octree_.root();
   tree.branching = std::max(tree.branching, options_.branching);
   return {std::move(tree), report_};
 }
 
-bool Tightener::is_looser_than(const State& other) const {
-  const LevelTightness here = tightness(inaccuracies_), there = tightness(other.inaccuracies);
-  if (here.mean > there.mean || here.max > there.max) return true;
-  const auto outside = [&](const Level& level) {
-    std::vector<Sphere> spheres;
-    for (const LevelNode& node : level) spheres.push_back(node.sphere);
-    return outside_volume(surface_, spheres);
-  };
-  return outside(partial_.last()) > outside(other.partial.last());
+void Tightener::restore(const State& state) {
+  partial_ = state.partial;
+  excesses_ = state.excesses;
+  inaccuracies_ = state.inaccuracies;
+  octree_levels_ = state.octree_levels;
 }
 
 LevelOptions Tightener::options_for(Index level, Index balls) const {
@@ -216,11 +225,8 @@ std::optional<LevelOptions> Tightener::next_level(Index level) const {
 bool Tightener::build_level(Index level) {
   const std::optional<LevelOptions> options = next_level(level);
   if (!options) return false;
-  std::vector<Candidate> all;
-  add_candidates(usual_starts(*options), all);
-  const auto keeps = [&] { return tightest(all).excess <= 0; };
-  if (!keeps() || (level == 1 && !tightest(all).measures_well)) add_other_candidates(*options, all);
-  if (!keeps()) {
+  std::vector<Candidate> all = covers(*options);
+  if (tightest(all).excess > 0) {
     if (level > octree_levels_ + 1) {
       partial_ = octree_.levels({root_, surface_.bounding_radius()}, level - 1);
       inaccuracies_ = inaccuracies(surface_, partial_.last());
@@ -232,8 +238,50 @@ bool Tightener::build_level(Index level) {
     all.push_back(octree_level(level));
     judge(all.back(), options->balls, true);
   }
+  take_tightest(all);
+  return true;
+}
+
+std::vector<Tightener::Candidate> Tightener::covers(const LevelOptions& options) {
+  std::vector<Candidate> all;
+  add_candidates(usual_starts(options), all);
+  const Candidate& best = tightest(all);
+  if (best.excess > 0 || (options.level == 1 && !best.measures_well)) add_other_candidates(options, all);
+  return all;
+}
+
+// First on the levels so far: covers as usual, and the other one's level as it fits in here. Where none of these keeps
+// to what is allowed, on the levels that the other one has above its own, where that level is a start that can only get
+// tighter.
+bool Tightener::build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed) {
+  const State& state = other.states_[level - 1];
+  std::vector<Candidate> all;
+  if (std::optional<LevelOptions> options = next_level(level)) {
+    options->keep_above = true;
+    all = covers(*options);
+    add_candidates(keeping_starts(*options, state.partial), all);
+    hold_to(allowed, all);
+  }
+  if (all.empty() || tightest(all).excess > 0) {
+    all.clear();
+    if (level > 1) {
+      restore(other.states_[level - 2]);
+      add_candidates(keeping_starts(*next_level(level), state.partial), all);
+      hold_to(allowed, all);
+    }
+    if (all.empty() || tightest(all).excess > 0) {
+      restore(state);
+      report_.levels.push_back(other.report_.levels[level - 1]);
+      return true;
+    }
+  }
+  take_tightest(all);
+  return true;
+}
+
+void Tightener::take_tightest(std::vector<Candidate>& all) {
   Candidate& best = tightest(all);
-  if (&best == &all.back() && best.is_octree) octree_levels_ = level;
+  if (&best == &all.back() && best.is_octree) octree_levels_ = static_cast<Index>(best.partial.size() - 1);
   TightenReport::Level& report = report_.levels.emplace_back(best.report);
   report.seconds_search = report.seconds_closing = 0;
   for (const Candidate& candidate : all) {
@@ -241,7 +289,66 @@ bool Tightener::build_level(Index level) {
     report.seconds_closing += candidate.report.seconds_closing;
   }
   take(std::move(best));
-  return true;
+}
+
+// Whatever is looser in a figure breaks the rule by that. The others are compared by their figures' product.
+void Tightener::hold_to(const LevelLooseness& allowed, std::vector<Candidate>& all) const {
+  const double radius = surface_.bounding_radius();
+  for (Candidate& candidate : all) {
+    const LevelLooseness own = looseness_by_level(candidate.partial.tree(), surface_).back();
+    candidate.looseness = own.product();
+    if (!own.is_within(allowed))
+      candidate.excess =
+          std::max({candidate.excess, (own.mean - allowed.mean) / radius, (own.max - allowed.max) / radius,
+                    (own.outside_volume / allowed.outside_volume - 1)});
+  }
+}
+
+// A level that is there already, with its balls in the path regions where they are there, or where most of what they
+// hold is.
+std::vector<LevelBall> Tightener::resumed(const LevelOptions& options, const PartialTree& tree) const {
+  PartialTree partial = partial_;
+  partial.add_level();
+  const PathRegions regions(samples_for(samples_, partial_, enough_samples(options.balls)), partial.paths());
+  std::vector<LevelBall> balls;
+  std::vector<Index> held, children(regions.size(), 0);
+  const Level &above = tree.levels()[options.level - 1], &here = partial_.last();
+  for (const LevelNode& node : tree.levels()[options.level]) {
+    LevelBall ball;
+    ball.center = node.sphere.center;
+    ball.radius = node.sphere.radius - (0.5 * kLastGrowth + tolerance::kCoverMargin) * surface_.bounding_radius();
+    ball.center_distance = surface_.signed_distance(ball.center);
+    const bool is_below_same =
+        node.parent < here.size() && above[node.parent].sphere.center == here[node.parent].sphere.center;
+    std::size_t most = 0;
+    for (Index r = 0; r < regions.size(); ++r) {
+      if (children[r] >= options.max_children || (is_below_same && partial.parents()[r] != node.parent)) continue;
+      held.clear();
+      regions.append_samples(r, 0, ball.center, ball.radius * ball.radius, held);
+      if (held.size() > most) most = held.size(), ball.path_region = r;
+    }
+    if (ball.path_region == kNone) continue;
+    ++children[ball.path_region];
+    balls.push_back(std::move(ball));
+  }
+  return balls;
+}
+
+// No figure gets worse, as far as trials know them: by objectives that have the largest count for more or the volume.
+std::vector<Tightener::Start> Tightener::keeping_starts(const LevelOptions& options, const PartialTree& tree) const {
+  Start start{options, resumed(options, tree)};
+  double loosest = 0;
+  for (const LevelBall& ball : start.balls) loosest = std::max(loosest, ball.looseness());
+  start.options.as_given = start.options.keep_above = true;
+  std::vector<Start> starts;
+  for (const LevelCost& cost : {options.cost, LevelCost{.power = 1.2, .size_power = 1.5}, LevelCost{.power = 3}}) {
+    start.options.cost = cost;
+    start.options.cost.keeps_sums = true;
+    start.options.cost.limit = loosest + kLastGrowth * surface_.bounding_radius();
+    start.kind = static_cast<int>(starts.size());
+    starts.push_back(start);
+  }
+  return starts;
 }
 
 // Of those that keep the rule; of none does, the one that breaks it least.
@@ -330,9 +437,6 @@ void Tightener::judge(Candidate& candidate, Index balls, bool by_looseness) {
     values[i] = inaccuracy(surface_, level[i].sphere, {1e-3, 1e-2}).upper;
   });
   candidate.measures_well = tightness(reach).mean <= kFarAbove * tightness(values).mean;
-  if (getenv("TW"))
-    fprintf(stderr, "level of %zu: mean %.4f max %.4f reach %.4f excess %.5f\n", level.size(), tightness(values).mean,
-            tightness(values).max, tightness(reach).mean, candidate.excess);
   std::vector<Sphere> spheres;
   for (const LevelNode& node : level) spheres.push_back(node.sphere);
   candidate.looseness = mean_times_max(values) * outside_volume(surface_, spheres, kComparingRays);
@@ -468,19 +572,23 @@ void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& optio
                                   Candidate& result) const {
   const auto start = std::chrono::steady_clock::now();
   const Index trials = trials_for(options.balls, work_);
-  solver.tighten();
-  solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
-  solver.tighten();
+  if (!options.as_given) {
+    solver.tighten();
+    solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
+    solver.tighten();
+  }
   const auto middle = std::chrono::steady_clock::now();
   const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
   const double share = search_share(options.balls);
   const double closed_trials = share * work_.closed_trials / std::max(1.0, fineness);
-  FinishOptions finish{searching_rounds(options.balls, work_),
+  FinishOptions finish{options.as_given ? 0 : searching_rounds(options.balls, work_),
                        share < kTighteningShare ? 0 : kTighteningRounds,
                        share < kTightenedTwiceShare ? 1 : 2,
                        static_cast<Index>(kSearchShare * trials),
-                       static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
+                       static_cast<Index>((options.as_given ? resumed_share(options.balls) : 1) * closed_trials *
+                                          static_cast<double>(solver.balls().size())),
                        options.keep_above,
+                       options.as_given,
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
   const bool is_known = options.measure == BallMeasure::reach;

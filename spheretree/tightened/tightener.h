@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "level_reference.h"
@@ -7,6 +8,7 @@
 #include "level_solver.h"
 #include "orchard/spheretree/tightened.h"
 #include "partial_tree.h"
+#include "tree_looseness.h"
 
 namespace orchard::detail {
 
@@ -32,9 +34,10 @@ class Tightener {
   Tightener(const Surface& surface, const Samples& samples, const Sphere& root, const TightenOptions& options,
             const Work& work, const Progress& progress);
   TightenBuild run();
-  // The same, with what another one made of the same surface with less work: where a level comes out looser than its
-  // level there in any figure, its levels down to that one are taken in place of these.
-  TightenBuild run_beside(const Tightener& other);
+  // The same beside another one that has run on the same surface with less work: no level gets looser than allowed,
+  // which is what its tree's levels are (as looseness_by_level() has it). Its first levels, as many as `same`, are
+  // taken as they are.
+  TightenBuild run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed);
 
  private:
   // The levels so far.
@@ -61,9 +64,15 @@ class Tightener {
     std::vector<double> inaccuracies{};      // of the last level's balls, in mesh units; none: not measured
     TightenReport::Level report{};
   };
-  TightenBuild run(const Tightener* other);
+  TightenBuild result();
   bool build_level(Index level);
-  bool is_looser_than(const State& other) const;
+  bool build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed);
+  std::vector<Candidate> covers(const LevelOptions& options);
+  void restore(const State& state);
+  void hold_to(const LevelLooseness& allowed, std::vector<Candidate>& all) const;
+  std::vector<LevelBall> resumed(const LevelOptions& options, const PartialTree& tree) const;
+  std::vector<Start> keeping_starts(const LevelOptions& options, const PartialTree& tree) const;
+  void take_tightest(std::vector<Candidate>& all);
   std::optional<LevelOptions> next_level(Index level) const;
   LevelOptions options_for(Index level, Index balls) const;
   void add_candidates(std::vector<Start> starts, std::vector<Candidate>& all);
