@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <thread>
@@ -357,6 +358,30 @@ TEST(TightenedTree, HasNoLevelLooserThanTheOctreesOrThanTheOneAbove) {
       EXPECT_LE(levels[level].max_inaccuracy, other.max_inaccuracy + kSame) << level;
     }
   }
+}
+
+TEST(TightenedTree, IsLooserInNoFigureWithHighEffort) {
+  const Surface surface(torus(12, 6));
+  const SurfaceSampling points = points_of(surface, 1000);
+  const auto figures = [&](Effort effort) {
+    SphereTree tree = tightened_tree(surface, points, {.depth = 2, .branching = 4, .effort = effort}).tree;
+    expect_conservative(tree, surface, "torus");
+    remove_redundant(tree, surface);
+    measure(tree, surface);
+    std::vector<std::array<double, 3>> levels;
+    for (const LevelFigures& level : level_figures(tree, surface.bounding_radius())) {
+      std::vector<Sphere> spheres;
+      for (const SphereNode& node : tree.nodes)
+        if (node.level == levels.size()) spheres.push_back(node.sphere);
+      levels.push_back({level.mean_inaccuracy, level.max_inaccuracy, outside_volume(surface, spheres)});
+    }
+    return levels;
+  };
+  const auto standard = figures(Effort::standard), high = figures(Effort::high);
+  ASSERT_EQ(high.size(), standard.size());
+  constexpr double kRounding = 1e-9;
+  for (std::size_t level = 0; level < high.size(); ++level)
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(high[level][i], standard[level][i] * (1 + kRounding)) << level << i;
 }
 
 TEST(TightenedTree, GivesEachOfManyPartsASphereOfItsOwn) {

@@ -60,8 +60,8 @@ bool samples_surface(TreeMethod method);
 AnnealingOptions annealing_options(const SphereTreeOptions& options);
 
 // How many surface points a method and its depth need: 5000, or for tightened trees 20 for each ball of the last level,
-// 10,000 at least and 200,000 at most, whatever the effort, so that high effort has the tree of standard effort to begin
-// with.
+// 10,000 at least and 200,000 at most, whatever the effort, so that high effort has the tree of standard effort to
+// begin with.
 Index samples_needed(const SphereTreeOptions& options);
 
 // Throws InputError for a branching or numbers of spheres that are out of the method's range; building does so before

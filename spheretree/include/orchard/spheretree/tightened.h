@@ -6,8 +6,9 @@
 
 namespace orchard {
 
-// How long to search: about 1 : 2 : 11 in time. High effort builds what standard effort builds first, and keeps each
-// level of its own only if that is not looser in the mean, the maximum or the outside volume.
+// How long to search: about 1 : 2 : 11 in time. High effort builds what standard effort builds first, searches on
+// from its levels and from others, and keeps a level only if that is not looser in the mean, the maximum or the outside
+// volume.
 enum class Effort { low, standard, high };
 
 // What is to be low on every level: the largest inaccuracy, the mean one, the volume outside the object, or a balance.
