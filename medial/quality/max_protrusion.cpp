@@ -15,11 +15,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;     // of what was found: not searched for more
-constexpr int kMaxLevels = 100;          // of halving: then a cell is as small as rounding
-constexpr std::size_t kBlock = 64;       // cells that one task looks at
-constexpr std::size_t kMaxHalves = 256;  // of a single cell: if these do not decide, the cell may stick out
-constexpr double kRounding = 1e-12;      // of the coordinates: more than a bound is off by
+constexpr double kShareAbove = 0.02;      // of what was found: not searched for more
+constexpr int kMaxLevels = 100;           // of halving: then a cell is as small as rounding
+constexpr std::size_t kBlock = 64;        // cells that one task looks at
+constexpr std::size_t kMaxHalves = 4096;  // of a single cell: if these do not decide, the cell may stick out
+constexpr double kRounding = 1e-12;       // of the coordinates: more than a bound is off by
 
 // Balls interpolated linearly on up to three; edges and vertices repeat their last.
 struct Cell {
