@@ -96,6 +96,10 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
       const std::uint32_t node = block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
+      if (pair.placement.coarse && boxes_are_apart(node_box_at(first, open_second ? top.a : node),
+                                                   node_box_at(second, open_second ? node : top.b), pair.relative)) {
+        continue;
+      }
       stack[size++] = open_second ? WalkPair{top.a, node} : WalkPair{node, top.b};
     }
   }
