@@ -47,7 +47,7 @@ namespace {
 constexpr double kFloatUnit = 0x1p-24;
 // Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
 constexpr double kMinSlack = 1e-15;
-constexpr double kCoarse = 0x1p-9;    // of the smaller body's radius; leaves of 1,000 triangles have some 2^-5
+constexpr double kCoarse = 0x1p-9;  // of the smaller body's radius; leaves of 1,000 triangles have some 2^-5
 constexpr double kMinSize = 1e-18;  // below it Placement::unit stays as it is: margins are far larger
 
 constexpr double kMinOpposition = 1e-6;  // between unit normals: less says nothing about a direction

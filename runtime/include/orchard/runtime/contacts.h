@@ -18,10 +18,10 @@ struct Manifold {
   Answer answer = Answer::maybe;
   std::uint32_t count = 0;  // of points: 0 for "no"; the outermost ones of all that were found, seen along the normal
   std::array<ContactPoint, kMaxContactPoints> points{};
-  // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, rounding included, and moved less
-  // than that by more than `error` it does. The direction is a local minimum of depth(direction). Where that is deep
-  // beside the bodies, or long beside the contact, it is the best of minima that directions all around lead to. For
-  // "maybe" it is a guess, from sphere to sphere.
+  // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, rounding included, and moved
+  // less than that by more than `error` it does. The direction is a local minimum of depth(direction). Where that is
+  // deep beside the bodies, or long beside the contact, it is the best of minima that directions all around lead to.
+  // For "maybe" it is a guess, from sphere to sphere.
   std::array<double, 3> normal{};
   double depth = 0;
   // Of points and depth. Yes: rounding, some 1e-12 of the coordinates. Maybe: the radius of a ball around the point
@@ -35,7 +35,7 @@ struct Manifold {
 struct ContactOptions {
   // Directions tried at most from each direction that is begun with; 0: only the first normal's depth.
   std::uint32_t refinements = 12;
-  bool depth = true;               // false: points and a first normal only, at a fraction of the cost
+  bool depth = true;  // false: points and a first normal only, at a fraction of the cost
 };
 
 // All pairs of triangles that meet give the curves in which the surfaces cut each other; the points are on these. The
