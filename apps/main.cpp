@@ -32,7 +32,7 @@ int fail(int code, std::string message) {
 int printed(int code) {
   if (flush_standard_output()) return code;
   const std::string reason = errno != 0 ? std::strerror(errno) : "it could not be written to";
-  return code != kSucceeded ? code : fail(kFailed, "standard output: " + reason);
+  return code == kSucceeded || code == kPromiseNotKept ? fail(kFailed, "standard output: " + reason) : code;
 }
 
 int run(Request& request) {

@@ -183,7 +183,12 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
 Broken broken_promises(const MedialCommand& command, const SolidMesh& solid, const MedialBuild& build,
                        const MedialFindings& findings, const FewBalls& few) {
   Broken result = broken(build.promise);
-  if (!build.promise.keeps_topology()) result.remedy = topology_cause(solid, build, findings);
+  const bool is_gap = !build.promise.keeps_topology() || !findings.mended || findings.own_diagram;
+  if (!result.none() && (is_gap || solid.self_intersections.value_or(0) > 0)) {
+    result.remedy = topology_cause(solid, build, findings);
+  } else if (!result.none()) {
+    result.remedy = findings.own_points ? "more points may help" : "more --samples may help";
+  }
   const bool promised = build.promise.promise.topology && build.promise.keeps_topology();
   result.add(broken(few, few_balls_options(command), promised ? findings.wanted : findings.found));
   return result;

@@ -37,7 +37,6 @@ Broken broken(const PromiseCheck& check) {
   if (!check.keeps_protrusion())
     result.what.push_back(fmt::format("the axis sticks out of the solid by {}, where at most {} was promised",
                                       percent(check.protrusion), percent(*check.promise.protrusion)));
-  if (!result.none()) result.remedy = "more --samples may help";
   return result;
 }
 

@@ -73,9 +73,8 @@ std::vector<std::uint8_t> CoverGuard::needed(const BallComplex& complex,
   std::vector<Index> piece_at(places_.size(), kNone);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places_.size(), 128), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      if (without.nearest(places_[i], limit_).distance <= limit_) continue;
       const Reconstruction::Nearest nearest = pieces.nearest(places_[i]);
-      if (nearest.distance > limit_) continue;
+      if (nearest.distance > limit_ || without.nearest(places_[i], limit_).distance <= limit_) continue;
       std::array<Index, 3> corners = pieces.corners_of(nearest.cell);
       for (Index& v : corners) v = goes.vertex_of_complex(v);
       piece_at[i] = piece_of(corners, edge, piece_of_edge);

@@ -195,7 +195,7 @@ class Splitter {
   }
 
   static constexpr double kPart = 10;  // tolerances
-  static constexpr int kMinParts = 4, kMaxParts = 16;
+  static constexpr int kMinParts = 4, kMaxParts = 32;
   static constexpr double kMaxAside = 0.4;  // of an edge's length: its dividing vertex, from the middle
   static constexpr double kSmall = 0.25;
   const Surface& surface_;

@@ -233,7 +233,7 @@ TEST(StandardOutput, ThatCannotBeWrittenIsAFailure) {
   const std::vector<std::vector<std::string>> commands{
       {"build", models.l, "-o", out, "--depth", "1", "--method", "octree"},
       {"sample", models.l, "-o", out, "--samples", "100"},
-      {"medial", models.l, "-o", out, "--samples", "100"},
+      {"medial", models.l, "-o", out, "--samples", "300"},
       {"medial", models.l, "-o", out, "--axis", out + "/l.ma", "--quality-samples", "200"},
       {"voronoi", models.l, "--samples", "100"},
       {"inspect", models.l},

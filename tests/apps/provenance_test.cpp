@@ -126,7 +126,7 @@ TEST(Provenance, IsInWhateverIsPrintedAsJson) {
   for (const std::vector<std::string>& run : std::vector<std::vector<std::string>>{
            test::quick_build(mesh, out),
            {"build", mesh, "-o", out, "--cost"},
-           {"medial", mesh, "-o", out, "--samples", "100", "--no-views"},
+           {"medial", mesh, "-o", out, "--samples", "300", "--no-views"},
            {"medial", mesh, "-o", out, "--sweep", "samples=100", "--quality-samples", "100"},
            {"sample", mesh, "-o", out, "--samples", "100", "--no-views"},
            {"voronoi", mesh, "--samples", "100"},
@@ -204,7 +204,7 @@ struct Namesakes {
 TEST(Outputs, OfAnotherInputOfTheSameNameAreRefusedUnlessForced) {
   const Namesakes of;
   const std::vector<std::vector<std::string>> commands{{"build", "--method", "octree", "--depth", "1", "--no-views"},
-                                                       {"medial", "--samples", "100", "--no-views"},
+                                                       {"medial", "--samples", "300", "--no-views"},
                                                        {"medial", "--sweep", "samples=100", "--quality-samples", "100"},
                                                        {"sample", "--samples", "100", "--no-views"},
                                                        {"voronoi", "--samples", "100"}};

@@ -216,7 +216,7 @@ TEST(Medial, WarnsOfNothingThatCannotHelp) {
   // A plate so thin that few points leave gaps.
   const std::string mesh = here.add("u.obj", test::u_shape(0.02)), out = (here / "out").string();
   const auto warning = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"medial", mesh, "-o", out, "--no-views", "--quiet"};
+    std::vector<std::string> arguments{"medial", mesh, "-o", out, "--no-views", "--quiet", "--accept"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Finished run = here.run(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
