@@ -236,7 +236,7 @@ void half_space_contact(const Shape& a, const Pose& pose, const HalfSpace& b, Ma
   std::array<CutPoint, kMaxContactPoints> points;
   const std::uint32_t count =
       a.kind == ShapeKind::round ? end_points(a, pose, b, points) : cut_points(a, pose, b, points);
-  if (count == 0) return;  // the lowest point, by rounding
+  if (count == 0) return;  // by rounding only the verdict's lowest point reaches the plane
   manifold.count = count;
   for (std::uint32_t i = 0; i < count; ++i) manifold.points[i] = {points[i].place, points[i].triangle, kNoTriangle};
 }

@@ -10,8 +10,8 @@ namespace orchard::runtime::detail {
 inline constexpr double kSameLine = 1e-9;  // of the points' spread: too little of a second direction to say anything
 
 // Up to four of some points that span them, seen along a direction. `each(visit)` calls visit(seen, point) for all of
-// them, at least one, in the same order each time: `seen` are two coordinates across the direction. It is called five
-// times, so that the points need no memory. Returns how many are chosen.
+// them in the same order each time: `seen` are two coordinates across the direction. It is called five times at most,
+// so that the points need no memory. Returns how many are chosen: 0 if there are no points.
 template <typename Point, typename Each>
 std::uint32_t outermost_points(Each&& each, std::array<Point, kMaxContactPoints>& chosen) noexcept {
   using Seen = std::array<double, 2>;
@@ -30,8 +30,9 @@ std::uint32_t outermost_points(Each&& each, std::array<Point, kMaxContactPoints>
   const auto apart = [](const Seen& p, const Seen& q) {
     return (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
   };
-  const Seen start = best_by([](const Seen&) { return 0; }, chosen[0]).at;
-  const Seen first = best_by([&](const Seen& p) { return apart(p, start); }, chosen[0]).at;
+  const Best start = best_by([](const Seen&) { return 0; }, chosen[0]);
+  if (start.most < 0) return 0;
+  const Seen first = best_by([&](const Seen& p) { return apart(p, start.at); }, chosen[0]).at;
   const Best second = best_by([&](const Seen& p) { return apart(p, first); }, chosen[1]);
   std::uint32_t count = 1;
   if (!(second.most > 0)) return count;

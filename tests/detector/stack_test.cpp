@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -177,6 +178,38 @@ TEST(HalfSpaceContacts, OfABoxThatRestsAreItsLowestCorners) {
       EXPECT_NE(m.points[i].triangle_a, kNoTriangle);
     }
   }
+}
+
+// Far from the origin rounding decides whether a body that just touches cuts the plane: its points are at the plane all
+// the same, and not in the body's middle.
+TEST(HalfSpaceContacts, OfABoxThatJustTouchesFarAwayAreAtThePlane) {
+  int touching = 0;
+  for (std::uint64_t seed = 0; seed < 1000 * orchard::test::more(); ++seed) {
+    Draw draw(orchard::test::first_seed() + seed);
+    Detector world;
+    BodyState state;
+    state.pose = draw.pose(1e6);
+    const Vec3 up = rotate(draw.pose(0), {0, 0, 1});
+    const BodyId box = world.add_body(world.add_box({1, 0.5, 0.25}), state);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner = {i % 2 == 0 ? 1.0 : -1.0, i / 2 % 2 == 0 ? 0.5 : -0.5, i / 4 == 0 ? 0.25 : -0.25};
+      lowest = std::min(lowest, dot(up, Vec3(transform(state.pose, corner))));
+    }
+    world.add_half_space(up, lowest);
+    const Frame frame = world.step(0);
+    if (frame.events.empty()) continue;
+    ++touching;
+    ASSERT_EQ(frame.events[0].a, box);
+    const Manifold m = world.manifold(frame.events[0]);
+    ASSERT_GE(m.count, 1u) << seed;
+    EXPECT_LT(m.depth, 1e-8) << seed;
+    for (std::uint32_t i = 0; i < m.count; ++i) {
+      EXPECT_NEAR(dot(up, Vec3(m.points[i].place)), lowest, 1e-8) << seed;
+      EXPECT_NE(m.points[i].triangle_a, kNoTriangle) << seed;
+    }
+  }
+  EXPECT_GT(touching, 100);
 }
 
 TEST(HalfSpaceContacts, OfACapsuleThatLiesAreBelowBothEnds) {
