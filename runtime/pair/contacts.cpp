@@ -47,11 +47,12 @@ std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexc
         const detail::TrianglePoints a = detail::points_of(lanes, lane),
                                      b = detail::moved_points_of(rows, row, pair.relative);
         Vec3 witness{};
-        if (!detail::triangles_intersect(a, b, &witness)) return;
+        if (!detail::triangles_intersect(a, b, &witness)) return false;
         ++found;
-        if (found > Workspace::Scratch::kCuts) return;
+        if (found > Workspace::Scratch::kCuts) return false;
         const detail::Segment3 common = detail::common_segment(a, b, witness);
         scratch.cuts[found - 1] = {a, b, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
+        return false;
       });
   scratch.cut_count = std::min(found, Workspace::Scratch::kCuts);
   return found;
@@ -183,6 +184,20 @@ void add_points(std::span<const Cut> cuts, const PlacedPair& pair, const Vec3& n
   }
 }
 
+// Where the way ends close beside triangles, as those of faces that slide along each other, they may touch by rounding
+// once the body is placed in the world. The answer about the body as it is moved by the depth decides.
+void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PosePair& poses, double step,
+                         Manifold& manifold) noexcept {
+  constexpr int kMaxSteps = 64;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    Pose moved = poses.b;
+    moved.translation = along(poses.b.translation, manifold.normal, manifold.depth);
+    if (collide(workspace, pair, poses.a, moved).answer != Answer::yes) return;
+    manifold.depth += step;
+    step *= 2;
+  }
+}
+
 // Without triangles, or without an answer: what the spheres say.
 Manifold by_spheres(NarrowPhase& narrow) noexcept {
   while (!narrow.finished()) narrow.refine();
@@ -245,6 +260,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
   result.error = PairAccess::exact_error(narrow);
   if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
+  if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);
   return result;
 }
 

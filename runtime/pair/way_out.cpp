@@ -17,6 +17,7 @@ using Cut = Workspace::Scratch::Cut;
 
 constexpr int kMaxAdvances = 64;       // along one direction
 constexpr double kNudge = 1e-12;       // of the bodies' size: what counts as reaching a plane
+constexpr double kClear = 0.25;        // of a nudge: more than what rounding does to poses
 constexpr double kGain = 1e-6;         // less is no gain
 constexpr double kSame = 1 - 1e-9;     // cosine of directions that count as one
 constexpr std::size_t kObstacles = 8;  // kept at most
@@ -73,30 +74,39 @@ double leaves_boxes(const WayOutSearch& search, const Vec3& u, double at) noexce
   return last;
 }
 
-// The triangles that meet after a part of a way, as far as they can move on together.
+// The triangles that meet after a part of a way, as far as they can move on together. Ends at the first pair that can
+// do so to `limit` of the way.
 struct Meeting {
   bool any = false;
+  bool clear = true;  // those that do not meet are farther apart than rounding
   double farthest = -std::numeric_limits<double>::infinity();
   Vec3 normal;
 };
 
-Meeting meeting_at(const WayOutSearch& search, const Way& way, double at) noexcept {
+Meeting meeting_at(const WayOutSearch& search, const Way& way, double at, double limit) noexcept {
   const PlacedPair ahead = search.pair.moved(along({0, 0, 0}, way.u, at));
   Meeting meeting;
   meeting.normal = way.u;
   walk_candidates(ahead, search.room,
                   [&](const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row) {
                     const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, ahead.relative);
-                    if (!triangles_intersect(a, b, nullptr)) return;
+                    if (!triangles_intersect(a, b, nullptr)) {
+                      if (!meeting.any && meeting.clear) meeting.clear = are_parted_by(a, b, kClear * search.nudge);
+                      return false;
+                    }
                     meeting.any = true;
                     const Exit exit = exit_along(a, b, way);
                     if (exit.t > meeting.farthest) meeting.farthest = exit.t, meeting.normal = exit.normal;
+                    return at + exit.t >= limit;
                   });
   return meeting;
 }
 
-// Along one direction to the end, or until it is longer than `limit`.
-WayOut follow(const WayOutSearch& search, const Vec3& direction, double limit) noexcept {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Along one direction to the end, or until it is longer than `limit`. What is in the way beyond `give_up` at some place
+// ends it there, at the first pair of triangles that is.
+WayOut follow(const WayOutSearch& search, const Vec3& direction, double limit, double give_up = kInfinity) noexcept {
   const Way way(direction);
   WayOut out{way.u, 0, way.u, true};
   for (const Cut& cut : search.cuts) {
@@ -108,10 +118,10 @@ WayOut follow(const WayOutSearch& search, const Vec3& direction, double limit) n
     out.ended = false;
     if (out.way >= limit) return out;
     const double at = out.way + nudge;
-    const Meeting meeting = meeting_at(search, way, at);
+    const Meeting meeting = meeting_at(search, way, at, give_up);
     const double further = meeting.any ? at + meeting.farthest : leaves_boxes(search, way.u, at);
     if (!meeting.any && further < 0) {  // the way includes the nudge, since only there it is known to have ended
-      out.way = at, out.ended = true;
+      out.way = at, out.ended = true, out.clear = meeting.clear;
       return out;
     }
     if (further > at) {
@@ -235,10 +245,18 @@ class Descent {
 // Directions all around, and the best of them to go down from.
 class AllAround {
  public:
-  AllAround(const WayOutSearch& search, const WayOut& best, std::uint32_t refinements) noexcept
-      : search_(search), best_(best), refinements_(refinements), limit_(best.ended ? best.way : kInfinity) {}
+  // Looks for ways shorter than `limit`. `best`: the shortest one so far.
+  AllAround(const WayOutSearch& search, const WayOut& best, double limit, std::uint32_t refinements) noexcept
+      : search_(search), best_(best), refinements_(refinements), limit_(limit) {}
 
-  WayOut find() noexcept {
+  // `thorough`: also along the shortest way out of every pair of triangles, not only of those that are in the way.
+  WayOut find(bool thorough) noexcept {
+    if (thorough) {
+      for (std::size_t i = 0; i < remembered(); ++i) shifts_of(i);
+      try_shortest();
+    } else if (is_blocked_all_around()) {
+      return best_;
+    }
     // The corners of a grid on a cube: 98 directions, at most 27 degrees from each other.
     for (int x = -2; x <= 2; ++x) {
       for (int y = -2; y <= 2; ++y) {
@@ -247,6 +265,8 @@ class AllAround {
         }
       }
     }
+    if (!thorough) try_shortest();
+    if (best_.ended) try_beside(best_.direction);
     for (std::size_t i = 0; i < start_count_; ++i) {
       Descent descent(search_);
       descent.try_direction(starts_[i].direction);
@@ -258,17 +278,37 @@ class AllAround {
   }
 
  private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kWorthStarting = 1.5;  // times the best way: from there a descent may end below it
-  static constexpr std::size_t kStarts = 3;
+  static constexpr std::size_t kStarts = 3, kRemembered = 32;
+
+  std::size_t remembered() const noexcept { return std::min(kRemembered, search_.cuts.size()); }
 
   void offer(const WayOut& out) noexcept {
     if (out.ended && (!best_.ended || out.way < best_.way)) best_ = out;
   }
 
+  void try_shortest() noexcept {
+    for (std::size_t i = 0; i < remembered(); ++i) {
+      if (!known_[i]) continue;
+      const double way = shifts_[i].shortest();
+      if (way > 0 && way < limit_) try_direction(shifts_[i].shortest_way_out());
+    }
+  }
+
+  // Close to a direction, where little may be in the way of its neighbours.
+  void try_beside(const Vec3& direction) noexcept {
+    constexpr std::array<std::array<double, 2>, 6> kAround = {
+        {{1, 0}, {0.5, 0.866}, {-0.5, 0.866}, {-1, 0}, {-0.5, -0.866}, {0.5, -0.866}}};
+    const Way way(direction);
+    for (const double off : {0.02, 0.06, 0.18}) {
+      for (const auto& [x, y] : kAround) try_direction(along(along(way.u, way.e, off * x), way.f, off * y));
+    }
+  }
+
   void try_direction(const Vec3& direction) noexcept {
-    if (!may_end_before(Way(direction), limit_)) return;
-    const WayOut out = follow(search_, direction, limit_);
+    const Vec3 u = along({0, 0, 0}, direction, 1 / std::sqrt(dot(direction, direction)));
+    if (is_blocked(u)) return;
+    const WayOut out = follow(search_, u, limit_, limit_);
     if (!out.ended || !(out.way < limit_)) return;
     limit_ = std::min(limit_, kWorthStarting * out.way);
     std::size_t at = start_count_ < kStarts ? start_count_++ : kStarts;
@@ -279,24 +319,45 @@ class AllAround {
     offer(out);
   }
 
-  // By the triangles that meet now: the pair that was in the way of the direction before is likely to be so again.
-  bool may_end_before(const Way& way, double limit) noexcept {
-    const std::span<const Cut> cuts = search_.cuts;
-    const auto in_the_way = [&](std::size_t i) { return exit_along(cuts[i].first, cuts[i].second, way).t >= limit; };
-    if (in_the_way_ < cuts.size() && in_the_way(in_the_way_)) return false;
-    for (std::size_t i = 0; i < cuts.size(); ++i) {
-      if (!in_the_way(i)) continue;
-      in_the_way_ = i;
-      return false;
+  // One pair of triangles that is in the way of every direction settles it at once, and often is among the first.
+  bool is_blocked_all_around() noexcept {
+    constexpr std::size_t kFirst = 8;
+    for (std::size_t i = 0; i < std::min(kFirst, remembered()); ++i) {
+      if (shifts_of(i).shortest() >= limit_) return true;
     }
-    return true;
+    return false;
+  }
+
+  // By the triangles that meet now: the pair that was in the way of the direction before is likely to be so again.
+  bool is_blocked(const Vec3& u) noexcept {
+    if (!std::isfinite(limit_)) return false;
+    const std::size_t count = search_.cuts.size();
+    if (blocking_ < count && is_in_the_way(blocking_, u)) return true;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!is_in_the_way(i, u)) continue;
+      blocking_ = i;
+      return true;
+    }
+    return false;
+  }
+
+  bool is_in_the_way(std::size_t i, const Vec3& u) noexcept {
+    if (i < kRemembered) return shifts_of(i).contain(u, limit_);
+    return MeetingShifts(search_.cuts[i].first, search_.cuts[i].second).contain(u, limit_);
+  }
+
+  const MeetingShifts& shifts_of(std::size_t i) noexcept {
+    if (!known_[i]) shifts_[i] = MeetingShifts(search_.cuts[i].first, search_.cuts[i].second), known_[i] = true;
+    return shifts_[i];
   }
 
   const WayOutSearch& search_;
   WayOut best_;
   std::uint32_t refinements_;
   double limit_;
-  std::size_t in_the_way_ = 0;
+  std::size_t blocking_ = 0;
+  std::array<MeetingShifts, kRemembered> shifts_;
+  std::array<bool, kRemembered> known_{};
   std::array<WayOut, kStarts> starts_{};
   std::size_t start_count_ = 0;
 };
@@ -333,8 +394,12 @@ WayOut least_way_out(const WayOutSearch& search, std::span<const Vec3> direction
   std::uint32_t left = refinements;
   if (descent.best().ended) descent.refine(left);
   WayOut best = descent.best();
-  if (refinements > 0 && (!best.ended || is_doubtful(search, best.way))) {
-    best = AllAround(search, best, refinements).find();
+  if (refinements > 0) {
+    // A way that is not doubtful is given up only for one that is shorter by far.
+    constexpr double kShorterByFar = 0.85;
+    const bool doubtful = !best.ended || is_doubtful(search, best.way);
+    const double limit = !best.ended ? kInfinity : doubtful ? best.way : kShorterByFar * best.way;
+    best = AllAround(search, best, limit, refinements).find(doubtful);
   }
   return best.ended ? best : way_past(search, descent.last().direction);
 }

@@ -30,9 +30,10 @@ struct WayOutSearch {
 // piece of a surface is inside a box.
 struct WayOut {
   Vec3 direction;
-  double way;   // at its end the bodies are free of each other, rounding included
-  Vec3 normal;  // of what the surfaces leave each other in at its end, pointing along the direction
-  bool ended;   // false: given up
+  double way;          // at its end the bodies are free of each other, rounding included
+  Vec3 normal;         // of what the surfaces leave each other in at its end, pointing along the direction
+  bool ended;          // false: given up
+  bool clear = false;  // at its end no triangles are so close that rounding of poses could make them meet
 };
 
 // The first of the points of pieces that are inside a box where the second tree is now, or null.
