@@ -19,9 +19,9 @@ struct Manifold {
   std::uint32_t count = 0;  // of points: 0 for "no"; the outermost ones of all that were found, seen along the normal
   std::array<ContactPoint, kMaxContactPoints> points{};
   // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, rounding included, and moved
-  // less than that by more than `error` it does. The direction is a local minimum of depth(direction). Where that is
-  // deep beside the bodies, or long beside the contact, it is the best of minima that directions all around lead to.
-  // For "maybe" it is a guess, from sphere to sphere.
+  // less than that by more than `error` it does. The direction is a local minimum of depth(direction), the best of
+  // those that were found: shorter ones are looked for all around, and can be missed. For "maybe" it is a guess, from
+  // sphere to sphere.
   std::array<double, 3> normal{};
   double depth = 0;
   // Of points and depth. Yes: rounding, some 1e-12 of the coordinates. Maybe: the radius of a ball around the point
