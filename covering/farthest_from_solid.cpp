@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "half_angle.h"
+#include "inner_walls.h"
 #include "orchard/covering/inaccuracy.h"
 
 namespace orchard {
@@ -25,7 +26,7 @@ bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 class Search {
  public:
   Search(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
-      : surface_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
+      : surface_(surface), walls_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
   Bounds run(double at_least) {
     start();
@@ -93,6 +94,7 @@ class Search {
                                    farthest(anchor_, center, half), everywhere_}) *
                          (1 + 1e-12);
     if (does_not_matter(upper)) return;
+    if (value <= walls_.depth() && walls_.fill({sample, reach}) && does_not_matter(walls_.depth())) return;
     cells_.push_back({upper, center, half, nearest.position});
     std::push_heap(cells_.begin(), cells_.end(), less_promising);
   }
@@ -129,6 +131,7 @@ class Search {
   static constexpr double kRounding = 1e-13;  // of the lengths in a bound: a few hundred times what they are off by
   static constexpr double kHalfDiagonal = 1.7320508075688774;
   const Surface& surface_;
+  const detail::InnerWalls walls_;
   const Sphere ball_;
   const double radius_;  // R
   const DistanceTolerance tolerance_;

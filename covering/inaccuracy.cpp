@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "half_angle.h"
+#include "inner_walls.h"
 
 namespace orchard {
 namespace {
@@ -28,11 +29,16 @@ constexpr double kFinest = 1e-6;
 //   sd(p) + |q - p|, since it is 1-Lipschitz, and
 //   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre, and at most
 //   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two, y and z, and t from 0 to 1,
-// all taken at the farthest point q of the cap that the cell's corners span.
+// all taken at the farthest point q of the cap that the cell's corners span. Walls inside the solid are told apart from
+// its border (inner_walls.h).
 class Search {
  public:
   Search(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
-      : surface_(surface), sphere_(sphere), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
+      : surface_(surface),
+        walls_(surface),
+        sphere_(sphere),
+        radius_(surface.bounding_radius()),
+        tolerance_(tolerance) {}
 
   Bounds run() {
     ClosestPoint nearest;
@@ -106,7 +112,11 @@ class Search {
         std::min({value + sphere_.radius * chord, farthest(here, middle, chord),
                   farthest_of_both(here, known[0], middle, chord), farthest(anchor_, middle, chord), by_known}) *
         (1 + 1e-12);
-    if (!does_not_matter(upper)) push({upper, corners, {here, known[0]}});
+    if (does_not_matter(upper)) return;
+    if (value <= walls_.depth() && walls_.fill({sphere_.center + sphere_.radius * middle, sphere_.radius * chord}) &&
+        does_not_matter(walls_.depth()))
+      return;
+    push({upper, corners, {here, known[0]}});
   }
 
   // A cell that cannot matter is dropped, but its bound counts towards the answer's.
@@ -145,6 +155,7 @@ class Search {
   }
 
   const Surface& surface_;
+  const detail::InnerWalls walls_;
   const Sphere sphere_;
   const double radius_;  // R
   const DistanceTolerance tolerance_;

@@ -1,0 +1,89 @@
+#include "inner_walls.h"
+
+#include <algorithm>
+#include <cmath>
+
+// The argument: let all triangles near the ball lie in one slab, or in two that cross, and cut the slabs out of the
+// ball. What is left are convex parts that no triangle meets, so the winding number is constant in each. Where it is
+// positive in all of them, every point of the ball is near a place inside the solid: the way out of the slabs is no
+// longer than a few thicknesses divided by the sine of the angle between them.
+namespace orchard::detail {
+namespace {
+
+constexpr double kThickness = 1e-6;  // of a slab to either side, in R: what six digits leave of a plane
+constexpr double kMinSine = 0.3;     // of the angle between two slabs
+constexpr double kClear = 4;         // thicknesses from a plane to where the winding number is asked for
+constexpr double kWay = 2 * (kClear + 1) / kMinSine;  // thicknesses out of two slabs and across one of them
+
+// The way along a plane's normal from a place at this distance to one that is `clear` away on a side, +1 or -1.
+double way_to_side(double distance, int side, double clear) { return side * std::max(0.0, clear - side * distance); }
+
+}  // namespace
+
+InnerWalls::InnerWalls(const Surface& surface)
+    : surface_(surface), thickness_(kThickness * surface.bounding_radius()), depth_(kWay * thickness_) {}
+
+bool InnerWalls::fill(const Sphere& ball) const {
+  const Sphere larger{ball.center, ball.radius + 2 * depth_};
+  const auto [planes, count] = planes_near(larger);
+  if (count == 0) return false;
+  return count == 1 ? is_inside_beyond(planes[0], larger) : is_inside_beyond(planes, larger);
+}
+
+bool InnerWalls::in_slab(const Plane& plane, Index triangle) const {
+  const auto corners = surface_.corners(triangle);
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const Point& corner) { return std::abs(plane.distance(corner)) <= thickness_; });
+}
+
+InnerWalls::Planes InnerWalls::planes_near(const Sphere& ball) const {
+  Planes found;
+  bool too_many = false;
+  surface_.visit_nearest(ball.center, [&](Index triangle) {
+    const auto [a, b, c] = surface_.corners(triangle);
+    const auto end = found.planes.begin() + static_cast<std::ptrdiff_t>(found.count);
+    if (too_many || closest_point_of_triangle(ball.center, a, b, c).distance > ball.radius ||
+        std::any_of(found.planes.begin(), end, [&](const Plane& plane) { return in_slab(plane, triangle); }))
+      return too_many ? 0 : ball.radius;
+    const Vector& normal = surface_.normal(triangle);
+    too_many = found.count == 2 || (found.count == 1 && found.planes[0].normal.cross(normal).norm() < kMinSine);
+    if (!too_many) found.planes[found.count++] = {normal, normal.dot(a)};
+    return too_many ? 0 : ball.radius;
+  });
+  if (too_many) found.count = 0;
+  return found;
+}
+
+// Asks on both sides.
+bool InnerWalls::is_inside_beyond(const Plane& plane, const Sphere& ball) const {
+  const double distance = plane.distance(ball.center);
+  for (const int side : {-1, 1}) {
+    const double way = way_to_side(distance, side, kClear * thickness_);
+    if (std::abs(way) < ball.radius && !is_inside(ball.center + way * plane.normal)) return false;
+  }
+  return true;
+}
+
+// Asks in all four parts, at the place that is nearest to the ball's centre: along one normal, or along both.
+bool InnerWalls::is_inside_beyond(const std::array<Plane, 2>& planes, const Sphere& ball) const {
+  const double clear = kClear * thickness_;
+  const double cosine = planes[0].normal.dot(planes[1].normal), squared_sine = (1 - cosine) * (1 + cosine);
+  const std::array<double, 2> distance{planes[0].distance(ball.center), planes[1].distance(ball.center)};
+  for (const int first : {-1, 1}) {
+    for (const int second : {-1, 1}) {
+      const auto is_there = [&](const Point& at) {
+        return first * planes[0].distance(at) >= 0.99 * clear && second * planes[1].distance(at) >= 0.99 * clear;
+      };
+      const double a = first * clear - distance[0], b = second * clear - distance[1];
+      const std::array<Point, 3> places{
+          ball.center + way_to_side(distance[0], first, clear) * planes[0].normal,
+          ball.center + way_to_side(distance[1], second, clear) * planes[1].normal,
+          ball.center + ((a - cosine * b) * planes[0].normal + (b - cosine * a) * planes[1].normal) / squared_sine};
+      const auto place = std::find_if(places.begin(), places.end(), is_there);
+      if (place != places.end() && (*place - ball.center).norm() < ball.radius && !is_inside(*place)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace orchard::detail
