@@ -237,8 +237,8 @@ MeetingShifts::MeetingShifts(const TrianglePoints& a, const TrianglePoints& b) n
     of_a[i] = minus(a[(i + 1) % 3], a[i]), of_b[i] = minus(b[(i + 1) % 3], b[i]);
   }
   const double size = size_of(a, b);
-  // False if the set is flat across the normal.
   double least = std::numeric_limits<double>::infinity();
+  // Returns false if the set is flat across the normal.
   const auto add = [&](const Vec3& normal, double parallel) {
     const double length = std::sqrt(square(normal));
     if (!(length > parallel)) return true;  // of parallel edges: other planes bound the set

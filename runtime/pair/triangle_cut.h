@@ -41,8 +41,7 @@ class MeetingShifts {
   MeetingShifts() = default;
   MeetingShifts(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
-  // Whether b meets a all the way to t * direction. False where the set is flat: nothing is known
-  // there.
+  // Whether b meets a all the way to t * direction. False where the set is flat: nothing is known there.
   bool contain(const Vec3& direction, double t) const noexcept;
   // The shortest shift that leads out, nearly. 0 where the set is flat.
   const Vec3& shortest_way_out() const noexcept { return shortest_; }

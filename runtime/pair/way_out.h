@@ -43,8 +43,7 @@ const runtime::Vec3* piece_inside(const WayOutSearch& search, const SolidBox& so
 // the last triangles part at a face or two edges, the way across these is tried next, or the shortest one that leaves
 // all such obstacles behind. Directions all around are tried as well, so that no wrong first direction decides: for any
 // shorter way where that one is long beside the bodies or the contact, else for one that is shorter by far. Where no
-// direction comes to an end in time, the way is that to
-// where the bodies' extents part, and `ended` is false.
+// direction comes to an end in time, the way is that to where the bodies' extents part, and `ended` is false.
 WayOut least_way_out(const WayOutSearch& search, std::span<const Vec3> directions, std::uint32_t refinements) noexcept;
 
 }  // namespace orchard::runtime::detail
