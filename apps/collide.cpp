@@ -6,12 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <vector>
 
 #include "commands.h"
 #include "input_file.h"
 #include "load_tree.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/geometry/error.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/shape_query.h"
@@ -98,19 +98,14 @@ json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Po
 
 // One vertex of each connected piece of the surface, in the tree's frame.
 std::vector<std::array<double, 3>> pieces_of(const runtime::PackedSphereTree& tree) {
-  std::vector<std::uint32_t> parent(tree.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets joined(tree.vertices.size());
   for (const auto& triangle : tree.triangles) {
-    for (const std::uint32_t v : triangle) parent[root(v)] = root(triangle[0]);
+    for (const std::uint32_t v : triangle) joined.unite(triangle[0], v);
   }
-  std::vector<bool> seen(parent.size());
+  std::vector<bool> seen(tree.vertices.size());
   std::vector<std::array<double, 3>> pieces;
   for (const auto& triangle : tree.triangles) {
-    const std::uint32_t piece = root(triangle[0]);
+    const Index piece = joined.root(triangle[0]);
     if (seen[piece]) continue;
     seen[piece] = true;
     const auto& vertex = tree.vertices[triangle[0]];

@@ -34,9 +34,17 @@ Broken broken(const PromiseCheck& check) {
   if (!check.keeps_open())
     result.what.push_back(fmt::format("the surface is left open by {}, where at most {} was promised",
                                       percent(check.open), percent(*check.promise.open)));
+  if (check.keeps_open() && check.promise.open && check.open_upper > *check.promise.open)
+    result.what.push_back(fmt::format(
+        "it could be proven only that the surface is left open by {} at most, where at most {} was promised",
+        percent(check.open_upper), percent(*check.promise.open)));
   if (!check.keeps_protrusion())
     result.what.push_back(fmt::format("the axis sticks out of the solid by {}, where at most {} was promised",
                                       percent(check.protrusion), percent(*check.promise.protrusion)));
+  if (check.keeps_protrusion() && check.promise.protrusion && check.protrusion_upper > *check.promise.protrusion)
+    result.what.push_back(fmt::format(
+        "it could be proven only that the axis sticks out of the solid by {} at most, where at most {} was promised",
+        percent(check.protrusion_upper), percent(*check.promise.protrusion)));
   return result;
 }
 

@@ -12,7 +12,8 @@
 // said in the last line, in the report and in the exit code.
 namespace orchard::apps {
 
-// What was promised and does not hold, in words with figures, one sentence part each.
+// What was promised and is not known to hold, in words with figures, one sentence part each. A promise that could
+// neither be proven nor disproved is among it: an unknown result is no kept promise.
 struct Broken {
   std::vector<std::string> what;
   std::string remedy;  // what may help; may be empty
@@ -24,8 +25,8 @@ struct Broken {
 Broken broken(const PromiseCheck& check);
 nlohmann::json to_json(const PromiseCheck& check);
 
-// Of the axis in few balls: as many as were asked for, as near as was asked for, and the topology of the solid if
-// `topology`.
+// Of the simplified axis: no more balls than were asked for, no farther off than was asked for, and the topology
+// `wanted`.
 Broken broken(const FewBalls& few, const SimplifyOptions& options, const Topology& wanted);
 
 // Of a tree: where a node without children is looser than --error or --region allow. Lengths in mesh units.

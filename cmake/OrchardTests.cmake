@@ -3,8 +3,8 @@
 # orchard_add_tests(module SOURCES .. [APART ..] [LINK ..] [LONG suites..] [NUMERIC tests..]): one executable and one ctest
 # label per module. All tests are "quick"; the suites named take their random cases from tests/support/effort.h, and are
 # once more, with twenty times as many and fresh ones, a test that is "long". Those named NUMERIC do the same sums over
-# and over, which takes the sanitizers half of their time and shows them nothing that other tests of the suite do not:
-# .ci/run leaves them out there, and there alone.
+# and over, or run every command once more, which takes the sanitizers half of their time and shows them nothing that
+# other tests do not: .ci/run leaves them out there, and there alone.
 function(orchard_add_tests name)
   cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK;LONG;NUMERIC" ${ARGN})
   set(target orchard_${name}_tests)

@@ -46,8 +46,11 @@ InnerWalls::Planes InnerWalls::planes_near(const Sphere& ball) const {
         std::any_of(found.planes.begin(), end, [&](const Plane& plane) { return in_slab(plane, triangle); }))
       return too_many ? 0 : ball.radius;
     const Vector& normal = surface_.normal(triangle);
-    too_many = found.count == 2 || (found.count == 1 && found.planes[0].normal.cross(normal).norm() < kMinSine);
-    if (!too_many) found.planes[found.count++] = {normal, normal.dot(a)};
+    const Plane plane{normal, normal.dot(a)};
+    // The normal of a sliver may be so far off that its own plane does not hold it.
+    too_many = found.count == 2 || !in_slab(plane, triangle) ||
+               (found.count == 1 && found.planes[0].normal.cross(normal).norm() < kMinSine);
+    if (!too_many) found.planes[found.count++] = plane;
     return too_many ? 0 : ball.radius;
   });
   if (too_many) found.count = 0;

@@ -26,7 +26,7 @@ class InnerWalls {
   };
   struct Planes {
     std::array<Plane, 2> planes;
-    std::size_t count = 0;  // 0: there are none near, or more than two
+    std::size_t count = 0;  // 0: there are none near, or not all lies in one or two
   };
   Planes planes_near(const Sphere& ball) const;
   bool in_slab(const Plane& plane, Index triangle) const;

@@ -176,7 +176,7 @@ AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& optio
   AxisPromise promise{.open = {}, .protrusion = {}, .topology = options.axis.keep_topology};
   if (!options.refine) return promise;
   const RefineOptions& refine = *options.refine;
-  promise.protrusion = 2 * refine.tolerance;
+  promise.protrusion = detail::kMaxStickingOut * refine.tolerance;
   const bool prunes = options.prune.angle > 0 || options.prune.scale > 1;
   if (refine.reach_rounds > 0 && !prunes) promise.open = detail::left_open(surface, refine, points) + refine.tolerance;
   return promise;

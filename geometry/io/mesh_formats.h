@@ -22,34 +22,4 @@ TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name,
 TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name, MeshReadReport& report);
 TriangleMesh read_xyz(std::string_view bytes, const std::string& name, MeshReadReport& report);
 
-// The same, for the mesh alone.
-inline TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_obj(bytes, name, report);
-}
-inline TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_ply(bytes, name, report);
-}
-inline TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_stl(bytes, name, report);
-}
-inline TriangleMesh read_off(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_off(bytes, name, report);
-}
-inline TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_obj_or_points(bytes, name, report);
-}
-inline TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_ply_or_points(bytes, name, report);
-}
-inline TriangleMesh read_xyz(std::string_view bytes, const std::string& name) {
-  MeshReadReport report;
-  return read_xyz(bytes, name, report);
-}
-
 }  // namespace orchard

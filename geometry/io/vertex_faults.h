@@ -18,8 +18,8 @@ class VertexFaults {
   // `at`: byte of the file where the coordinate is.
   void add(Index vertex, std::size_t at) { faults_.push_back({vertex, at}); }
   // Calls `fail` with the byte of the first one that a face uses. The others keep their numbers and get the place of a
-  // vertex that is used, so that they are in nobody's way; without faces they are erased. `place` names a byte for the
-  // report. Call it before the faces are split.
+  // vertex that is used, so that they change neither the bounding box nor any length; without faces they are erased.
+  // `place` names a byte for the report. Call it before the faces are split.
   void settle(std::vector<Point>& vertices, const FaceCollector& faces, const std::function<void(std::size_t)>& fail,
               const std::function<std::string(std::size_t)>& place, MeshReadReport& report) const;
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -52,5 +53,10 @@ struct KnownDepths {
 // number of threads.
 SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, const KnownDepths& depths, double known,
                            double accuracy, Index max_cells);
+
+// Whether a ball that is interpolated on these three may reach beyond the place of the surface that is nearest to its
+// centre by more than `limit` (mesh units): false is proven, up to rounding. Their centres are in the solid, and their
+// radii are the distances of these to the surface, which mostly decides without a query.
+bool may_stick_out(const Surface& surface, const std::array<Sphere, 3>& balls, double limit);
 
 }  // namespace orchard::detail

@@ -15,10 +15,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;  // of what was found: not searched for more
-constexpr int kMaxLevels = 100;       // of halving: then a cell is as small as rounding
-constexpr std::size_t kBlock = 64;    // cells that one task looks at
-constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound is off by
+constexpr double kShareAbove = 0.02;      // of what was found: not searched for more
+constexpr int kMaxLevels = 100;           // of halving: then a cell is as small as rounding
+constexpr std::size_t kBlock = 64;        // cells that one task looks at
+constexpr std::size_t kMaxHalves = 4096;  // of a single cell: if these do not decide, the cell may stick out
+constexpr double kRounding = 1e-12;       // of the coordinates: more than a bound is off by
 
 // Balls interpolated linearly on up to three; edges and vertices repeat their last.
 struct Cell {
@@ -169,7 +170,29 @@ class ProtrusionSearch {
   SearchedMax found_;
 };
 
+// What depth_of() finds for a ball in the solid that touches the surface.
+BallDepth depth_of_touching(const Sphere& ball) {
+  BallDepth depth;
+  depth.signed_distance = -ball.radius;
+  depth.nearest.distance = ball.radius;
+  return depth;
+}
+
 }  // namespace
+
+bool may_stick_out(const Surface& surface, const std::array<Sphere, 3>& balls, double limit) {
+  std::array<BallDepth, 3> depths;
+  Cell cell;
+  cell.balls = balls;
+  for (std::size_t k = 0; k < 3; ++k) {
+    depths[k] = depth_of_touching(balls[k]);
+    cell.corner_depths[k] = &depths[k];
+  }
+  const CornerBound by_corners = bound_by_corners(cell);
+  if (by_corners.inside && by_corners.bound <= limit) return false;
+  const double known = limit / (1 + 2 * kShareAbove);
+  return ProtrusionSearch(surface, known, kShareAbove * known, kMaxHalves).run({cell}).upper > limit;
+}
 
 SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, const KnownDepths& depths, double known,
                            double accuracy, Index max_cells) {

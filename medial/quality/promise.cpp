@@ -10,9 +10,9 @@ namespace orchard {
 namespace {
 
 constexpr const char* kStage = "checking what was promised";
-constexpr double kAccuracy = 1e-5;      // diagonals: to which the largest values are searched
-constexpr double kKnown = 0.97;         // of the limit: what is proven is up to 2 % more, and no more than the limit
-constexpr Index kMaxCells = 2'000'000;  // that the search for what sticks out looks at
+constexpr double kAccuracy = 1e-5;    // diagonals: to which the largest values are searched
+constexpr double kKnown = 0.97;       // of the limit: what is proven is up to 2 % more, and no more than the limit
+constexpr Index kMaxCells = 300'000;  // that the search for what sticks out looks at
 
 }  // namespace
 

@@ -147,7 +147,9 @@ std::optional<MedialStability> medial_stability(const Surface& surface, const Me
   if (!moved.solid()) return std::nullopt;
   MedialBuildInput points;
   points.sampling = carried_along(std::move(sampling), divided ? *divided : surface, moved);
-  const MedialBuild other = build_medial_axis(moved, options, progress, std::move(points));
+  MedialBuildOptions unchecked = options;
+  unchecked.check_promise = false;
+  const MedialBuild other = build_medial_axis(moved, unchecked, progress, std::move(points));
   const Part a = wide_part(build.axis, 2 * stability.object_angle);
   const Part b = wide_part(other.axis, 2 * stability.object_angle);
   if (a.points.empty() || b.points.empty()) return std::nullopt;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "../quality/boundary_reach.h"
+
 namespace orchard::detail {
 namespace {
 
@@ -66,8 +68,11 @@ class Splitter {
   // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off; those that were given
   // up count for nothing.
   std::vector<double> errors() {
-    measure(known_.edges, complex_.edges, [this](const auto& edge) { return error_of_edge(edge); });
-    measure(known_.triangles, complex_.triangles, [this](const auto& triangle) { return error_of_triangle(triangle); });
+    measure(known_.edges, complex_.edges, [this](const auto& edge) {
+      return held(error_of_edge(edge), {edge[0], edge[1], edge[1]});
+    });
+    measure(known_.triangles, complex_.triangles,
+            [this](const auto& triangle) { return held(error_of_triangle(triangle), triangle); });
     std::vector<double> error = known_.edges.errors;
     const EdgeNumbers edge_numbers = complex_.edge_numbers();
     given_up_.assign(error.size(), 0);
@@ -140,6 +145,16 @@ class Splitter {
       }
     });
     return never;
+  }
+
+  // The error that was found at the places that are looked at; or, if balls between them may stick out by more than is
+  // promised, so much at least.
+  double held(double error, const std::array<Index, 3>& cell) const {
+    const double limit = kMaxStickingOut * options_.tolerance;
+    if (error > options_.tolerance) return error;
+    std::array<Sphere, 3> balls;
+    for (std::size_t k = 0; k < 3; ++k) balls[k] = {complex_.balls[cell[k]].center, complex_.balls[cell[k]].radius};
+    return may_stick_out(surface_, balls, limit) ? limit : error;
   }
 
   double length(const std::array<Index, 2>& edge) const {

@@ -7,6 +7,10 @@
 
 namespace orchard::detail {
 
+// Tolerances: balls between the places that dividing looks at may be off by the tolerance once more. So much do balls
+// stick out of the solid at most, which is proven of each cell.
+inline constexpr double kMaxStickingOut = 2;
+
 struct SplitOptions {
   double tolerance = 0, merging = 0;  // mesh units; see RefineOptions and BallSolver
   double min_length = 0;              // mesh units: shorter edges are not divided
@@ -35,7 +39,8 @@ struct SplitErrors {
 
 // Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
 // than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten
-// tolerances of long ones, or closer where they are thin. A triangle's error counts for its longest edge. Edges
+// tolerances of long ones, or closer where they are thin; and until it is proven that they protrude by no more than
+// kMaxStickingOut tolerances. A triangle's error counts for its longest edge. Edges
 // through a wall of a surface that cuts itself are not divided: no division makes them linear. New vertices
 // are exact where that is possible; what `known` has as left by an earlier call is left again. Deterministic; parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,

@@ -6,8 +6,6 @@
 
 namespace orchard::runtime::detail {
 
-// Half-spaces have the indices from here on, beyond those of all bodies.
-inline constexpr BodyIndex kFirstHalfSpace = 0xf0000000u;
 inline bool is_half_space(BodyIndex index) noexcept { return index >= kFirstHalfSpace && index != kNoIndex; }
 
 inline constexpr Step kNotAsked = -2;  // not the step before any step

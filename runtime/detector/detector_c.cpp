@@ -89,6 +89,7 @@ orchard_frame step(orchard_detector& detector, double time, const rt::FrameBudge
   return result;
 }
 
+static_assert(ORCHARD_FIRST_HALF_SPACE == rt::kFirstHalfSpace);
 constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 
 }  // namespace

@@ -1,9 +1,38 @@
+#include <cmath>
+#include <limits>
+
 #include "detector_state.h"
+#include "pair/solid_contacts.h"
 
 namespace orchard::runtime {
 
 using detail::is_half_space;
 using detail::PartPair;
+
+namespace {
+
+// As its tree stores it, rounded up to float: of a smaller one a corner would be out before it meets a triangle.
+Vec3 stored_half(const detail::Shape& box) noexcept {
+  Vec3 half = box.p;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto nearest = static_cast<float>(half[i]);
+    half[i] = double{nearest} < half[i] ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+  }
+  return half;
+}
+
+// Boxes are solid, as they are for answers: what is wholly inside one is in contact with it.
+Manifold tree_contacts(Workspace& workspace, const PartPair& pair, const ContactOptions& with) noexcept {
+  const detail::Shape &a = *pair.a.shape, &b = *pair.b.shape;
+  std::array<detail::SolidBox, 2> boxes{};
+  std::size_t count = 0;
+  if (a.kind == detail::ShapeKind::box) boxes[count++] = {true, stored_half(a), b.pieces};
+  if (b.kind == detail::ShapeKind::box) boxes[count++] = {false, stored_half(b), a.pieces};
+  return detail::contacts_of_solids(workspace, TreePair(a.prepared, b.prepared), pair.a.pose(), pair.b.pose(), with,
+                                    std::span(boxes.data(), count));
+}
+
+}  // namespace
 
 // The places of the last step are still known.
 Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions& with) noexcept {
@@ -19,8 +48,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   if (half) pair.half = places.half_space(event.b.index);
   Workspace& workspace = queries.scratch(0).workspace;
   if (!pair.simple()) {
-    result = contacts(workspace, TreePair(pair.a.shape->prepared, pair.b.shape->prepared), pair.a.pose(), pair.b.pose(),
-                      with);
+    result = tree_contacts(workspace, pair, with);
     if (result.answer == Answer::yes) return result;
   }
   std::uint64_t work = 0;
@@ -31,10 +59,10 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b};
   result.normal = verdict.contact.normal;
   if (half) {
-    result.depth = detail::half_space_depth(*pair.a.shape, pair.a.pose(), pair.half);
+    detail::half_space_contact(*pair.a.shape, pair.a.pose(), pair.half, result);
   } else if (pair.simple()) {
     result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), result.normal);
-  } else {  // one wholly inside a box
+  } else {  // contacts need more memory than there is
     result.complete = false;
   }
   return result;

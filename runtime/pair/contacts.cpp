@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "outermost_points.h"
 #include "pair_access.h"
+#include "solid_contacts.h"
 #include "tree/principal_axes.h"
 #include "triangle_cut.h"
 #include "vector_functions.h"
@@ -15,15 +17,17 @@ namespace orchard::runtime {
 using detail::along;
 using detail::cross;
 using detail::dot;
+using detail::kSameLine;
 using detail::minus;
 using detail::PlacedPair;
+using detail::SolidBox;
 using detail::Vec3;
+using detail::WayOut;
+using detail::WayOutSearch;
 
 namespace {
 
 using Cut = Workspace::Scratch::Cut;
-
-constexpr double kSameLine = 1e-9;  // of the points' spread: too little of a second direction to say anything
 
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
@@ -43,11 +47,12 @@ std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexc
         const detail::TrianglePoints a = detail::points_of(lanes, lane),
                                      b = detail::moved_points_of(rows, row, pair.relative);
         Vec3 witness{};
-        if (!detail::triangles_intersect(a, b, &witness)) return;
+        if (!detail::triangles_intersect(a, b, &witness)) return false;
         ++found;
-        if (found > Workspace::Scratch::kCuts) return;
+        if (found > Workspace::Scratch::kCuts) return false;
         const detail::Segment3 common = detail::common_segment(a, b, witness);
         scratch.cuts[found - 1] = {a, b, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
+        return false;
       });
   scratch.cut_count = std::min(found, Workspace::Scratch::kCuts);
   return found;
@@ -101,57 +106,96 @@ Vec3 flattest(std::span<const Cut> cuts) noexcept {
   return spread(axes[1]) > kSameLine ? unit(axes[2]) : Vec3{};
 }
 
-// Up to four of the curves' points that span them, seen along the normal.
-void choose_points(std::span<const Cut> cuts, const Vec3& normal, std::array<std::size_t, kMaxContactPoints>& chosen,
-                   std::uint32_t& count) noexcept {
-  const detail::Way way(normal);
-  const std::size_t points = 2 * cuts.size();
-  const auto at = [&](std::size_t i) -> std::array<double, 2> {
-    const Vec3 p = minus(i % 2 == 0 ? cuts[i / 2].p : cuts[i / 2].q, cuts[0].p);
-    return {dot(way.e, p), dot(way.f, p)};
-  };
-  const auto best_by = [&](auto&& value) {
-    std::size_t best = 0;
-    double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < points; ++i) {
-      const double v = value(at(i));
-      if (v > most) most = v, best = i;
+struct Directions {
+  std::array<Vec3, 15> some{};
+  std::size_t count = 0;
+  void add(const Vec3& direction) noexcept { some[count++] = direction; }
+  std::span<const Vec3> all() const noexcept { return {some.data(), count}; }
+};
+
+// The directions to begin with, the most promising last.
+void first_directions(const WayOutSearch& search, Directions& directions) noexcept {
+  const std::span<const Cut> cuts = search.cuts;
+  const Vec3 by_normals = facing(cuts, 1e-9 * search.size), by_plane = flattest(cuts);
+  if (length(by_normals) > 0) directions.add(by_normals);
+  if (length(by_plane) > 0) {
+    const bool same_side = dot(by_plane, by_normals) >= 0;
+    directions.add(same_side ? by_plane : opposite(by_plane));
+  }
+  // Where normals cancel out, as those of open surfaces may, either side may be the way out.
+  if (directions.count < 2 || std::fabs(dot(by_plane, by_normals)) < 0.3) {
+    directions.add(directions.count > 0 ? opposite(directions.some[directions.count - 1]) : Vec3{0, 0, 1});
+  }
+  if (!cuts.empty()) return;
+  for (const SolidBox& solid : search.solids) {  // out through a box's faces
+    for (std::size_t i = 0; i < 6; ++i) {
+      Vec3 face{};
+      face[i / 2] = i % 2 == 0 ? 1 : -1;
+      directions.add(solid.is_first ? face : rotate(search.pair.relative, face));
     }
-    return std::pair(best, most);
-  };
-  const auto apart = [](const std::array<double, 2>& p, const std::array<double, 2>& q) {
-    return (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
-  };
-  const std::array<double, 2> start = at(0);
-  chosen[0] = best_by([&](const auto& p) { return apart(p, start); }).first;
-  const std::array<double, 2> first = at(chosen[0]);
-  const auto [second, square] = best_by([&](const auto& p) { return apart(p, first); });
-  count = 1;
-  if (!(square > 0)) return;
-  chosen[count++] = second;
-  const std::array<double, 2> line = {at(second)[0] - first[0], at(second)[1] - first[1]};
-  const auto beside = [&](const auto& p) { return line[0] * (p[1] - first[1]) - line[1] * (p[0] - first[0]); };
-  for (const double side : {1.0, -1.0}) {
-    const auto [point, area] = best_by([&](const auto& p) { return side * beside(p); });
-    if (area > kSameLine * square) chosen[count++] = point;
   }
 }
 
-// The directions to begin with, the most promising last.
-std::uint32_t first_directions(std::span<const Cut> cuts, double size, std::array<Vec3, 3>& directions) noexcept {
-  std::uint32_t count = 0;
-  const Vec3 by_normals = facing(cuts, 1e-9 * size), by_plane = flattest(cuts);
-  if (length(by_normals) > 0) directions[count++] = by_normals;
-  if (length(by_plane) > 0) {
-    const bool same_side = dot(by_plane, by_normals) >= 0;
-    directions[count++] = same_side ? by_plane : opposite(by_plane);
+// Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
+double least_nudge(const NarrowPhase& narrow, double size) noexcept {
+  double places = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    places += std::fabs(PairAccess::first_pose(narrow).translation[i]) +
+              std::fabs(PairAccess::second_pose(narrow).translation[i]);
   }
-  // Where normals cancel out, as those of open surfaces may, either side may be the way out.
-  if (count < 2 || std::fabs(dot(by_plane, by_normals)) < 0.3) {
-    directions[count] = count > 0 ? opposite(directions[count - 1]) : Vec3{0, 0, 1};
-    ++count;
+  return 1e-12 * size + 2e-15 * places / PairAccess::first_pose(narrow).scale;
+}
+
+// Where surfaces do not meet: a point of one that is inside a box, as the only point. False if there is none.
+bool add_piece_inside(const WayOutSearch& search, const Pose& world, Manifold& manifold) noexcept {
+  const PreparedTree &first = search.pair.first, &second = search.pair.second;
+  for (const SolidBox& solid : search.solids) {
+    const runtime::Vec3* const piece = detail::piece_inside(search, solid);
+    if (piece == nullptr) continue;
+    const Vec3 local =
+        solid.is_first
+            ? Vec3(along(transform(search.pair.relative, minus(*piece, second.tree.origin)), first.tree.origin, 1))
+            : Vec3(*piece);
+    manifold.count = 1;
+    manifold.points[0].place = transform(world, local);
+    return true;
   }
-  return count;
+  return false;
+}
+
+// Up to four of the curves' points that span them, seen along the normal.
+void add_points(std::span<const Cut> cuts, const PlacedPair& pair, const Vec3& normal, const Pose& world,
+                bool exchanged, Manifold& manifold) noexcept {
+  const auto end = [&cuts](std::size_t i) { return i % 2 == 0 ? cuts[i / 2].p : cuts[i / 2].q; };
+  std::array<std::size_t, kMaxContactPoints> chosen{};
+  manifold.count = detail::outermost_points(
+      [&, way = detail::Way(normal)](auto&& visit) {
+        for (std::size_t i = 0; i < 2 * cuts.size(); ++i) {
+          const Vec3 p = minus(end(i), cuts[0].p);
+          visit({dot(way.e, p), dot(way.f, p)}, i);
+        }
+      },
+      chosen);
+  for (std::uint32_t i = 0; i < manifold.count; ++i) {
+    const Cut& cut = cuts[chosen[i] / 2];
+    manifold.points[i] = {transform(world, along(end(chosen[i]), pair.first.tree.origin, 1)),
+                          exchanged ? cut.triangle_second : cut.triangle_first,
+                          exchanged ? cut.triangle_first : cut.triangle_second};
+  }
+}
+
+// Where the way ends close beside triangles, as those of faces that slide along each other, they may touch by rounding
+// once the body is placed in the world. The answer about the body as it is moved by the depth decides.
+void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PosePair& poses, double step,
+                         Manifold& manifold) noexcept {
+  constexpr int kMaxSteps = 64;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    Pose moved = poses.b;
+    moved.translation = along(poses.b.translation, manifold.normal, manifold.depth);
+    if (collide(workspace, pair, poses.a, moved).answer != Answer::yes) return;
+    manifold.depth += step;
+    step *= 2;
+  }
 }
 
 // Without triangles, or without an answer: what the spheres say.
@@ -170,8 +214,10 @@ Manifold by_spheres(NarrowPhase& narrow) noexcept {
 
 }  // namespace
 
-Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
-                  const ContactOptions& options) noexcept {
+namespace detail {
+
+Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                            const ContactOptions& options, std::span<const SolidBox> boxes) noexcept {
   Manifold result;
   NarrowPhase& narrow = workspace.narrow;
   narrow.bind(pair.a(), pair.b());
@@ -188,38 +234,41 @@ Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, con
   }
   const PlacedPair both{PairAccess::first(narrow), PairAccess::second(narrow), PairAccess::relative(narrow),
                         PairAccess::placement(narrow)};
-  if (find_cuts(both, *scratch) == 0) {
+  find_cuts(both, *scratch);
+  const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
+  const Pose& world = PairAccess::first_pose(narrow);
+  const bool exchanged = PairAccess::exchanged(narrow);
+  std::array<SolidBox, 2> solids{};
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    solids[i] = boxes[i];
+    if (exchanged) solids[i].is_first = !solids[i].is_first;
+  }
+  const double size = both.first.extent + both.second.extent * both.relative.scale;
+  const WayOutSearch search{
+      both, scratch->walk, cuts, std::span(solids.data(), boxes.size()), size, least_nudge(narrow, size)};
+  if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
     return result;
   }
   result.answer = Answer::yes;
-  const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
-  const Pose& world = PairAccess::first_pose(narrow);
-  const bool exchanged = PairAccess::exchanged(narrow);
-  const double size = both.first.extent + both.second.extent * both.relative.scale;
-
-  std::array<Vec3, 3> directions{};
-  const std::uint32_t count = first_directions(cuts, size, directions);
-  detail::WayOut out{directions[0], 0, directions[0], true};
-  if (options.depth) {
-    out = detail::least_way_out(both, scratch->walk, cuts, std::span(directions.data(), count), size,
-                                options.refinements);
-  }
+  Directions directions;
+  first_directions(search, directions);
+  WayOut out{directions.some[0], 0, directions.some[0], true};
+  if (options.depth) out = least_way_out(search, directions.all(), options.refinements);
   result.complete = out.ended;
   result.depth = out.way * world.scale;
   result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
   result.error = PairAccess::exact_error(narrow);
-
-  std::array<std::size_t, kMaxContactPoints> chosen{};
-  choose_points(cuts, out.direction, chosen, result.count);
-  for (std::uint32_t i = 0; i < result.count; ++i) {
-    const Cut& cut = cuts[chosen[i] / 2];
-    const Vec3 p = chosen[i] % 2 == 0 ? cut.p : cut.q;
-    result.points[i] = {transform(world, along(p, both.first.tree.origin, 1)),
-                        exchanged ? cut.triangle_second : cut.triangle_first,
-                        exchanged ? cut.triangle_first : cut.triangle_second};
-  }
+  if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
+  if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);
   return result;
+}
+
+}  // namespace detail
+
+Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                  const ContactOptions& options) noexcept {
+  return detail::contacts_of_solids(workspace, pair, a, b, options, {});
 }
 
 SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,

@@ -47,6 +47,7 @@ namespace {
 constexpr double kFloatUnit = 0x1p-24;
 // Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
 constexpr double kMinSlack = 1e-15;
+constexpr double kCoarse = 0x1p-9;  // of the smaller body's radius; leaves of 1,000 triangles have some 2^-5
 constexpr double kMinSize = 1e-18;  // below it Placement::unit stays as it is: margins are far larger
 
 constexpr double kMinOpposition = 1e-6;  // between unit normals: less says nothing about a direction
@@ -257,6 +258,7 @@ void NarrowPhase::place() noexcept {
   placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
   placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
   placement_.box_margin = rounded_up(2 * sigma + 192 * kFloatUnit * size);
+  placement_.coarse = double{placement_.box_margin} > kCoarse * std::min(first_->radius, second_->radius * scale);
   const int exponent = 1 + detail::exponent_of(std::max(size, kMinSize));
   detail::find_rows(placement_);
   placement_.unit = static_cast<float>(detail::scaled(1, -exponent));

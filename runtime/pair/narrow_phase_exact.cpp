@@ -52,7 +52,21 @@ inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, st
   } else {
     detail::meeting_boxes(moved_box(pair.b), first_->tree.ball_slabs[a], 1, placement_.box_margin, gaps);
   }
+  if (placement_.coarse) leave_out_apart(pair, second, second ? b : a, gaps);
   return second;
+}
+
+// Of the children of `block` that may meet the other node of the pair as far as floats can say, leaves those out that
+// are apart in double.
+void NarrowPhase::leave_out_apart(const NodePair& pair, bool second, std::uint32_t block,
+                                  BoxGaps& gaps) const noexcept {
+  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    const std::uint32_t child = block * kBlockWidth + lane;
+    const bool apart = detail::boxes_are_apart(detail::node_box_at(first_->tree, second ? pair.a : child),
+                                               detail::node_box_at(second_->tree, second ? child : pair.b), relative_);
+    if (apart) gaps.meeting &= ~(1u << lane);
+  }
 }
 
 // In place of a pair, those of its children that may meet, the deepest last.

@@ -61,7 +61,8 @@ inline std::uint32_t ball_slab_child(const TreeView& tree, std::uint32_t node) n
 }
 
 // Calls visit(lanes, lane, rows, row) for every pair of triangles, of the first and of the second tree, that the float
-// tests do not tell apart. Precondition: both trees have triangles, and `stack` has room for them.
+// tests do not tell apart, until it returns true. Precondition: both trees have triangles, and `room` suffices for
+// them.
 template <typename Visit>
 void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visit) noexcept {
   const TreeView &first = pair.first.tree, &second = pair.second.tree;
@@ -80,7 +81,7 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
       const LeafPair leaves = {lanes, rows, lane_box, row_box};
       for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-        visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth);
+        if (visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth)) return;
       }
       continue;
     }
@@ -96,6 +97,10 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
       const std::uint32_t node = block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
+      if (pair.placement.coarse && boxes_are_apart(node_box_at(first, open_second ? top.a : node),
+                                                   node_box_at(second, open_second ? node : top.b), pair.relative)) {
+        continue;
+      }
       stack[size++] = open_second ? WalkPair{top.a, node} : WalkPair{node, top.b};
     }
   }

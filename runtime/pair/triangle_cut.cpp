@@ -206,4 +206,72 @@ Exit exit_along(const TrianglePoints& a, const TrianglePoints& b, const Way& way
   return {best.t, normal};
 }
 
+bool are_parted_by(const TrianglePoints& a, const TrianglePoints& b, double gap) noexcept {
+  TrianglePoints p, q, of_a, of_b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    p[i] = minus(a[i], a[0]), q[i] = minus(b[i], a[0]);
+    of_a[i] = minus(a[(i + 1) % 3], a[i]), of_b[i] = minus(b[(i + 1) % 3], b[i]);
+  }
+  const auto part = [&](const Vec3& n) {
+    const double a0 = dot(n, p[0]), a1 = dot(n, p[1]), a2 = dot(n, p[2]);
+    const double b0 = dot(n, q[0]), b1 = dot(n, q[1]), b2 = dot(n, q[2]);
+    const double apart =
+        std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}), std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
+    return apart > 0 && apart * apart > gap * gap * square(n);
+  };
+  if (part(cross(of_a[0], of_a[1])) || part(cross(of_b[0], of_b[1]))) return true;
+  for (const Vec3& u : of_a) {
+    for (const Vec3& v : of_b) {
+      const Vec3 n = cross(u, v);
+      if (square(n) > kInclusive * square(u) * square(v) && part(n)) return true;
+    }
+  }
+  return false;
+}
+
+MeetingShifts::MeetingShifts(const TrianglePoints& a, const TrianglePoints& b) noexcept {
+  TrianglePoints p, q;  // relative to a corner, so that little is lost far from the origin
+  TrianglePoints of_a, of_b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    p[i] = minus(a[i], a[0]), q[i] = minus(b[i], a[0]);
+    of_a[i] = minus(a[(i + 1) % 3], a[i]), of_b[i] = minus(b[(i + 1) % 3], b[i]);
+  }
+  const double size = size_of(a, b);
+  double least = std::numeric_limits<double>::infinity();
+  // Returns false if the set is flat across the normal.
+  const auto add = [&](const Vec3& normal, double parallel) {
+    const double length = std::sqrt(square(normal));
+    if (!(length > parallel)) return true;  // of parallel edges: other planes bound the set
+    const Vec3 n = along({0, 0, 0}, normal, 1 / length);
+    const double a0 = dot(n, p[0]), a1 = dot(n, p[1]), a2 = dot(n, p[2]);
+    const double b0 = dot(n, q[0]), b1 = dot(n, q[1]), b2 = dot(n, q[2]);
+    const double ahead = std::max({a0, a1, a2}) - std::min({b0, b1, b2}),
+                 behind = std::max({b0, b1, b2}) - std::min({a0, a1, a2});
+    normals_[count_] = n, ahead_[count_] = ahead, behind_[count_] = behind;
+    ++count_;
+    if (ahead < least) least = ahead, shortest_ = along({0, 0, 0}, n, ahead);
+    if (behind < least) least = behind, shortest_ = along({0, 0, 0}, n, -behind);
+    return ahead + behind > kNear * size;
+  };
+  bool solid = add(cross(of_a[0], of_a[1]), 0) && add(cross(of_b[0], of_b[1]), 0);
+  for (std::size_t i = 0; i < 3 && solid; ++i) {
+    for (std::size_t j = 0; j < 3 && solid; ++j) {
+      solid = add(cross(of_a[i], of_b[j]), kNear * std::sqrt(square(of_a[i]) * square(of_b[j])));
+    }
+  }
+  if (solid && count_ > 0) {
+    least_ = least;
+  } else {
+    count_ = 0, shortest_ = {};
+  }
+}
+
+bool MeetingShifts::contain(const Vec3& direction, double t) const noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double height = t * dot(normals_[i], direction);
+    if (height > ahead_[i] || -height > behind_[i]) return false;
+  }
+  return count_ > 0;
+}
+
 }  // namespace orchard::runtime::detail

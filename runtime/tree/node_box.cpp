@@ -3,9 +3,55 @@
 #include "box_pair.h"
 #include "eight.h"
 #include "machine.h"
+#include "pair/vector_functions.h"
 
 namespace orchard::runtime::detail {
 namespace {
+
+// A box in double. Its axes are unit and across each other to 1e-6 only.
+struct WideBox {
+  Vec3 center;
+  std::array<Vec3, 3> axes;
+  Vec3 half;
+  double radius;
+
+  explicit WideBox(const NodeBox& b) noexcept
+      : center(wide(b.center)),
+        axes({wide(b.n), wide(b.m), wide(third_normal(b))}),
+        half({double{b.height}, double{b.width}, double{b.length}}),
+        radius(double{b.radius}) {}
+
+  WideBox(const NodeBox& b, const Pose& pose) noexcept : WideBox(b) {
+    center = transform(pose, center);
+    for (Vec3& axis : axes) axis = rotate(pose, axis);
+    for (double& x : half) x *= pose.scale;
+    radius *= pose.scale;
+  }
+
+  // How far it reaches along a vector of length 1 to within 1e-6, at least.
+  double reach(const Vec3& u) const noexcept {
+    constexpr double kSkew = 0x1p-18;
+    double sum = kSkew * radius;
+    for (std::size_t i = 0; i < 3; ++i) sum += half[i] * std::fabs(dot(u, axes[i]));
+    return std::min(sum, radius * (1 + kSkew));
+  }
+
+ private:
+  template <typename Floats>
+  static Vec3 wide(const Floats& v) noexcept {
+    return {double{v[0]}, double{v[1]}, double{v[2]}};
+  }
+};
+
+// Along an axis of its own a box reaches exactly as far as is stored.
+bool parted_by_axis(const WideBox& of, const WideBox& other, double error) noexcept {
+  const Vec3 d = minus(other.center, of.center);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double along = std::fabs(dot(d, of.axes[i]));
+    if (along - of.half[i] - other.reach(of.axes[i]) > error) return true;
+  }
+  return false;
+}
 
 template <typename Kind>
 ORCHARD_INLINE void find_gaps(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
@@ -41,6 +87,15 @@ void find_gaps_one_by_one(const NodeBox& single, const BallSlabBlock& lanes, flo
 }
 
 }  // namespace
+
+bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& relative) noexcept {
+  const WideBox p(first), q(second, relative);
+  // Some operations on the coordinates of centres, and what a rotation lacks to be one (kRigidTolerance), which turns
+  // the boxes.
+  double error = 0x1p-36 * (p.radius + q.radius);
+  for (std::size_t i = 0; i < 3; ++i) error += 0x1p-46 * (std::fabs(p.center[i]) + std::fabs(q.center[i]));
+  return parted_by_axis(p, q, error) || parted_by_axis(q, p, error);
+}
 
 void box_gaps_scalar(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
                      BoxGaps& result) noexcept {

@@ -4,6 +4,7 @@
 
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/pose.h"
 #include "vector_support.h"
 
 // The inner loop of the exact level and of distances: one node's ball and box against eight others'.
@@ -95,6 +96,11 @@ void box_gaps(const NodeBox& single, const BallSlabBlock& lanes, float scale, fl
 // The same where only those that meet matter: of the others the result may hold anything.
 void meeting_boxes(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
                    BoxGaps& result) noexcept;
+
+// Whether two nodes' boxes, each as its own tree stores it, are certainly apart by the same six axes in double, where
+// only the other box's reach is rounded: a wall's face tells from any distance. `relative`: the second tree's frame in
+// the first one's, as the exact test of triangles uses it.
+bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& relative) noexcept;
 
 // One number at a time: what the tests compare with, and all that some compilers get.
 void box_gaps_scalar(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,

@@ -11,7 +11,8 @@
 #include "principal_axes.h"
 
 // The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
-// triangles.
+// triangles. Where all leaves fit in one block (a box, a wall, a simple hull), triangles are few and large beside what
+// comes near them, and leaves hold what is flat together instead: see split_few().
 namespace orchard::runtime {
 namespace {
 
@@ -68,6 +69,12 @@ constexpr std::array<std::array<double, 2>, 8> kBoxTurns = {{{1, 0},
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
 
+// A tree of at most so many triangles has room for all of its leaves in one block.
+constexpr std::size_t kFew = std::size_t{kBlockWidth} * kBlockWidth;
+// A cut of few triangles is worth a leaf if the boxes of both parts, times their triangles, are less than this share of
+// the whole part's. A smaller share would end too soon: of the four sides of a box, no single one is worth it.
+constexpr double kWorthCutting = 1 - 1e-3;
+
 struct Range {
   std::size_t begin, end;
   std::size_t size() const { return end - begin; }
@@ -106,6 +113,7 @@ class Builder {
         for (std::size_t i = 0; i < 3; ++i) sum[i] += double{order_[t].corners[k][i]} / 3;
       }
     }
+    if (is_few()) find_frames();
   }
 
   void build() {
@@ -130,15 +138,16 @@ class Builder {
 
   void expand(const Part& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Part>& next,
               std::vector<std::pair<std::size_t, std::uint32_t>>& next_places) {
+    const bool divided = node.size() > kBlockWidth || (is_few() && tree_.triangle_tree_depth == 0);
+    const std::vector<Part> parts = !divided ? std::vector<Part>() : is_few() ? split_few(node) : split(node);
     std::uint32_t& child = tree_.ball_slabs[at.first].child[at.second];
-    if (node.size() <= kBlockWidth) {
+    if (parts.size() <= 1) {
       child = kLeafBit | static_cast<std::uint32_t>(tree_.triangle_blocks.size());
       add_triangles(node);
       return;
     }
     const std::size_t block = tree_.ball_slabs.size();
     child = static_cast<std::uint32_t>(block);
-    const std::vector<Part> parts = split(node);
     add_block();
     for (std::uint32_t lane = 0; lane < parts.size(); ++lane) {
       place(block, lane, parts[lane]);
@@ -208,49 +217,67 @@ class Builder {
     return (count + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
   }
 
+  // The cheapest first, and of equal ones the more even one.
+  struct Cut {
+    double cost = kInfinity;
+    std::size_t unevenness = 0, frame = 0, axis = 0, at = 0;
+    double gain = 0;     // over no cut; of few triangles
+    bool worth = false;  // a leaf of its own; of few triangles
+    bool operator<(const Cut& other) const {
+      return std::tie(cost, unevenness, frame, axis, at) <
+             std::tie(other.cost, other.unevenness, other.frame, other.axis, other.at);
+    }
+  };
+
   // Across a principal axis, where the boxes of the two parts, times their triangles, are smallest (MacDonald and Booth
   // 1990), the more even parts of equal ones; far down in half, which limits the depth. At a multiple of eight
   // triangles, so that leaves are full.
   std::size_t halve(const Part& part) {
-    const std::size_t size = part.size(), half = multiple_of_width(size / 2);
+    const std::size_t half = multiple_of_width(part.size() / 2);
     if (tree_.triangle_tree_depth >= kCostlyDepth) {
-      find_places(part, 0);
+      find_places(part, part.axes[0], 0);
       put_in_order(places_[0], part);
       return part.begin + half;
     }
+    Cut best = {.at = half};
+    find_cut(part, part.axes, 0, half, kBlockWidth, best);
+    put_in_order(places_[best.axis], part);
+    return part.begin + best.at;
+  }
+
+  // The cheapest cut across any of three axes at a multiple of `step` triangles, if it is better than `best`.
+  void find_cut(const Part& part, const std::array<Vec3, 3>& axes, std::size_t frame, std::size_t half,
+                std::size_t step, Cut& best) {
+    const std::size_t size = part.size();
     extents_.resize(size);
-    for (std::size_t i = 0; i < size; ++i) extents_[i] = extent_of(order_[part.begin + i], part.axes);
-    std::tuple<double, std::size_t, std::size_t, std::size_t> best = {kInfinity, 0, 0,
-                                                                      half};  // cost, unevenness, axis, at
+    for (std::size_t i = 0; i < size; ++i) extents_[i] = extent_of(order_[part.begin + i], axes);
     behind_.resize(size);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      find_places(part, axis);
+      find_places(part, axes[axis], axis);
       const std::vector<PlaceAlong>& places = places_[axis];
       Extent extent = kNothing;
       for (std::size_t i = size; i-- > 0;) {
         extent.add(extents_[places[i].from]);
-        if (i % kBlockWidth == 0) behind_[i] = extent.area() * static_cast<double>(size - i);
+        if (i % step == 0) behind_[i] = extent.area() * static_cast<double>(size - i);
       }
       extent = kNothing;
       for (std::size_t i = 0; i < size; ++i) {
-        if (i > 0 && i % kBlockWidth == 0) {
+        if (i > 0 && i % step == 0) {
           const double cost = extent.area() * static_cast<double>(i) + behind_[i];
-          best = std::min(best, {cost, i > half ? i - half : half - i, axis, i});
+          best = std::min(best, Cut{cost, i > half ? i - half : half - i, frame, axis, i});
         }
         extent.add(extents_[places[i].from]);
       }
     }
-    put_in_order(places_[std::get<2>(best)], part);
-    return part.begin + std::get<3>(best);
   }
 
-  // Where the centroids are along a principal axis, in their order; equal ones go by their triangles' numbers.
-  void find_places(const Part& part, std::size_t axis) {
+  // Where the centroids are along an axis, in their order; equal ones go by their triangles' numbers.
+  void find_places(const Part& part, const Vec3& along, std::size_t axis) {
     std::vector<PlaceAlong>& places = places_[axis];
     places.resize(part.size());
     for (std::size_t i = 0; i < part.size(); ++i) {
       const std::uint32_t number = order_[part.begin + i].number;
-      places[i] = {dot(part.axes[axis], centroids_[number]), number, static_cast<std::uint32_t>(i)};
+      places[i] = {dot(along, centroids_[number]), number, static_cast<std::uint32_t>(i)};
     }
     sort_along(places, sorted_);
   }
@@ -258,6 +285,88 @@ class Builder {
     before_.assign(order_.begin() + static_cast<std::ptrdiff_t>(part.begin),
                    order_.begin() + static_cast<std::ptrdiff_t>(part.end));
     for (std::size_t i = 0; i < places.size(); ++i) order_[part.begin + i] = before_[places[i].from];
+  }
+
+  bool is_few() const { return order_.size() <= kFew; }
+
+  // Axes that boxes of few triangles may have: those of the coordinates, and of the largest triangles that differ in
+  // them, across the triangle and along its shortest edge. Principal axes of few corners are tilted against all faces.
+  void find_frames() {
+    constexpr std::size_t kMaxFrames = 8;
+    frames_ = {{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}};
+    std::vector<std::pair<double, std::array<Vec3, 3>>> faces;
+    for (const Triangle& t : order_) {
+      std::array<Vec3, 3> edges{};
+      for (std::size_t k = 0; k < 3; ++k)
+        edges[k] = minus(as_doubles(t.corners[(k + 1) % 3]), as_doubles(t.corners[k]));
+      const Vec3 across = cross(edges[0], edges[1]);
+      const Vec3 shortest = *std::min_element(edges.begin(), edges.end(),
+                                              [](const Vec3& p, const Vec3& q) { return dot(p, p) < dot(q, q); });
+      if (!(dot(across, across) > 0)) continue;
+      const Vec3 n = unit(across), e = unit(shortest);
+      faces.push_back({-dot(across, across), {n, e, cross(n, e)}});
+    }
+    std::stable_sort(faces.begin(), faces.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+    for (const auto& face : faces) {
+      if (frames_.size() == kMaxFrames) break;
+      const auto same = [&](const std::array<Vec3, 3>& frame) { return are_same(frame, face.second); };
+      if (std::none_of(frames_.begin(), frames_.end(), same)) frames_.push_back(face.second);
+    }
+  }
+
+  static Vec3 unit(const Vec3& v) {
+    const double length = std::sqrt(dot(v, v));
+    return {v[0] / length, v[1] / length, v[2] / length};
+  }
+
+  // Whether each axis of one is an axis of the other, nearly, whatever their order and signs.
+  static bool are_same(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) {
+    constexpr double kNearlyOne = 1 - 1e-12;
+    return std::all_of(p.begin(), p.end(), [&](const Vec3& u) {
+      return std::any_of(q.begin(), q.end(), [&](const Vec3& v) { return std::fabs(dot(u, v)) > kNearlyOne; });
+    });
+  }
+
+  Extent extent_of(const Range& part, const std::array<Vec3, 3>& axes) const {
+    Extent extent = kNothing;
+    for (std::size_t i = part.begin; i < part.end; ++i) extent.add(extent_of(order_[i], axes));
+    return extent;
+  }
+
+  Cut cut_of_few(const Part& part) {
+    Cut best;
+    double area = kInfinity;
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      area = std::min(area, extent_of(part, frames_[f]).area());
+      find_cut(part, frames_[f], f, part.size() / 2, 1, best);
+    }
+    const double whole = area * static_cast<double>(part.size());
+    best.gain = whole - best.cost;
+    best.worth = part.size() > kBlockWidth || best.cost < kWorthCutting * whole;
+    return best;
+  }
+
+  // Cuts what gains most by it, until there are eight parts or no cut is worth it: leaves need not be full, for all of
+  // them fit in the block.
+  std::vector<Part> split_few(const Part& node) {
+    std::vector<Part> parts = {node};
+    std::vector<Cut> cuts = {cut_of_few(node)};
+    while (parts.size() < kBlockWidth) {
+      std::size_t best = parts.size();
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (cuts[i].worth && (best == parts.size() || cuts[i].gain > cuts[best].gain)) best = i;
+      }
+      if (best == parts.size()) break;
+      const Part whole = parts[best];
+      find_places(whole, frames_[cuts[best].frame][cuts[best].axis], 0);
+      put_in_order(places_[0], whole);
+      const auto behind = static_cast<std::ptrdiff_t>(best) + 1;
+      parts[best] = measured({whole.begin, whole.begin + cuts[best].at});
+      parts.insert(parts.begin() + behind, measured({whole.begin + cuts[best].at, whole.end}));
+      cuts[best] = cut_of_few(parts[best]);
+      cuts.insert(cuts.begin() + behind, cut_of_few(parts[best + 1]));
+    }
+    return parts;
   }
 
   Part measured(const Range& range) const {
@@ -382,8 +491,31 @@ class Builder {
     const auto in_plane = [&](double x, double y) { return along(along({}, u, x), v, y); };
     const Vec3 second = in_plane(turn[0], turn[1]), third = in_plane(-turn[1], turn[0]);
     slab.center = along(along(slab.center, second, middle[0]), third, middle[1]);
-    for (double& x : slab.center) x = rounded(x);
     slab.second = direction(second);
+    if (is_few()) take_smaller_frame(part, smallest, slab);
+    measure_box(part, slab);
+  }
+
+  // The axes of one of the frames in place of those found, if the box is smaller then; the thinnest way comes first.
+  void take_smaller_frame(const Range& part, double smallest, BallSlab& slab) const {
+    for (const std::array<Vec3, 3>& frame : frames_) {
+      const Extent extent = extent_of(part, frame);
+      const Vec3 e = minus(extent.high, extent.low);
+      if (!(extent.area() < smallest)) continue;
+      smallest = extent.area();
+      std::array<std::size_t, 3> order = {0, 1, 2};
+      std::stable_sort(order.begin(), order.end(), [&e](std::size_t i, std::size_t k) { return e[i] < e[k]; });
+      slab.normal = direction(frame[order[0]]);
+      slab.second = direction(frame[order[1]]);
+      slab.center = {};
+      for (std::size_t i = 0; i < 3; ++i) {
+        slab.center = along(slab.center, frame[i], (extent.low[i] + extent.high[i]) / 2);
+      }
+    }
+  }
+
+  void measure_box(const Range& part, BallSlab& slab) const {
+    for (double& x : slab.center) x = rounded(x);
     slab.third = float_cross(slab.normal, slab.second);
     slab.radius = slab.height = slab.width = slab.length = 0;
     each_corner(part, [&](const Vec3& p) {
@@ -424,6 +556,7 @@ class Builder {
   std::array<std::vector<PlaceAlong>, 3> places_;
   std::vector<PlaceAlong> sorted_;
   std::vector<std::array<double, 2>> across_;  // corners, while a box is looked for
+  std::vector<std::array<Vec3, 3>> frames_;    // of few triangles: find_frames()
 };
 
 }  // namespace

@@ -168,7 +168,7 @@ TEST(Provenance, DependsOnNoFolderThreadOrOrderOfOptions) {
   const auto two = files({"medial", "--quiet", "--prune-angle", "10", "--threads", "2", "--samples", "150",
                           (here / "elsewhere/deep/l.obj").string(), "-o", (here / "two/deep").string()},
                          "two");
-  EXPECT_GT(one.size(), 3u);
+  EXPECT_GT(one.size(), 1u);  // the axis and its simplification; views where they are built
   EXPECT_EQ(one, two);
   const auto tree =
       files({"build", mesh, "-o", (here / "three").string(), "--method", "octree", "--depth", "1"}, "three");

@@ -10,12 +10,13 @@
 
 namespace orchard::test {
 
-using Reader = TriangleMesh (*)(std::string_view, const std::string&);
+using Reader = TriangleMesh (*)(std::string_view, const std::string&, MeshReadReport&);
 
 // Reads, and returns whether there is a result. Throws unless a refusal is one line that begins with the file's name.
 inline bool read_or_refuse(Reader reader, const std::uint8_t* data, std::size_t size, TriangleMesh& mesh) {
   try {
-    mesh = reader({reinterpret_cast<const char*>(data), size}, "bytes");
+    MeshReadReport report;
+    mesh = reader({reinterpret_cast<const char*>(data), size}, "bytes", report);
   } catch (const InputError& error) {
     const std::string_view message = error.what();
     if (!message.starts_with("bytes") || message.find('\n') != message.npos || message.size() > 300) {

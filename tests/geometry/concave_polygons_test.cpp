@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
-#include "io/mesh_formats.h"
 #include "io/polygons.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/random.h"
+#include "read_bytes.h"
 #include "support/effort.h"
 
 // Polygons that no corner sees whole, and polygons around holes.
@@ -256,7 +256,8 @@ TEST(ConcavePolygons, AreReadInEveryFormat) {
                   {0, 1, 2, 3, 4, 5, 6, 7}};
   const Files files = prism_files(u);
   for (const TriangleMesh& mesh :
-       {read_obj(files.obj, "u.obj"), read_ply(files.ply, "u.ply"), read_off(files.off, "u.off")}) {
+       {test::read_bytes(read_obj, files.obj, "u.obj"), test::read_bytes(read_ply, files.ply, "u.ply"),
+        test::read_bytes(read_off, files.off, "u.off")}) {
     const MeshReport report = check_mesh(mesh);
     EXPECT_TRUE(report.solid()) << report.faults();
     EXPECT_DOUBLE_EQ(report.area, 30);

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "expect_input_error.h"
-#include "io/mesh_formats.h"
 #include "orchard/geometry/random.h"
+#include "read_bytes.h"
 #include "support/effort.h"
 
 // Faces of fewer than three corners and vertices without finite coordinates: one of them is no reason to refuse a file.
@@ -138,7 +138,8 @@ TEST(MeshFaults, LeaveThePointsThatArePlaces) {
   EXPECT_EQ(read_obj_or_points("v 0 0 0\nv nan 1 1\nv 1 2 3\n", "p.obj", report).vertices.size(), 2u);
   EXPECT_EQ(report.vertices_skipped.first, "line 2");
   EXPECT_EQ(read_xyz("0 0 0\n1 nan 0\n1 2 3\n", "p.xyz", report).vertices.size(), 2u);
-  test::expect_input_error([] { read_obj_or_points("v nan 0 0\n", "p.obj"); }, {"p.obj", "no vertices"});
+  test::expect_input_error([] { test::read_bytes(read_obj_or_points, "v nan 0 0\n", "p.obj"); },
+                           {"p.obj", "no vertices"});
 }
 
 TEST(ReadXyz, SkipsAHeader) {
@@ -152,7 +153,7 @@ TEST(ReadXyz, SkipsAHeader) {
     EXPECT_EQ(report.lines().size(), 1u) << header;
   }
   // What comes after points is none.
-  test::expect_input_error([] { read_xyz("1 2 3\nx y z\n", "p.xyz"); }, {"p.xyz, line 2", "\"x\""});
+  test::expect_input_error([] { test::read_bytes(read_xyz, "1 2 3\nx y z\n", "p.xyz"); }, {"p.xyz, line 2", "\"x\""});
 }
 
 }  // namespace

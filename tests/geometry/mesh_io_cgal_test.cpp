@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "expect_input_error.h"
-#include "io/mesh_formats.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/random.h"
+#include "read_bytes.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -57,7 +57,7 @@ TEST(ReadStl, WeldsIdenticalCornersInBothEncodings) {
         binary_stl(shape, "solid\n"),           binary_stl(shape, "made by hand") + "more",
     };
     for (const std::string& file : files) {
-      const TriangleMesh mesh = read_stl(file, "mesh.stl");
+      const TriangleMesh mesh = test::read_bytes(read_stl, file, "mesh.stl");
       const MeshReport report = check_mesh(mesh), expected = check_mesh(shape);
       EXPECT_EQ(mesh.vertices.size(), shape.vertices.size());
       EXPECT_EQ(mesh.triangles.size(), shape.triangles.size());
@@ -70,7 +70,8 @@ TEST(ReadStl, WeldsIdenticalCornersInBothEncodings) {
 TEST(ReadStl, JoinsTheSolidsOfOneFile) {
   const TriangleMesh box = test::box(Point(0, 0, 0), Point(1, 1, 1)),
                      other = test::transformed(box, 1, Vector(3, 0, 0));
-  const TriangleMesh mesh = read_stl(ascii_stl(box, "one", "\n") + ascii_stl(other, "two", "\n"), "mesh.stl");
+  const TriangleMesh mesh =
+      test::read_bytes(read_stl, ascii_stl(box, "one", "\n") + ascii_stl(other, "two", "\n"), "mesh.stl");
   EXPECT_EQ(mesh.vertices.size(), 16u);
   EXPECT_DOUBLE_EQ(check_mesh(mesh).volume, 2);
 }
@@ -108,7 +109,7 @@ TEST(ReadStl, NamesTheLineOrByteAndTheFault) {
   };
   for (const auto& [text, parts] : cases) {
     for (const std::string& part : parts) {
-      test::expect_input_error([&] { read_stl(text, "mesh.stl"); }, {"mesh.stl", part});
+      test::expect_input_error([&] { test::read_bytes(read_stl, text, "mesh.stl"); }, {"mesh.stl", part});
     }
   }
 }
@@ -133,7 +134,7 @@ TEST(ReadOff, TakesEveryHeaderAndSkipsColours) {
       "OFF\r\n4 1 0\r\n0 0 0\r\n1 0 0\r\n1 1 0\r\n0 1 0\r\n4 0 1\r\n2 3",
   };
   for (const std::string& file : files) {
-    const TriangleMesh mesh = read_off(file, "mesh.off");
+    const TriangleMesh mesh = test::read_bytes(read_off, file, "mesh.off");
     EXPECT_EQ(mesh.vertices, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}})) << file;
     EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}})) << file;
   }
@@ -165,7 +166,8 @@ TEST(ReadOff, ReadsFacesOverAnyNumberOfLines) {
       broken += colour + "\n";
     }
     const std::string start = "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n" + points;
-    const TriangleMesh expected = read_off(start + whole, "mesh.off"), mesh = read_off(start + broken, "mesh.off");
+    const TriangleMesh expected = test::read_bytes(read_off, start + whole, "mesh.off"),
+                       mesh = test::read_bytes(read_off, start + broken, "mesh.off");
     ASSERT_EQ(mesh.vertices, expected.vertices) << "seed " << seed;
     ASSERT_EQ(mesh.triangles, expected.triangles) << "seed " << seed << "\n" << broken;
   }
@@ -211,7 +213,7 @@ TEST(ReadOff, NamesTheLineAndTheFault) {
   };
   for (const auto& [text, parts] : cases) {
     for (const std::string& part : parts) {
-      test::expect_input_error([&] { read_off(text, "mesh.off"); }, {"mesh.off", part});
+      test::expect_input_error([&] { test::read_bytes(read_off, text, "mesh.off"); }, {"mesh.off", part});
     }
   }
 }

@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "expect_input_error.h"
-#include "io/mesh_formats.h"
+#include "read_bytes.h"
 
 namespace orchard {
 namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
-TriangleMesh read(std::string_view text) { return read_obj(text, "mesh.obj"); }
+TriangleMesh read(std::string_view text) { return test::read_bytes(read_obj, text, "mesh.obj"); }
 
 constexpr std::string_view kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 

@@ -9,19 +9,19 @@
 #include <set>
 
 #include "expect_input_error.h"
-#include "io/mesh_formats.h"
 #include "io/ply_header.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
 #include "random_ply.h"
+#include "read_bytes.h"
 
 namespace orchard {
 namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
-TriangleMesh read(std::string_view bytes) { return read_ply(bytes, "mesh.ply"); }
+TriangleMesh read(std::string_view bytes) { return test::read_bytes(read_ply, bytes, "mesh.ply"); }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
@@ -43,7 +43,7 @@ TEST(ReadPly, ReadsStripsOfTrianglesInEveryEncoding) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     for (const PlyEncoding encoding : {PlyEncoding::ascii, PlyEncoding::little_endian, PlyEncoding::big_endian}) {
       const test::RandomPly file(seed, encoding, true);
-      const TriangleMesh mesh = read_ply_or_points(file.bytes(), "mesh.ply");
+      const TriangleMesh mesh = test::read_bytes(read_ply_or_points, file.bytes(), "mesh.ply");
       ASSERT_EQ(mesh.vertices, file.mesh().vertices) << "seed " << seed << "\n" << file.bytes().substr(0, 600);
       ASSERT_EQ(mesh.triangles, file.mesh().triangles) << "seed " << seed << "\n" << file.bytes();
       triangles += mesh.triangles.size();

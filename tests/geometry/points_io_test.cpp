@@ -4,15 +4,15 @@
 #include <fstream>
 
 #include "expect_input_error.h"
-#include "io/mesh_formats.h"
 #include "orchard/geometry/mesh_io.h"
+#include "read_bytes.h"
 
 namespace orchard {
 namespace {
 
 using Points = std::vector<Point>;
 
-Points xyz(std::string_view bytes) { return read_xyz(bytes, "points.xyz").vertices; }
+Points xyz(std::string_view bytes) { return test::read_bytes(read_xyz, bytes, "points.xyz").vertices; }
 
 TEST(ReadXyz, TakesThreeNumbersALine) {
   EXPECT_EQ(xyz("0 0 0\n1.5 -2 3e2"), (Points{{0, 0, 0}, {1.5, -2, 300}}));
@@ -42,39 +42,43 @@ TEST(ReadXyz, NamesTheLineAndTheFault) {
   refuses("3\nwater\nO 0 0 0", {"line 1", "1 coordinates"});
   refuses("", {"no points", "0 bytes"});
   refuses("# nothing\n", {"no points"});
-  test::expect_input_error([] { read_xyz(std::string_view("1 2\0 3", 6), "points.xyz"); }, {"byte 3", "zero byte"});
+  test::expect_input_error([] { test::read_bytes(read_xyz, std::string_view("1 2\0 3", 6), "points.xyz"); },
+                           {"byte 3", "zero byte"});
 }
 
 TEST(ReadPointsOrMesh, TakesVerticesWithoutFaces) {
-  const TriangleMesh obj = read_obj_or_points("v 1 2 3\nv 4 5 6\n", "p.obj");
+  const TriangleMesh obj = test::read_bytes(read_obj_or_points, "v 1 2 3\nv 4 5 6\n", "p.obj");
   EXPECT_EQ(obj.vertices, (Points{{1, 2, 3}, {4, 5, 6}}));
   EXPECT_TRUE(obj.triangles.empty());
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
       "property double z\n";
-  const TriangleMesh ply = read_ply_or_points(header + "end_header\n1 2 3\n4 5 6\n", "p.ply");
+  const TriangleMesh ply = test::read_bytes(read_ply_or_points, header + "end_header\n1 2 3\n4 5 6\n", "p.ply");
   EXPECT_EQ(ply.vertices, obj.vertices);
   EXPECT_TRUE(ply.triangles.empty());
-  const TriangleMesh none = read_ply_or_points(
-      header + "element face 0\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n4 5 6\n", "p.ply");
+  const TriangleMesh none = test::read_bytes(
+      read_ply_or_points, header + "element face 0\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n4 5 6\n",
+      "p.ply");
   EXPECT_EQ(none.vertices, obj.vertices);
   EXPECT_TRUE(none.triangles.empty());
 }
 
 TEST(ReadPointsOrMesh, KeepsTheFacesThatThereAre) {
-  const TriangleMesh mesh = read_obj_or_points("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "p.obj");
+  const TriangleMesh mesh = test::read_bytes(read_obj_or_points, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "p.obj");
   EXPECT_EQ(mesh.triangles.size(), 1u);
-  test::expect_input_error([] { read_obj_or_points("v 0 0 0\nf 1 2 3\n", "p.obj"); }, {"p.obj", "vertex 3"});
+  test::expect_input_error([] { test::read_bytes(read_obj_or_points, "v 0 0 0\nf 1 2 3\n", "p.obj"); },
+                           {"p.obj", "vertex 3"});
 }
 
 TEST(ReadPointsOrMesh, RefusesFilesWithoutVertices) {
-  test::expect_input_error([] { read_obj_or_points("# empty\n", "p.obj"); }, {"p.obj", "no vertices"});
+  test::expect_input_error([] { test::read_bytes(read_obj_or_points, "# empty\n", "p.obj"); },
+                           {"p.obj", "no vertices"});
   test::expect_input_error(
       [] {
-        read_ply_or_points(
-            "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
-            "property float z\nend_header\n",
-            "p.ply");
+        test::read_bytes(read_ply_or_points,
+                         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                         "property float z\nend_header\n",
+                         "p.ply");
       },
       {"p.ply", "no vertices"});
 }

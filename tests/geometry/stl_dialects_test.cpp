@@ -6,9 +6,9 @@
 #include <string>
 
 #include "expect_input_error.h"
-#include "io/mesh_formats.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/random.h"
+#include "read_bytes.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 
@@ -172,9 +172,9 @@ TEST(ReadStl, SkipsAttributesAndWhatFollowsTheLastFacet) {
 TEST(ReadStl, RefusesWhatHasFewerFacetsThanItCounts) {
   const TriangleMesh mesh = test::l_shape();
   for (const std::uint32_t count : {21u, 40u, 1u << 20, 0xffffffffu})
-    test::expect_input_error([&] { read_stl(binary(mesh, "solid", count), "mesh.stl"); },
+    test::expect_input_error([&] { test::read_bytes(read_stl, binary(mesh, "solid", count), "mesh.stl"); },
                              {"mesh.stl, byte 80", "promises " + std::to_string(count), "export it again"});
-  test::expect_input_error([] { read_stl(std::string(80, ' ') + std::string(54, '\0'), "mesh.stl"); },
+  test::expect_input_error([] { test::read_bytes(read_stl, std::string(80, ' ') + std::string(54, '\0'), "mesh.stl"); },
                            {"byte 80", "promises no triangles"});
 }
 

@@ -127,6 +127,61 @@ TEST(Contacts, AreTheLeastWayOutByBruteForce) {
   EXPECT_LE(longer, wanted / 20);
 }
 
+// Soups of triangles, some of them without area, on a grid and turned: moved by the depth the second one is free in the
+// world, however its faces slide along others.
+TEST(Contacts, OfDegenerateSoupsFreeTheBodyThatMovesByTheDepth) {
+  Workspace workspace;
+  std::uint64_t touching = 0;
+  for (std::uint64_t i = 0; i < 2000 * orchard::test::more(); ++i) {
+    const std::uint64_t seed = orchard::test::first_seed() + i;
+    Draw draw(seed);
+    const auto on_grid = [&draw, seed](Mesh mesh) {
+      if (seed % 2 != 0) return mesh;
+      for (Vec& v : mesh.vertices) v = {std::round(2 * v[0]), std::round(2 * v[1]), std::round(2 * v[2])};
+      return mesh;
+    };
+    const auto first = build_tree(on_grid(soup(2 * seed, 8)), {.bounds = false}),
+               second = build_tree(on_grid(soup(2 * seed + 1, 8)), {.bounds = false});
+    const PreparedTree a(first), b(second);
+    const double far = seed % 3 == 0 ? 1e3 : 0;
+    const Pose scene = draw.pose(far), at_b = compose(scene, seed % 4 == 0 ? Pose{} : draw.pose(0.3));
+    const Manifold m = contacts(workspace, TreePair(a, b), scene, at_b);
+    if (m.answer != Answer::yes) continue;
+    ++touching;
+    const Pose moved = shifted(at_b, m.normal, m.depth);
+    ASSERT_EQ(collide(workspace, TreePair(a, b), scene, moved).answer, Answer::no) << seed;
+  }
+  EXPECT_GT(touching, 300u);
+}
+
+// Deep ones, and shallow ones of wide curves, as of shells in each other: judged by 1,000 directions in which the
+// second body moves until the answer is no.
+TEST(Contacts, AreNoMoreThanHalfDeeperThanTheLeastWayOut) {
+  const auto ring = build_tree(torus(20, 10, 1, 0.15), {.bounds = false}),
+             star = build_tree(spikes(5, 14, 8), {.bounds = false});
+  const PreparedTree a(ring), b(star);
+  Workspace workspace;
+  std::uint64_t judged = 0;
+  for (std::uint64_t i = 0; i < 60 * orchard::test::more(); ++i) {
+    Draw draw(orchard::test::first_seed() + i);
+    const TreePair pair = i % 3 == 0 ? TreePair(a, a) : i % 3 == 1 ? TreePair(a, b) : TreePair(b, b);
+    const Pose at_a = draw.pose(0), at_b = draw.pose(draw.uniform(0.8, 1.8));
+    const Manifold m = contacts(workspace, pair, at_a, at_b);
+    if (m.answer != Answer::yes) continue;
+    ++judged;
+    const double limit = m.depth / 1.5;
+    for (int k = 0; k < 1000; ++k) {
+      const Vec way = draw.direction();
+      for (int step = 1; step <= 10; ++step) {
+        const Pose moved = shifted(at_b, way, limit * step / 10);
+        ASSERT_NE(collide(workspace, pair, at_a, moved).answer, Answer::no)
+            << "seed " << orchard::test::first_seed() + i << " depth " << m.depth << " step " << step;
+      }
+    }
+  }
+  EXPECT_GT(judged, 20u);
+}
+
 TEST(Contacts, AreNoneWhereNothingTouchesAndGuessedWhereNothingIsKnown) {
   const auto tree = build_tree(box({-1, -1, -1}, {1, 1, 1}));
   auto spheres = tree;  // without triangles

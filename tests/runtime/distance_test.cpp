@@ -158,6 +158,7 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     Draw draw(seed);
     const auto a = build_tree(soup(2 * seed, 6), {.leaf_triangles = 8, .bounds = false}),
                b = build_tree(soup(2 * seed + 1, 7), {.leaf_triangles = 8, .bounds = false});
+    const TriangleBlock lanes = one_block(a), rows = one_block(b);
     const Pose pose = draw.pose(draw.uniform(0, 4));
     detail::Placement placement{};
     for (std::size_t i = 0; i < 9; ++i) placement.rotation[i] = static_cast<float>(pose.rotation[i]);
@@ -169,11 +170,11 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     // How far apart triangles may be to be told exactly: all, most and some of these.
     const float reach = seed % 4 == 0 ? 1e30f : static_cast<float>(draw.uniform(0, 3));
     detail::TriangleGaps gaps{}, plain{};
-    detail::triangle_gaps_scalar(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, reach, plain);
+    detail::triangle_gaps_scalar(lanes, rows, placement, direction, reach, plain);
     for (const detail::Machine m : {detail::Machine::base, detail::Machine::avx2, detail::Machine::avx512}) {
       if (m > detail::best_machine()) break;
       detail::use_machine(m);
-      detail::triangle_gaps(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, reach, gaps);
+      detail::triangle_gaps(lanes, rows, placement, direction, reach, gaps);
       for (std::size_t r = 0; r < 7; ++r) {
         for (std::size_t l = 0; l < 6; ++l) ASSERT_EQ(gaps.lower[r][l], plain.lower[r][l]) << seed;
       }
@@ -194,8 +195,7 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     const auto pa = placed_triangles(a, {}), pb = placed_triangles(b, pose);
     for (std::size_t r = 0; r < 7; ++r) {
       for (std::size_t l = 0; l < 6; ++l) {
-        const auto truth =
-            triangle_distance(pa[a.triangle_blocks[0].triangle[l]], pb[b.triangle_blocks[0].triangle[r]]);
+        const auto truth = triangle_distance(pa[lanes.triangle[l]], pb[rows.triangle[r]]);
         ASSERT_LE(gaps.lower[r][l], truth) << seed;
         tight += reach > 1e29f && gaps.lower[r][l] > 0.9 * static_cast<double>(truth);
       }

@@ -46,6 +46,9 @@ struct TreeOptions {
 // from brute force, with 1-Lipschitz signed distance: error = max(0, radius + depth).
 PackedSphereTree build_tree(const Mesh& mesh, const TreeOptions& options = {});
 
+// All of a tree's triangles, at most eight, in one leaf, in their order. The tree itself may have them in several.
+TriangleBlock one_block(const PackedSphereTree& tree);
+
 // The triangles as the tree stores them, placed in the world.
 using Triangle = std::array<std::array<long double, 3>, 3>;
 std::vector<Triangle> placed_triangles(const PackedSphereTree& tree, const Pose& pose);

@@ -179,4 +179,18 @@ class Builder {
 
 PackedSphereTree build_tree(const Mesh& mesh, const TreeOptions& options) { return Builder(mesh, options).build(); }
 
+TriangleBlock one_block(const PackedSphereTree& tree) {
+  TriangleBlock block{};
+  for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+    const bool used = lane < tree.triangles.size();
+    const std::uint32_t number = used ? lane : 0;
+    block.triangle[lane] = used ? number : kNoTriangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& corner = tree.vertices[tree.triangles[number][k]];
+      for (std::size_t i = 0; i < 3; ++i) block.corner[k][i][lane] = corner[i];
+    }
+  }
+  return block;
+}
+
 }  // namespace orchard::runtime::test

@@ -157,7 +157,7 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
     Pose pose = draw.pose(draw.uniform(0, 0.5));
     if (seed % 2 == 0) pose.scale = draw.uniform(0.25, 4);
     const Placement placement = placement_of(pose, 10);
-    const TriangleBlock &lanes = a.triangle_blocks[0], &rows = b.triangle_blocks[0];
+    const TriangleBlock lanes = test::one_block(a), rows = test::one_block(b);
     const NodeBox lane_box = node_box_at(a.ball_slabs[0], 0),
                   row_box = moved(node_box_at(b.ball_slabs[0], 0), placement);
     const LeafPair pair{lanes, rows, lane_box, row_box};

@@ -21,8 +21,8 @@ struct PromiseCheck {
   AxisPromise promise;
   // The largest values that were found, where they are above what was promised; otherwise 0.
   double open = 0, protrusion = 0;
-  // Proven bounds, up to rounding: no value is larger. 0 where nothing was promised. Above what was promised, although
-  // `open` or `protrusion` is 0, if the search ended before it could decide.
+  // Proven bounds, up to rounding: no value is larger. 0 where nothing was promised. A bound above what was promised,
+  // beside a value of 0, means that the search ended undecided: see proven().
   double open_upper = 0, protrusion_upper = 0;
   Topology found, wanted;  // of the mesh; of the solid
 

@@ -47,10 +47,10 @@ constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
 }
 
-// The application's own: false, and the two are no pair. Asked about bodies that may_pair() allows, a.index < b.index,
-// whenever they are found near each other, and when that is tested again: it has to answer alike until it is set
-// anew. Called from within advance() (a Detector's: step()) only. What it asks of the same object is refused: see
-// MotionSource.
+// A filter of the application: the two bodies are no pair if it returns false. It is called for bodies that may_pair()
+// allows, with a.index < b.index, whenever they are found near each other and whenever that is tested again, so it must
+// return the same value for the same bodies until another filter is set. It is called from within advance() only (of a
+// Detector: step()). What it asks of the same object is refused: see MotionSource.
 using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
 struct BodyPair {

@@ -18,21 +18,24 @@ struct Manifold {
   Answer answer = Answer::maybe;
   std::uint32_t count = 0;  // of points: 0 for "no"; the outermost ones of all that were found, seen along the normal
   std::array<ContactPoint, kMaxContactPoints> points{};
-  // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, and moved less than that it
-  // does. The direction is a local minimum of depth(direction): the least way out near the way that the cut surfaces
-  // show. For "maybe" it is a guess, from sphere to sphere.
+  // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, rounding included, and moved
+  // less than that by more than `error` it does. The direction is a local minimum of depth(direction), the best of
+  // those that were found: shorter ones are looked for all around, and can be missed. For "maybe" it is a guess, from
+  // sphere to sphere.
   std::array<double, 3> normal{};
   double depth = 0;
   // Of points and depth. Yes: rounding, some 1e-12 of the coordinates. Maybe: the radius of a ball around the point
   // that holds the common part of two of the trees' spheres.
   double error = 0;
-  bool complete =
-      true;  // false if there were more pairs of triangles than room for them: the depth is then a lower bound
+  // False if no direction came to its first end in time: the depth is then that at which the bodies' extents along the
+  // normal part, so that the body moved by it is free, and a shorter one may be as well.
+  bool complete = true;
 };
 
 struct ContactOptions {
-  std::uint32_t refinements = 12;  // directions tried at most, besides the first ones; 0: only the first normal's depth
-  bool depth = true;               // false: points and a first normal only, at a fraction of the cost
+  // Directions tried at most from each direction that is begun with; 0: only the first normal's depth.
+  std::uint32_t refinements = 12;
+  bool depth = true;  // false: points and a first normal only, at a fraction of the cost
 };
 
 // All pairs of triangles that meet give the curves in which the surfaces cut each other; the points are on these. The

@@ -29,6 +29,16 @@ namespace orchard::runtime {
 using ShapeId = std::uint32_t;
 inline constexpr ShapeId kNoShape = 0xffffffffu;
 
+// Half-spaces have indices of their own: the first one that is added has kFirstHalfSpace, the next one the next, and
+// none is used again. All other bodies have indices below kMaxBodies, which are used again once a body is removed. So
+// an array by BodyId::index holds bodies, and one by half_space_number() half-spaces.
+inline constexpr BodyIndex kFirstHalfSpace = 0xf0000000u;
+constexpr bool is_half_space(const BodyId& body) noexcept {
+  return body.index >= kFirstHalfSpace && body.index != kNoIndex;
+}
+// 0 for the half-space that was added first. Precondition: is_half_space(body).
+constexpr std::uint32_t half_space_number(const BodyId& body) noexcept { return body.index - kFirstHalfSpace; }
+
 // A rigid part of a body: world = the body's pose after `local`. Lengths of a shape times local.scale times the body's.
 struct BodyPart {
   ShapeId shape = kNoShape;
@@ -251,8 +261,8 @@ class Detector {
   BodyId add_static(std::initializer_list<BodyPart> parts, const Pose& pose, const BodyOptions& options = {}) {
     return add_static(std::span(parts.begin(), parts.size()), pose, options);
   }
-  // Everything with normal . point <= offset; the normal of any length but 0. Costs nothing for bodies that cannot
-  // reach it: each has an event of its own, like the broad phase's.
+  // Everything with normal . point <= offset; the normal of any length but 0. See half_space_number(). Costs nothing
+  // for bodies that cannot reach it: each has an event of its own, like the broad phase's.
   BodyId add_half_space(const Vec3& normal, double offset, const BodyOptions& options = {});
 
   // The following change nothing and return false if there is no such body, or what is handed over is not valid.
@@ -297,7 +307,10 @@ class Detector {
   Frame step(double time, const FrameBudget& budget = {}) noexcept;
 
   // Where the parts of an event of the last step touch, at up to four points, and how they come apart; as contacts()
-  // does for two trees, in closed form where one part is simple (one point; the depth is that along the normal).
+  // does for two trees. Boxes are solid: what is wholly inside one leaves it. With a half-space the points are the
+  // outermost ones of where the surface cuts its plane (of a capsule, the lowest points of its ends), and the depth is
+  // that of the lowest point. Of spheres and capsules with anything else there is one point, and the depth is that
+  // along the normal.
   // Without points, and "maybe", if the event's bodies are gone or its answer is not yes. For a contact between two
   // steps it tells of this step, at which it may be over: "no". Allocates nothing once warm; throws nothing.
   Manifold manifold(const PairEvent& event, const ContactOptions& options = {}) noexcept;

@@ -29,6 +29,9 @@ struct Placement {
   float unit = 1;        // a power of two: times this, every coordinate of the pair's frame is at most 1
   float whole = 1;       // 1 / unit
   float box_margin = 0;  // to take from a gap between boxes
+  // `box_margin` is large beside the smaller body, since the other one is larger by far or its origin far away: boxes
+  // that floats do not separate are tested in double.
+  bool coarse = false;
   // Of `turn` again, by fours: find_rows().
   alignas(16) std::array<std::array<float, 4>, 3> rows{}, columns{};
 };
@@ -240,6 +243,7 @@ class NarrowPhase {
   void start_near(const NodePair& leaves) noexcept;
   bool refine_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept;
   bool find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, detail::BoxGaps& gaps) noexcept;
+  void leave_out_apart(const NodePair& pair, bool second, std::uint32_t block, detail::BoxGaps& gaps) const noexcept;
   void push_children(const NodePair& pair, bool second, std::uint32_t block, const detail::BoxGaps& gaps) noexcept;
   detail::NodeBox moved_box(std::uint32_t node) const noexcept;  // of the second tree, in the first one's frame
   bool test_triangles(const NodePair& pair) noexcept;

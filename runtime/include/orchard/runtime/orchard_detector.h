@@ -116,6 +116,9 @@ orchard_body orchard_detector_add_body(orchard_detector* detector, const orchard
                                        const orchard_body_options* options);
 orchard_body orchard_detector_add_static(orchard_detector* detector, const orchard_part* parts, size_t count,
                                          const orchard_pose* pose, const orchard_body_options* options);
+/* The first half-space that is added has the index ORCHARD_FIRST_HALF_SPACE, the next one the next, and none is used
+ * again; indices of all other bodies are smaller. */
+#define ORCHARD_FIRST_HALF_SPACE 0xf0000000u
 orchard_body orchard_detector_add_half_space(orchard_detector* detector, const double normal[3], double offset,
                                              const orchard_body_options* options);
 
