@@ -52,8 +52,7 @@ class Finish {
   // Settles what is left by growing.
   void grow(TightenReport::Level& report) {
     take_balls();
-    if (!options_.as_given)
-      for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
+    for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
     std::vector<std::vector<Index>> places;
     SphereTree closed = partial_.tree(places);
     const Index first = options_.keep_above ? static_cast<Index>(partial_.size() - 1) : 0;

@@ -13,7 +13,6 @@ struct FinishOptions {
   Index search_trials = 0;    // in each of the searching rounds
   Index closed_trials = 0;    // afterwards, of the search that never uncovers anything
   bool keep_above = false;    // whether the levels above are not to grow
-  bool as_given = false;      // whether the balls cover the surface already, or nearly, and need no growth to spare
   Progress progress;          // called with a fraction of the finish
 };
 

@@ -33,21 +33,6 @@ double LevelObjective::cost(std::span<const LevelBall> balls) const {
   return sum;
 }
 
-std::array<double, 2> LevelObjective::sums(std::span<const LevelBall> balls) const {
-  std::array<double, 2> sums{};
-  for (const LevelBall& ball : balls) {
-    sums[0] += ball.looseness();
-    sums[1] += ball.looseness() * ball.radius * ball.radius;
-  }
-  return sums;
-}
-
-bool LevelObjective::keeps(std::span<const LevelBall> balls, const std::array<double, 2>& sums) const {
-  if (!by_.keeps_sums) return true;
-  const std::array<double, 2> own = this->sums(balls);
-  return own[0] <= sums[0] && own[1] <= sums[1];
-}
-
 double LevelObjective::slope(const FittedBall& ball) const {
   FittedBall larger = ball;
   const double step = 1e-6 * by_.unit;

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <span>
 
 #include "level_balls.h"
@@ -12,9 +11,8 @@ struct LevelCost {
   double power = 4;
   double cap = 0, cap_power = 8;  // cap 0: none
   double size_power = 0;
-  double limit = 0;         // mesh units; balls that are looser cost a thousand times as much; 0: none
-  bool keeps_sums = false;  // whether no trial may add to the sums of looseness and of looseness times squared radius
-  double unit = 0;          // mesh units; 0: the mean looseness of the balls that the level starts with
+  double limit = 0;  // mesh units; balls that are looser cost a thousand times as much; 0: none
+  double unit = 0;   // mesh units; 0: the mean looseness of the balls that the level starts with
 };
 
 // What a level's search is to keep low. It does not change once its unit is known.
@@ -25,11 +23,8 @@ class LevelObjective {
 
   double cost(const FittedBall& ball) const;
   double cost(std::span<const LevelBall> balls) const;  // their sum
-  // Whether balls in the place of others with these sums are allowed.
-  std::array<double, 2> sums(std::span<const LevelBall> balls) const;
-  bool keeps(std::span<const LevelBall> balls, const std::array<double, 2>& sums) const;
-  double slope(const FittedBall& ball) const;  // of a ball's cost, by its radius
-  double unit() const { return by_.unit; }     // of the looseness, mesh units
+  double slope(const FittedBall& ball) const;           // of a ball's cost, by its radius
+  double unit() const { return by_.unit; }              // of the looseness, mesh units
 
  private:
   LevelCost by_;

@@ -11,7 +11,6 @@ struct LevelOptions {
   LevelCost cost;
   BallMeasure measure = BallMeasure::reach;
   bool keep_above = false;  // whether the levels above are not to grow
-  bool as_given = false;    // whether the balls that the level starts with cover it already, or nearly, and stay
   std::uint64_t seed = 1;
   Index level = 1;  // for the random numbers
 };

@@ -8,9 +8,8 @@ namespace {
 
 LevelBalls started(const Surface& surface, PathRegions regions, const LevelOptions& options,
                    std::vector<LevelBall> start) {
-  std::vector<LevelBall> balls = options.as_given ? std::move(start)
-                                 : start.empty()  ? seeded_balls(surface, regions, options)
-                                                  : relaxed_balls(surface, regions, options, std::move(start));
+  std::vector<LevelBall> balls = start.empty() ? seeded_balls(surface, regions, options)
+                                               : relaxed_balls(surface, regions, options, std::move(start));
   return {std::move(regions), std::move(balls), options.max_children, options.measure};
 }
 

@@ -82,9 +82,7 @@ class Proposal {
     if (freed_.empty()) return std::move(trial_);
     copy_chosen();
     start_some_anew();
-    if (!share_out() || !(objective_.cost(trial_.balls) < trial_.max_cost) ||
-        !objective_.keeps(trial_.balls, trial_.max_sums))
-      trial_.balls.clear();
+    if (!share_out() || !(objective_.cost(trial_.balls) < trial_.max_cost)) trial_.balls.clear();
     return std::move(trial_);
   }
 
@@ -155,7 +153,6 @@ class Proposal {
       copy.path_region = balls_[b].path_region;
     }
     trial_.max_cost = cost * (1 - kWorthwhile);
-    trial_.max_sums = objective_.sums(trial_.balls);
   }
 
   void start_some_anew() {

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <span>
 #include <vector>
 
@@ -14,9 +13,8 @@ struct LevelTrial {
   std::vector<Index> chosen;              // balls of the level
   std::vector<LevelBall> balls;           // in their place, as many; empty: nothing better was found
   std::vector<std::vector<Point>> needs;  // what each of these must hold
-  Index moved = kNone;               // into `chosen`: the one that leaves its place; those after it lie near that place
-  std::array<double, 2> max_sums{};  // and these, if they are kept
-  double max_cost = 0;               // that the new balls must stay below for the trial to be worthwhile
+  Index moved = kNone;  // into `chosen`: the one that leaves its place; those after it lie near that place
+  double max_cost = 0;  // that the new balls must stay below for the trial to be worthwhile
 };
 
 struct [[gnu::visibility("hidden")]] TrialScratch;  // as BallFitter is

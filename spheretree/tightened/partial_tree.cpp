@@ -18,6 +18,13 @@ void PartialTree::add_level() {
   levels_.emplace_back();
 }
 
+PartialTree PartialTree::down_to(Index level) const {
+  PartialTree upper = *this;
+  upper.levels_.resize(level + 1);
+  upper.parents_.clear();
+  return upper;
+}
+
 std::vector<std::vector<Sphere>> PartialTree::paths() const {
   std::vector<std::vector<Sphere>> result;
   for (Index parent : parents_) result.push_back(path(levels_.size() - 2, parent));

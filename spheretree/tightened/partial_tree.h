@@ -26,6 +26,8 @@ class PartialTree {
   const Level& last() const { return levels_.back(); }
   std::span<const Level> levels() const { return levels_; }
   void add_level();
+  // The levels down to this one, as they are: what is below may have grown them.
+  PartialTree down_to(Index level) const;
 
   // Nodes of the level above the last that need children; the path regions of these are what balls may lie in.
   std::span<const Index> parents() const { return parents_; }

@@ -14,6 +14,8 @@
 namespace orchard {
 namespace {
 
+constexpr double kStandardShare = 0.25;  // of the time that high effort takes
+
 detail::Work work_for(Effort effort) {
   switch (effort) {
     case Effort::low:
@@ -21,7 +23,7 @@ detail::Work work_for(Effort effort) {
     case Effort::standard:
       return {0.7, 14, 0, 48, {6, 1}};
     case Effort::high:
-      return {3, 24, 12, 96, {12, 3}};
+      return {1, 16, 4, 48, {4, 1}};
   }
   return {0.7, 14, 0, 48, {6, 1}};
 }
@@ -63,14 +65,24 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   TightenOptions own = options;
   if (options.effort != Effort::high)
     return Tightener(surface, samples, surface.bounding_ball(), own, work_for(options.effort), progress).run();
+  // The later runs say how far they are in what is left, and never go back.
+  double reported = 0;
+  const auto share = [&](double from, double to) -> Progress {
+    return [&, from, to](std::string_view stage, double fraction) {
+      reported = std::max(reported, from + (to - from) * fraction);
+      return !progress || progress(stage, reported);
+    };
+  };
+  const Progress first = share(0, kStandardShare), rest = share(kStandardShare, 1);
   own.effort = Effort::standard;
-  Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), progress);
+  Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), first);
   TightenBuild usual = standard.run();
   const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, surface);
+  if (allowed.size() != usual.report.levels.size() + 1) return usual;
   own.effort = Effort::high;
   // Levels below may have spheres removed above: then those above are left as they are.
   for (Index same = 0; same < usual.report.levels.size();) {
-    Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), progress);
+    Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), rest);
     TightenBuild best = thorough.run_beside(standard, same, allowed);
     const std::vector<LevelLooseness> figures = looseness_by_level(best.tree, surface);
     Index within = 0;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <deque>
 #include <exception>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <thread>
@@ -53,15 +54,16 @@ constexpr double kTightenedTwiceShare = 0.1;  // below it, a closed level is tig
 
 constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
 constexpr Index kStartsForMaximum = 2;          // carried through with that objective, too, of the first level
-// A level that begins with a cover of as many balls gets no more trials than others, and one of fewer up to so many
-// times as many.
-constexpr double kResumedBalls = 512, kMostResumed = 8;
 // Levels whose figures differ by less, in R, are as tight as each other: they are not known any better.
 constexpr double kSameTightness = tolerance::kInaccuracy;
 // Where the balls' mean reach is so many times their mean inaccuracy, other measures may fit them better.
 constexpr double kFarAbove = 1.25;
 // Levels that are tighter than they must be by less than this part of R are kept from growing any more.
 constexpr double kCloseCall = 0.002;
+// Beside a tree whose figures no level may exceed, what is looser is tried again with so much more weight on the size:
+// mostly it is the outside volume that is above.
+constexpr int kAttempts = 2;
+constexpr double kMoreSizePower = 0.25;
 
 // Of a full search, that a level of so many balls gets.
 double search_share(Index balls) { return std::min(1.0, kFullySearchedBalls / std::max<Index>(1, balls)); }
@@ -87,9 +89,6 @@ Index carried_starts(Index level, Index balls, const Work& work) {
   const Index worthwhile = std::max<Index>(2, kCarriedBalls / std::max<Index>(1, balls));
   return std::min({starts, worthwhile, tried_starts(balls, work)});
 }
-
-// How many times as long levels are searched that are tight already.
-double resumed_share(Index balls) { return std::clamp(kResumedBalls / std::max<Index>(1, balls), 1.0, kMostResumed); }
 
 // As many as it is worth. Yet the text format has room for as many below every node: it is to stay small.
 Index max_children(const TightenOptions& options) {
@@ -166,21 +165,15 @@ Tightener::Tightener(const Surface& surface, const Samples& samples, const Spher
 }
 
 TightenBuild Tightener::run() {
-  for (Index level = 1; level <= options_.depth && build_level(level); ++level)
-    states_.push_back({partial_, excesses_, inaccuracies_, octree_levels_});
+  Index level = 1;
+  while (level <= options_.depth && build_level(level)) ++level;
   return result();
 }
 
 TightenBuild Tightener::run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed) {
-  for (Index level = 1; level < allowed.size(); ++level) {
-    if (level <= same) {
-      restore(other.states_[level - 1]);
-      report_.levels.push_back(other.report_.levels[level - 1]);
-    } else if (!build_level_beside(level, other, allowed[level])) {
-      break;
-    }
-    states_.push_back({partial_, excesses_, inaccuracies_, octree_levels_});
-  }
+  restore_from(other, same);
+  report_.levels.assign(other.report_.levels.begin(), other.report_.levels.begin() + same);
+  for (Index level = same + 1; level < allowed.size(); ++level) build_level_beside(level, other, allowed[level]);
   return result();
 }
 
@@ -192,11 +185,13 @@ TightenBuild Tightener::result() {
   return {std::move(tree), report_};
 }
 
-void Tightener::restore(const State& state) {
-  partial_ = state.partial;
-  excesses_ = state.excesses;
-  inaccuracies_ = state.inaccuracies;
-  octree_levels_ = state.octree_levels;
+// The other one's levels down to this one, as they have become with those below.
+void Tightener::restore_from(const Tightener& other, Index level) {
+  partial_ = other.partial_.down_to(level);
+  excesses_.assign(other.excesses_.begin(), other.excesses_.begin() + level + 1);
+  inaccuracies_ = inaccuracies(surface_, partial_.last());
+  octree_levels_ = std::min(other.octree_levels_, level);
+  differs_ = false;
 }
 
 LevelOptions Tightener::options_for(Index level, Index balls) const {
@@ -225,7 +220,10 @@ std::optional<LevelOptions> Tightener::next_level(Index level) const {
 bool Tightener::build_level(Index level) {
   const std::optional<LevelOptions> options = next_level(level);
   if (!options) return false;
-  std::vector<Candidate> all = covers(*options);
+  std::vector<Candidate> all;
+  add_candidates(usual_starts(*options), all);
+  const Candidate& usual = tightest(all);
+  if (usual.excess > 0 || (level == 1 && !usual.measures_well)) add_other_candidates(*options, all);
   if (tightest(all).excess > 0) {
     if (level > octree_levels_ + 1) {
       partial_ = octree_.levels({root_, surface_.bounding_radius()}, level - 1);
@@ -242,40 +240,40 @@ bool Tightener::build_level(Index level) {
   return true;
 }
 
-std::vector<Tightener::Candidate> Tightener::covers(const LevelOptions& options) {
-  std::vector<Candidate> all;
-  add_candidates(usual_starts(options), all);
-  const Candidate& best = tightest(all);
-  if (best.excess > 0 || (options.level == 1 && !best.measures_well)) add_other_candidates(options, all);
-  return all;
+// First on the levels so far. Where no cover on these keeps to what is allowed, on the levels that the other one has;
+// where none on those does either, the level is the other one's.
+void Tightener::build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed) {
+  if (take_cover_within(level, other.partial_, allowed)) return;
+  const bool differed = differs_;
+  restore_from(other, level - 1);
+  if (differed && take_cover_within(level, other.partial_, allowed)) return;
+  restore_from(other, level);
+  report_.levels.push_back(other.report_.levels[level - 1]);
 }
 
-// First on the levels so far: covers as usual, and the other one's level as it fits in here. Where none of these keeps
-// to what is allowed, on the levels that the other one has above its own, where that level is a start that can only get
-// tighter.
-bool Tightener::build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed) {
-  const State& state = other.states_[level - 1];
+// Covers as usual, but that balls looser than any of the usual tree's cost much more: where the usual level is tight,
+// the maximum is what most covers would break the rule by. False: none keeps to what is allowed.
+bool Tightener::take_cover_within(Index level, const PartialTree& usual, const LevelLooseness& allowed) {
+  std::optional<LevelOptions> options = next_level(level);
+  if (!options) return false;
+  options->keep_above = true;
+  for (const LevelNode& node : usual.levels()[level])
+    options->cost.limit =
+        std::max(options->cost.limit, node.sphere.radius + surface_.signed_distance(node.sphere.center));
+  std::vector<Start> starts = usual_starts(*options);
   std::vector<Candidate> all;
-  if (std::optional<LevelOptions> options = next_level(level)) {
-    options->keep_above = true;
-    all = covers(*options);
-    add_candidates(keeping_starts(*options, state.partial), all);
-    hold_to(allowed, all);
+  for (int attempt = 0; attempt < (level == 1 ? 1 : kAttempts); ++attempt) {
+    if (attempt > 0)
+      for (Start& start : starts) start.options.cost.size_power += kMoreSizePower;
+    std::vector<Candidate> more;
+    add_candidates(starts, more);
+    hold_to(allowed, more);
+    std::move(more.begin(), more.end(), std::back_inserter(all));
+    if (tightest(all).excess <= 0) break;
   }
-  if (all.empty() || tightest(all).excess > 0) {
-    all.clear();
-    if (level > 1) {
-      restore(other.states_[level - 2]);
-      add_candidates(keeping_starts(*next_level(level), state.partial), all);
-      hold_to(allowed, all);
-    }
-    if (all.empty() || tightest(all).excess > 0) {
-      restore(state);
-      report_.levels.push_back(other.report_.levels[level - 1]);
-      return true;
-    }
-  }
+  if (tightest(all).excess > 0) return false;
   take_tightest(all);
+  differs_ = true;
   return true;
 }
 
@@ -302,53 +300,6 @@ void Tightener::hold_to(const LevelLooseness& allowed, std::vector<Candidate>& a
           std::max({candidate.excess, (own.mean - allowed.mean) / radius, (own.max - allowed.max) / radius,
                     (own.outside_volume / allowed.outside_volume - 1)});
   }
-}
-
-// A level that is there already, with its balls in the path regions where they are there, or where most of what they
-// hold is.
-std::vector<LevelBall> Tightener::resumed(const LevelOptions& options, const PartialTree& tree) const {
-  PartialTree partial = partial_;
-  partial.add_level();
-  const PathRegions regions(samples_for(samples_, partial_, enough_samples(options.balls)), partial.paths());
-  std::vector<LevelBall> balls;
-  std::vector<Index> held, children(regions.size(), 0);
-  const Level &above = tree.levels()[options.level - 1], &here = partial_.last();
-  for (const LevelNode& node : tree.levels()[options.level]) {
-    LevelBall ball;
-    ball.center = node.sphere.center;
-    ball.radius = node.sphere.radius - (0.5 * kLastGrowth + tolerance::kCoverMargin) * surface_.bounding_radius();
-    ball.center_distance = surface_.signed_distance(ball.center);
-    const bool is_below_same =
-        node.parent < here.size() && above[node.parent].sphere.center == here[node.parent].sphere.center;
-    std::size_t most = 0;
-    for (Index r = 0; r < regions.size(); ++r) {
-      if (children[r] >= options.max_children || (is_below_same && partial.parents()[r] != node.parent)) continue;
-      held.clear();
-      regions.append_samples(r, 0, ball.center, ball.radius * ball.radius, held);
-      if (held.size() > most) most = held.size(), ball.path_region = r;
-    }
-    if (ball.path_region == kNone) continue;
-    ++children[ball.path_region];
-    balls.push_back(std::move(ball));
-  }
-  return balls;
-}
-
-// No figure gets worse, as far as trials know them: by objectives that have the largest count for more or the volume.
-std::vector<Tightener::Start> Tightener::keeping_starts(const LevelOptions& options, const PartialTree& tree) const {
-  Start start{options, resumed(options, tree)};
-  double loosest = 0;
-  for (const LevelBall& ball : start.balls) loosest = std::max(loosest, ball.looseness());
-  start.options.as_given = start.options.keep_above = true;
-  std::vector<Start> starts;
-  for (const LevelCost& cost : {options.cost, LevelCost{.power = 1.2, .size_power = 1.5}, LevelCost{.power = 3}}) {
-    start.options.cost = cost;
-    start.options.cost.keeps_sums = true;
-    start.options.cost.limit = loosest + kLastGrowth * surface_.bounding_radius();
-    start.kind = static_cast<int>(starts.size());
-    starts.push_back(start);
-  }
-  return starts;
 }
 
 // Of those that keep the rule; of none does, the one that breaks it least.
@@ -468,6 +419,7 @@ std::vector<Tightener::Start> Tightener::usual_starts(const LevelOptions& option
   for (Index i = 0; i < std::min(count, kStartsForMaximum); ++i) {
     starts.push_back(starts[i]);
     starts.back().options.cost = cost_for(Objective::maximum, options.level, options_.depth);
+    starts.back().options.cost.limit = options.cost.limit;
     starts.back().kind = 1;
   }
   return starts;
@@ -572,23 +524,19 @@ void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& optio
                                   Candidate& result) const {
   const auto start = std::chrono::steady_clock::now();
   const Index trials = trials_for(options.balls, work_);
-  if (!options.as_given) {
-    solver.tighten();
-    solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
-    solver.tighten();
-  }
+  solver.tighten();
+  solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
+  solver.tighten();
   const auto middle = std::chrono::steady_clock::now();
   const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
   const double share = search_share(options.balls);
   const double closed_trials = share * work_.closed_trials / std::max(1.0, fineness);
-  FinishOptions finish{options.as_given ? 0 : searching_rounds(options.balls, work_),
+  FinishOptions finish{searching_rounds(options.balls, work_),
                        share < kTighteningShare ? 0 : kTighteningRounds,
                        share < kTightenedTwiceShare ? 1 : 2,
                        static_cast<Index>(kSearchShare * trials),
-                       static_cast<Index>((options.as_given ? resumed_share(options.balls) : 1) * closed_trials *
-                                          static_cast<double>(solver.balls().size())),
+                       static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
                        options.keep_above,
-                       options.as_given,
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
   const bool is_known = options.measure == BallMeasure::reach;

@@ -40,13 +40,6 @@ class Tightener {
   TightenBuild run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed);
 
  private:
-  // The levels so far.
-  struct State {
-    PartialTree partial;
-    std::vector<double> excesses;      // of the levels
-    std::vector<double> inaccuracies;  // of the last level's balls, in mesh units
-    Index octree_levels;               // of the levels, which are the octree's own
-  };
   // What a level's balls are searched from, and how; those with the same number have the same unit of cost.
   struct Start {
     LevelOptions options;
@@ -66,12 +59,10 @@ class Tightener {
   };
   TightenBuild result();
   bool build_level(Index level);
-  bool build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed);
-  std::vector<Candidate> covers(const LevelOptions& options);
-  void restore(const State& state);
+  void build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed);
+  bool take_cover_within(Index level, const PartialTree& usual, const LevelLooseness& allowed);
+  void restore_from(const Tightener& other, Index level);
   void hold_to(const LevelLooseness& allowed, std::vector<Candidate>& all) const;
-  std::vector<LevelBall> resumed(const LevelOptions& options, const PartialTree& tree) const;
-  std::vector<Start> keeping_starts(const LevelOptions& options, const PartialTree& tree) const;
   void take_tightest(std::vector<Candidate>& all);
   std::optional<LevelOptions> next_level(Index level) const;
   LevelOptions options_for(Index level, Index balls) const;
@@ -101,7 +92,7 @@ class Tightener {
   OctreeReference octree_;
   PartialTree partial_;
   TightenReport report_;
-  std::vector<State> states_;         // after each level
+  bool differs_ = false;              // whether the levels so far are others than those of the tree that this is beside
   Index octree_levels_ = 0;           // of partial_, which are the octree's own
   std::vector<double> excesses_{-1};  // of the levels so far
   std::vector<double> inaccuracies_;  // of the last level's balls, in mesh units

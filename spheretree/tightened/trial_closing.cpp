@@ -40,9 +40,7 @@ class TrialCloser {
     cover_.triangles_resting_on(chosen, scratch_, resting_);
   }
 
-  bool worthwhile() const {
-    return objective_.cost(trial_.balls) < trial_.max_cost && objective_.keeps(trial_.balls, trial_.max_sums);
-  }
+  bool worthwhile() const { return objective_.cost(trial_.balls) < trial_.max_cost; }
 
   // False: after some rounds something is still open, or the trial is not worthwhile any more.
   bool close() {
