@@ -135,7 +135,7 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
       ->excludes(branching);
   add_choice(
       command, "--effort", kEfforts, options.effort,
-      "How long to search: tightened, about 1 : 2 : 11; annealing, about 1 : 3 : 17, high as in the dissertation");
+      "How long to search: tightened, about 1 : 2 : 6; annealing, about 1 : 3 : 17, high as in the dissertation");
   add_choice(command, "--objective", kObjectives, options.objective,
              "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
   add_choice(command, "--closing", kClosings, options.closing,

@@ -296,17 +296,20 @@ TEST(TightenedTree, IsTheSameWhereEvenThePointsAreSampledInAnotherFrame) {
 // Starts of the first level are searched side by side.
 TEST(TightenedTree, ReportsProgressOnTheCallersThreadAndNeverBack) {
   const Surface surface(u_shape(0.3));
-  const SurfaceSampling points = points_of(surface, 1000);
+  const SurfaceSampling points = points_of(surface, 500);
   const std::thread::id caller = std::this_thread::get_id();
-  double last = 0;
-  tightened_tree(surface, points, {.depth = 2, .branching = 4}, [&](std::string_view, double fraction) {
-    EXPECT_EQ(std::this_thread::get_id(), caller);
-    EXPECT_GE(fraction, last);
-    EXPECT_LE(fraction, 1);
-    last = fraction;
-    return true;
-  });
-  EXPECT_GT(last, 0.5);
+  for (const Effort effort : {Effort::standard, Effort::high}) {
+    double last = 0;
+    const TightenOptions options{.depth = 2, .branching = 3, .effort = effort};
+    tightened_tree(surface, points, options, [&](std::string_view, double fraction) {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1);
+      last = fraction;
+      return true;
+    });
+    EXPECT_GT(last, 0.5);
+  }
 }
 
 TEST(TightenedTree, StopsWheneverItIsCancelled) {
@@ -361,8 +364,8 @@ TEST(TightenedTree, HasNoLevelLooserThanTheOctreesOrThanTheOneAbove) {
 }
 
 TEST(TightenedTree, IsLooserInNoFigureWithHighEffort) {
-  const Surface surface(torus(12, 6));
-  const SurfaceSampling points = points_of(surface, 1000);
+  const Surface surface(torus(9, 5));
+  const SurfaceSampling points = points_of(surface, 500);
   const auto figures = [&](Effort effort) {
     SphereTree tree = tightened_tree(surface, points, {.depth = 2, .branching = 4, .effort = effort}).tree;
     expect_conservative(tree, surface, "torus");
