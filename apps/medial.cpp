@@ -208,6 +208,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const SkeletonGraph skeleton = skeleton_graph(build.axis);
+  const MedialStructure structure = medial_structure(mesh);
   const FewBalls few = make_few_balls(command, surface, mesh, progress);
   std::optional<MedialJudgement> judgement;
   if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
@@ -224,7 +225,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   const std::string last_line = in_one_line(broken);
   json report{{"mesh", mesh_json(surface)},        {"build", to_json(build)},
               {"topology", to_json(found)},        {"topology_of_solid", to_json(wanted)},
-              {"promise", to_json(build.promise)}, {"structure", to_json(segments, skeleton)}};
+              {"promise", to_json(build.promise)}, {"structure", to_json(segments, skeleton, structure)}};
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
   if (!warning.empty()) report["warning"] = warning;
   report["promise"]["broken"] = broken.what;
@@ -233,6 +234,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
     fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
     if (!command.source.points.empty()) fmt::print("points moved onto the mesh by {:.6g} at most\n", own.max_moved);
     print(build);
+    print(structure);
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());
   }
@@ -254,7 +256,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   }
   Outputs outputs(destination);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
-             to_ma(mesh) + (last_line.empty() ? "" : "# " + last_line + "\n"));
+             to_ma(mesh) + to_structure_section(structure) + (last_line.empty() ? "" : "# " + last_line + "\n"));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,

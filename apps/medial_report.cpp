@@ -79,7 +79,11 @@ json to_json(const MedialBuild& build) {
           {"seconds", seconds}};
 }
 
-json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton) {
+json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialStructure& structure) {
+  json parts = json::array();
+  for (const MedialStructure::Part& part : structure.parts) {
+    parts.push_back({{"kind", name_of(part.kind)}, {"cells", part.cells}, {"vertices", part.vertices.size()}});
+  }
   json rows = json::array();
   for (const MedialSegments::Segment& s : segments.segments) {
     rows.push_back({{"sheet", s.sheet},
@@ -88,7 +92,20 @@ json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton) {
                     {"min_radius", s.min_radius},
                     {"max_radius", s.max_radius}});
   }
-  return {{"segments", rows}, {"skeleton_nodes", skeleton.nodes.size()}, {"skeleton_arcs", skeleton.arcs.size()}};
+  return {{"segments", rows},
+          {"skeleton_nodes", skeleton.nodes.size()},
+          {"skeleton_arcs", skeleton.arcs.size()},
+          {"parts", parts}};
+}
+
+void print(const MedialStructure& structure) {
+  const auto counted = [&](StructureKind kind, const char* plural) {
+    const std::size_t n = structure.count(kind);
+    return fmt::format("{} {}", n, n == 1 ? name_of(kind) : plural);
+  };
+  fmt::print("{}, {}, {}, {}, {}\n", counted(StructureKind::sheet, "sheets"), counted(StructureKind::seam, "seams"),
+             counted(StructureKind::border, "borders"), counted(StructureKind::curve, "curves"),
+             counted(StructureKind::junction, "junctions"));
 }
 
 void print(const MedialBuild& build) {

@@ -3,6 +3,7 @@
 
 #include "orchard/medial/build.h"
 #include "orchard/medial/segments.h"
+#include "orchard/medial/structure.h"
 #include "orchard/medial/topology.h"
 
 // What `orchard medial` says about an axis, for people and for programs.
@@ -10,8 +11,9 @@ namespace orchard::apps {
 
 nlohmann::json to_json(const MedialBuild& build);
 nlohmann::json to_json(const Topology& topology);
-nlohmann::json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton);
+nlohmann::json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialStructure& structure);
 
 void print(const MedialBuild& build);
+void print(const MedialStructure& structure);
 
 }  // namespace orchard::apps

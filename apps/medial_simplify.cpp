@@ -9,6 +9,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/medial/medial_mesh_formats.h"
+#include "orchard/medial/structure.h"
 #include "stamp.h"
 #include "svg_plot.h"
 
@@ -170,7 +171,7 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
     report["simplified"]["edges"] = mesh.edges.size();
     report["simplified"]["triangles"] = mesh.triangles.size();
     write_file(outputs.add(name("-simplified.ma"), "the axis in few balls, edges flagged by their features"),
-               to_ma(with_feature_flags(mesh)));
+               to_ma(with_feature_flags(mesh)) + to_structure_section(medial_structure(mesh)));
     write_file(outputs.add(name("-simplified.ply"), "the same with edges and radii"), to_ply(mesh));
     write_file(outputs.add(name("-simplified.obj"), "its sheets"), to_obj(mesh));
   }

@@ -6,8 +6,10 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <span>
 
 #include "orchard/medial/prune.h"
+#include "orchard/medial/structure.h"
 #include "vtk_data.h"
 
 namespace orchard {
@@ -18,17 +20,18 @@ namespace {
 
 struct Cell {
   std::vector<Index> corners;
-  Index segment = kNone, point_a = kNone, point_b = kNone;
+  Index segment = kNone, part = kNone, point_a = kNone, point_b = kNone;
   bool wall = false;
   double angle = kNoValue;
 };
 
 void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& points, const std::vector<Index>& segments,
-               bool wall, const MedialAxis& axis, std::vector<Cell>& cells) {
+               std::span<const Index> parts, bool wall, const MedialAxis& axis, std::vector<Cell>& cells) {
   for (Index face = 0; face < faces.size(); ++face) {
     const auto corners = faces[face];
     cells.push_back({.corners = {corners.begin(), corners.end()},
                      .segment = segments[face],
+                     .part = parts[face],
                      .point_a = points[face][0],
                      .point_b = points[face][1],
                      .wall = wall,
@@ -36,19 +39,29 @@ void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& point
   }
 }
 
-std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segments) {
+std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segments, const MedialStructure& structure) {
   std::vector<Cell> cells;
-  add_faces(axis.faces, axis.face_points, segments.of_face, false, axis, cells);
-  add_faces(axis.walls, axis.wall_points, segments.of_wall, true, axis, cells);
+  const std::span<const Index> sheets = structure.of_face;
+  add_faces(axis.faces, axis.face_points, segments.of_face, sheets, false, axis, cells);
+  add_faces(axis.walls, axis.wall_points, segments.of_wall, sheets.subspan(axis.faces.size()), true, axis, cells);
   std::size_t edge = 0;
   for (Index i = 0; i < axis.size(); ++i) {
     for (const Index next : axis.neighbors[i]) {
       if (next < i) continue;
-      const Index segment = segments.of_edge[edge++];
-      if (segment != kNone) cells.push_back({.corners = {i, next}, .segment = segment});
+      const Index segment = segments.of_edge[edge], part = structure.of_edge[edge];
+      ++edge;
+      if (segment != kNone) cells.push_back({.corners = {i, next}, .segment = segment, .part = part});
     }
   }
   return cells;
+}
+
+// Of which part of the structure each is, and what kind of part that is.
+template <class PartOf>
+void add_structure(const MedialStructure& structure, std::size_t count, const PartOf& part_of, vtkFieldData* data) {
+  add_ints(data, "structure", count, [&](std::size_t i) { return as_int(part_of(i)); });
+  add_ints(data, "structure_kind", count,
+           [&](std::size_t i) { return static_cast<int>(structure.parts[part_of(i)].kind); });
 }
 
 bool added(const MedialAxis& axis, Index point) { return point != kNone && axis.origins[point] == PointOrigin::repair; }
@@ -100,7 +113,8 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
                        const ViewArrays& of_vertices, const ViewArrays& of_faces) {
   vtkNew<vtkUnstructuredGrid> grid;
   set_points(grid, axis.centers.size(), [&](std::size_t i) { return axis.centers[i]; });
-  const std::vector<Cell> cells = cells_of(axis, segments);
+  const MedialStructure structure = medial_structure(axis);
+  const std::vector<Cell> cells = cells_of(axis, segments, structure);
   for (const Cell& cell : cells) {
     std::vector<vtkIdType> corners(cell.corners.begin(), cell.corners.end());
     grid->InsertNextCell(corners.size() == 2 ? VTK_LINE : VTK_POLYGON, static_cast<vtkIdType>(corners.size()),
@@ -110,6 +124,10 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
   const std::vector<Index> components = connected_components(axis, count);
   add_point_arrays(axis, segments, components, grid->GetPointData());
   add_cell_arrays(axis, segments, components, cells, grid->GetCellData());
+  add_structure(
+      structure, axis.centers.size(), [&](std::size_t i) { return structure.of_vertex[i]; }, grid->GetPointData());
+  add_structure(
+      structure, cells.size(), [&](std::size_t i) { return cells[i].part; }, grid->GetCellData());
   add_all(grid->GetPointData(), of_vertices, axis.centers.size());
   for (const ViewArray& array : of_faces) {
     add_doubles(grid->GetCellData(), array.name.c_str(), cells.size(),
@@ -131,19 +149,24 @@ void write_thickness(const std::filesystem::path& vtp, const Surface& surface, c
 void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices) {
   vtkNew<vtkPolyData> data;
   set_points(data, mesh.centers.size(), [&](std::size_t i) { return mesh.centers[i]; });
-  std::vector<std::array<Index, 2>> sides;
+  const MedialStructure structure = medial_structure(mesh);
   vtkNew<vtkCellArray> triangles, lines;
-  for (const auto& triangle : mesh.triangles) {
-    const auto& [a, b, c] = triangle;
-    for (const auto& side : {std::array{a, b}, std::array{a, c}, std::array{b, c}}) sides.push_back(side);
-    add_cell(triangles, triangle);
+  std::vector<Index> parts;  // of each cell: lines come first
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+    const Index part = structure.of_edge[e];
+    if (part == kNone || structure.parts[part].kind != StructureKind::curve) continue;
+    add_cell(lines, mesh.edges[e]);
+    parts.push_back(part);
   }
-  std::sort(sides.begin(), sides.end());
-  for (const auto& edge : mesh.edges)
-    if (!std::binary_search(sides.begin(), sides.end(), edge)) add_cell(lines, edge);
+  for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
+  parts.insert(parts.end(), structure.of_face.begin(), structure.of_face.end());
   data->SetPolys(triangles);
   data->SetLines(lines);
   add_doubles(data->GetPointData(), "radius", mesh.radii.size(), [&](std::size_t i) { return mesh.radii[i]; });
+  add_structure(
+      structure, mesh.radii.size(), [&](std::size_t i) { return structure.of_vertex[i]; }, data->GetPointData());
+  add_structure(
+      structure, parts.size(), [&](std::size_t i) { return parts[i]; }, data->GetCellData());
   add_all(data->GetPointData(), of_vertices, mesh.radii.size());
   write(vtp, data);
 }

@@ -16,6 +16,8 @@ namespace orchard {
 // added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count. Cell
 // arrays: segment; sheet (1, else a curve) and trunk (1, else a branch) of the segment; wall (1 for walls);
 // contact_angle (at which the two points are seen, NaN for lines); point_a, point_b (-1 for lines); added; component.
+// Of points and cells: structure (the number of its part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2
+// border, 3 junction, 4 curve).
 // Also what `of_vertices` has, and `of_faces`: one value for each face, then for each wall; lines get NaN. Points are
 // numbered as in the contacts of write_medial_axis().
 void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
@@ -26,8 +28,8 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
 void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii,
                      const ViewArrays& more = {});
 
-// A medial mesh of any system: triangles, and lines for the other edges. Point arrays: radius, and what `of_vertices`
-// has.
+// A medial mesh of any system: triangles, and lines for the other edges. Point arrays: radius, structure and
+// structure_kind, as above, and what `of_vertices` has. Cell arrays: structure, structure_kind.
 void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {});
 
 // One vertex per place, in order. Point arrays: number (from 1 on, as reports have it), measure (0 protrusion, 1
