@@ -82,6 +82,8 @@ TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
   EXPECT_NEAR(values(cells, "contact_angle")[0], 3.1, 0.1);
   EXPECT_TRUE(std::isnan(values(cells, "contact_angle")[2])) << "lines have none";
   EXPECT_EQ(values(cells, "trunk").size(), 3u);
+  EXPECT_EQ(values(cells, "structure_kind"), (std::vector<double>{0, 0, 4})) << "one sheet and a curve";
+  EXPECT_EQ(values(cells, "structure")[0], values(cells, "structure")[1]);
   vtkPointData* points = grid->GetPointData();
   EXPECT_EQ(values(points, "radius"), axis.radii);
   EXPECT_EQ(values(points, "added"), (std::vector<double>{0, 0, 0, 1, 1}));
@@ -89,6 +91,7 @@ TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
   EXPECT_EQ(values(points, "forming_points", 2), (std::vector<double>{-1, 2, 2, 2, -1}));
   EXPECT_EQ(values(points, "component"), (std::vector<double>{0, 0, 0, 0, 0}));
   EXPECT_EQ(values(points, "segment").size(), 5u);
+  EXPECT_EQ(values(points, "structure_kind").back(), 3) << "where the curve ends";
 }
 
 // Of an axis whose faces have contacts and normals, which the angle must take into account.

@@ -75,6 +75,8 @@ const std::map<std::string, Rule>& rules() {
       {"point_b", {.none = true, .counts_in = "-medial-contacts.vtp"}},
       {"vertex", {.counts_in = "-medial-vertices.vtp"}},
       {"segment", {.none = true}},
+      {"structure", {}},
+      {"structure_kind", {.max = 4}},
       {"parent", {.none = true}},
       {"branch", {.none = true}},
       {"body", {.none = true}},
