@@ -71,7 +71,7 @@ Rates rates(const SphereTreeOptions& options) {
   const int effort = as_number(options.effort);
   switch (options.method) {
     case TreeMethod::tightened: {
-      constexpr double kSphere[] = {0.0018, 0.003, 0.013}, kTriangle[] = {0, 3e-7, 4e-6};
+      constexpr double kSphere[] = {0.0018, 0.003, 0.028}, kTriangle[] = {0, 3e-7, 4e-5};
       return {kSphere[effort], kTriangle[effort], 0};
     }
     case TreeMethod::annealing: {
