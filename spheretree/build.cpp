@@ -161,15 +161,20 @@ class TreeBuilder {
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
-  // Whether a level has become looser in the mean than the octree's: by tight spheres that were redundant.
+  // Whether a level has become looser in the mean than the one above it or than the octree's: by tight spheres that
+  // were redundant.
   bool is_loosened() const {
     if (options_.method != TreeMethod::tightened || options_.descent > 0 || build_.redundancy.removed == 0 ||
         options_.refinement.error > 0 || !options_.refinement.regions.empty())
       return false;
     const auto levels = level_figures(build_.tree, given_.bounding_radius());
     const auto octree = level_figures(build_.octree, given_.bounding_radius());
-    for (std::size_t i = 1; i < std::min(levels.size(), octree.size()); ++i)
-      if (levels[i].mean_inaccuracy > octree[i].mean_inaccuracy + tolerance::kInaccuracy) return true;
+    const auto is_looser = [](const LevelFigures& level, const LevelFigures& other) {
+      return level.mean_inaccuracy > other.mean_inaccuracy + tolerance::kInaccuracy;
+    };
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+      if (is_looser(levels[i], levels[i - 1]) || (i < octree.size() && is_looser(levels[i], octree[i]))) return true;
+    }
     return false;
   }
 

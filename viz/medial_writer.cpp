@@ -152,11 +152,10 @@ void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh,
   const MedialStructure structure = medial_structure(mesh);
   vtkNew<vtkCellArray> triangles, lines;
   std::vector<Index> parts;  // of each cell: lines come first
-  for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-    const Index part = structure.of_edge[e];
-    if (part == kNone || structure.parts[part].kind != StructureKind::curve) continue;
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    if (!structure.on_curve(e)) continue;
     add_cell(lines, mesh.edges[e]);
-    parts.push_back(part);
+    parts.push_back(structure.of_edge[e]);
   }
   for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
   parts.insert(parts.end(), structure.of_face.begin(), structure.of_face.end());

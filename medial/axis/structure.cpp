@@ -199,6 +199,10 @@ std::size_t MedialStructure::count(StructureKind kind) const {
       std::count_if(parts.begin(), parts.end(), [&](const Part& part) { return part.kind == kind; }));
 }
 
+bool MedialStructure::on_curve(Index edge) const {
+  return of_edge[edge] != kNone && parts[of_edge[edge]].kind == StructureKind::curve;
+}
+
 MedialStructure medial_structure(const MedialAxis& axis) {
   const detail::AxisComplex complex(axis);
   return StructureFinder(complex, axis.size()).run();

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "../axis/incidence.h"
-#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/geometry/text_lines.h"
+#include "orchard/medial/structure.h"
 
 namespace orchard {
 namespace {
@@ -32,25 +32,8 @@ FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh) {
   return flagged;
 }
 
-std::vector<Index> sheet_of_triangles(const MedialMesh& mesh) {
-  const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
-  DisjointSets sets(mesh.triangles.size());
-  for (Index e = 0; e < mesh.edges.size(); ++e) {
-    const auto row = at.triangles_at[e];
-    if (row.size() == 2) sets.unite(row[0], row[1]);
-  }
-  std::vector<Index> number(mesh.triangles.size(), kNone), sheet(mesh.triangles.size());
-  Index count = 0;
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    Index& own = number[sets.root(t)];
-    if (own == kNone) own = count++;
-    sheet[t] = own;
-  }
-  return sheet;
-}
-
 std::string to_ply(const MedialMesh& mesh) {
-  const std::vector<Index> sheet = sheet_of_triangles(mesh);
+  const std::vector<Index> sheet = medial_structure(mesh).of_face;
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.centers.size()) +
                      "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n"
                      "element face " +
@@ -75,7 +58,8 @@ std::string to_ply(const MedialMesh& mesh) {
 }
 
 std::string to_obj(const MedialMesh& mesh) {
-  const std::vector<Index> sheet = sheet_of_triangles(mesh);
+  const MedialStructure structure = medial_structure(mesh);
+  const std::vector<Index>& sheet = structure.of_face;
   std::string text;
   for (const Point& center : mesh.centers) {
     text += 'v';
@@ -92,10 +76,9 @@ std::string to_obj(const MedialMesh& mesh) {
     group += '\n';
   }
   for (Index i = 0; i < sheets; ++i) text += "g sheet" + std::to_string(i) + '\n' + groups[i];
-  const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
   std::string wires;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
-    if (!at.triangles_at[e].empty()) continue;
+    if (!structure.on_curve(e)) continue;
     wires += 'l';
     for (const Index corner : mesh.edges[e]) append_number(wires, corner + 1);
     wires += '\n';

@@ -279,7 +279,7 @@ bool Tightener::take_cover_within(Index level, const PartialTree& usual, const L
 
 void Tightener::take_tightest(std::vector<Candidate>& all) {
   Candidate& best = tightest(all);
-  if (&best == &all.back() && best.is_octree) octree_levels_ = static_cast<Index>(best.partial.size() - 1);
+  if (best.is_octree) octree_levels_ = static_cast<Index>(best.partial.size() - 1);
   TightenReport::Level& report = report_.levels.emplace_back(best.report);
   report.seconds_search = report.seconds_closing = 0;
   for (const Candidate& candidate : all) {

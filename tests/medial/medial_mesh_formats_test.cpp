@@ -1,4 +1,5 @@
 #include "orchard/medial/medial_mesh_formats.h"
+#include "orchard/medial/structure.h"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ TEST_F(MedialMeshFormats, FlagSeamsWiresAndSharpEdgesAndReadBackTheSame) {
 }
 
 TEST_F(MedialMeshFormats, CountSheetsUpToSeams) {
-  const std::vector<Index> sheet = sheet_of_triangles(seam());
+  const std::vector<Index> sheet = medial_structure(seam()).of_face;
   EXPECT_EQ(sheet, (std::vector<Index>{0, 1, 2, 0}));
 }
 
@@ -81,7 +82,7 @@ TEST_F(MedialMeshFormats, ArePlyThatReadersTakeWithRadiiAndEdges) {
     EXPECT_EQ(Point(x, y, z), mesh.centers[v]);
     EXPECT_EQ(radius, mesh.radii[v]);
   }
-  const std::vector<Index> sheet = sheet_of_triangles(mesh);
+  const std::vector<Index> sheet = medial_structure(mesh).of_face;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     Index count = 0, own = 0;
     std::array<Index, 3> corners{};

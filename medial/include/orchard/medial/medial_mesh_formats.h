@@ -10,11 +10,7 @@ namespace orchard {
 // (2), on a sharp edge of the surface; one where sheets meet, with other than one or two triangles, internal (1).
 FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh);
 
-// For each triangle, the number of its sheet: triangles are of one sheet that meet at an edge without a third. Sheets
-// are numbered by their first triangles. O(n log n).
-std::vector<Index> sheet_of_triangles(const MedialMesh& mesh);
-
-// PLY as text: vertices with x, y, z and radius, the edges (vertex1, vertex2), and the triangles with their sheet.
+// PLY as text: vertices with x, y, z and radius, the edges (vertex1, vertex2), and the triangles with their sheet (medial_structure()).
 // Numbers are the shortest that read back the same.
 std::string to_ply(const MedialMesh& mesh);
 

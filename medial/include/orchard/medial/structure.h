@@ -30,6 +30,7 @@ struct MedialStructure {
   std::vector<Index> of_vertex;  // a junction, or the line, or else the sheet, that the vertex is inside of
 
   std::size_t count(StructureKind kind) const;
+  bool on_curve(Index edge) const;  // whether an edge has no face
 };
 
 // Of a whole axis: its walls are faces that follow the others; edges are in the order of (vertex, larger neighbour).

@@ -28,7 +28,7 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
 void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii,
                      const ViewArrays& more = {});
 
-// A medial mesh of any system: triangles, and lines for the other edges. Point arrays: radius, structure and
+// A complete medial mesh of any system: triangles, and lines for the other edges. Point arrays: radius, structure and
 // structure_kind, as above, and what `of_vertices` has. Cell arrays: structure, structure_kind.
 void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {});
 
