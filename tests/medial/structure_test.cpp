@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "orchard/medial/build.h"
 #include "orchard/medial/medial_mesh.h"
+#include "support/shapes.h"
 
 namespace orchard {
 namespace {
@@ -70,6 +72,20 @@ TEST(MedialStructure, AClosedRingOfTrianglesIsOneSheetWithoutJunctions) {
   ASSERT_EQ(structure.parts.size(), 1u);
   EXPECT_EQ(structure.parts[0].cells, 8u);
   EXPECT_EQ(structure.parts[0].vertices.size(), 6u);
+}
+
+TEST(MedialStructure, OfARefinedAxisIsThatOfItsMeshNumberForNumber) {
+  MedialBuildOptions options;
+  options.sampling.face_points = 120;
+  options.sampling.edge_points = 30;
+  options.refine.emplace();
+  const MedialAxis axis = build_medial_axis(Surface(test::l_shape()), options).axis;
+  const MedialStructure own = medial_structure(axis), of_mesh = medial_structure(medial_mesh(axis));
+  EXPECT_GT(own.count(StructureKind::seam), 0u);
+  EXPECT_EQ(own.of_face, of_mesh.of_face);
+  EXPECT_EQ(own.of_edge, of_mesh.of_edge);
+  EXPECT_EQ(own.of_vertex, of_mesh.of_vertex);
+  EXPECT_EQ(to_structure_section(own), to_structure_section(of_mesh));
 }
 
 TEST(MedialStructure, ASectionListsNumberKindAndVerticesOfEachPart) {
