@@ -10,8 +10,8 @@ namespace orchard {
 // (2), on a sharp edge of the surface; one where sheets meet, with other than one or two triangles, internal (1).
 FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh);
 
-// PLY as text: vertices with x, y, z and radius, the edges (vertex1, vertex2), and the triangles with their sheet (medial_structure()).
-// Numbers are the shortest that read back the same.
+// PLY as text: vertices with x, y, z and radius, the edges (vertex1, vertex2), and the triangles with their sheet
+// (medial_structure()). Numbers are the shortest that read back the same.
 std::string to_ply(const MedialMesh& mesh);
 
 // Wavefront OBJ: a group for each sheet's triangles, and one, `wires`, of lines for the edges without triangles. Radii
