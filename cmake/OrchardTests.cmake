@@ -14,7 +14,7 @@ function(orchard_add_tests name)
   # Most of a test's time is its compiler's, and GCC 12's optimiser sees bounds broken within std::string's own code.
   set(options -O1 -Wno-array-bounds)
   target_compile_options(${target} PRIVATE ${options})
-  if(name MATCHES "^(runtime|broad_phase|detector|threads)$")
+  if(name MATCHES "^(runtime|broad_phase|broad_phase_methods|detector|threads)$")
     orchard_precompile_once(${target} runtime_tests OPTIONS ${options} LINK GTest::gtest
       HEADERS <gtest/gtest.h> ${ORCHARD_STANDARD_HEADERS})
   else()

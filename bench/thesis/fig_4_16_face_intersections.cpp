@@ -15,7 +15,7 @@
 #include <fstream>
 #include <string>
 
-#include "orchard/broad_phase_methods/space_time_bound.h"
+#include "broad_phase_methods/space_time_bound.h"
 #include "svg_plot.h"
 #include "worlds.h"
 

@@ -16,8 +16,8 @@
 #include <functional>
 #include <string>
 
+#include "broad_phase_methods/sleeping_broad_phase.h"
 #include "cubes.h"
-#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
 #include "svg_plot.h"
 
 namespace {

@@ -11,9 +11,9 @@
 #include <fstream>
 #include <string>
 
+#include "broad_phase_methods/sleeping_broad_phase.h"
+#include "broad_phase_methods/space_time_bound.h"
 #include "cubes.h"
-#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
-#include "orchard/broad_phase_methods/space_time_bound.h"
 #include "svg_plot.h"
 #include "worlds.h"
 

@@ -63,9 +63,9 @@ class Method {
 
 std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options);
 
-// The seam for a library that finds what happens next in another way (declared in broad_phase.h, for the friendship):
+// The seam for code that finds what happens next in another way (declared in broad_phase.h, for the friendship):
 //   BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
-// `make` is called once, before it returns, with options that are valid; the body pool stays where it is. As this
-// header is not installed, such a library is built together with this one.
+// `make` is called once, before it returns, with options that are valid; the body pool stays where it is. This
+// header is not installed: such code is built together with the run-time, as bench/thesis/broad_phase_methods is.
 
 }  // namespace orchard::runtime::detail

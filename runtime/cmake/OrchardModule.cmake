@@ -126,9 +126,9 @@ function(orchard_add_module name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
   # As C++20 whatever the project around it asks for: see packed_tree.h.
   set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
-  if(name MATCHES "^(runtime|broad_phase_methods)$")  # file by file, so that a game links no more than it uses
+  if(name STREQUAL "runtime")  # file by file, so that a game links no more than it uses
     orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
-    if((ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS) AND name STREQUAL "runtime")  # where nobody links it but its tests
+    if(ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS)  # where nobody links it but its tests
       orchard_unite(${target} APART ${ARG_APART})
     endif()
   else()
@@ -206,10 +206,10 @@ function(orchard_install_package)
     orchard_development_component(development ${component})
     install(EXPORT orchard-${component} NAMESPACE orchard:: DESTINATION ${directory} COMPONENT ${development})
   endforeach()
-  # Beside those of the run-time and its methods, which install runtime/LICENSE themselves.
+  # Beside that of the run-time, which installs runtime/LICENSE itself.
   if(ORCHARD_CONSTRUCTION)
     list(APPEND components apps)
-    list(REMOVE_ITEM components runtime broad_phase_methods)
+    list(REMOVE_ITEM components runtime)
     foreach(component IN LISTS components)
       install(FILES ${PROJECT_SOURCE_DIR}/LICENSES/GPL-3.0-or-later.txt
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/${component} COMPONENT ${component})

@@ -1,7 +1,7 @@
 #pragma once
 #include <utility>
 
-#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
+#include "broad_phase_methods/sleeping_broad_phase.h"
 
 // A broad phase that finds what happens next in any of the ways there are, so that all go through the same tests.
 namespace orchard::runtime::test {

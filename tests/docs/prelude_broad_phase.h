@@ -1,5 +1,5 @@
 // What the page about the broad phase leaves to its reader.
-#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
+#include "broad_phase_methods/sleeping_broad_phase.h"
 #include "orchard/runtime/broad_phase.h"
 
 using namespace orchard::runtime;

@@ -1,7 +1,7 @@
 #pragma once
 #include "broad/method.h"
-#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
-#include "orchard/broad_phase_methods/space_time_bound.h"
+#include "sleeping_broad_phase.h"
+#include "space_time_bound.h"
 
 namespace orchard::broad_phase_methods::detail {
 

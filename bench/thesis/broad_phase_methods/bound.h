@@ -1,5 +1,5 @@
 #pragma once
-#include "orchard/broad_phase_methods/space_time_bound.h"
+#include "space_time_bound.h"
 
 namespace orchard::broad_phase_methods::detail {
 

@@ -1,4 +1,4 @@
-#include "orchard/broad_phase_methods/space_time_bound.h"
+#include "space_time_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "oracles.h"
+#include "linear_program.h"
 #include "worlds.h"
 
 namespace orchard::broad_phase_methods {
@@ -54,7 +54,7 @@ TEST(FirstContact, OfHypertrapezoidsWithPlanesIsTheLinearProgramsLeastTime) {
     test::Draw draw(seed);
     const SpaceTimeBound a = make_bound(random_motion(draw, 6, 0.7), 0, 1),
                          b = make_bound(random_motion(draw, 6, 0.7), 0, 1);
-    const double found = first_contact(a, b, 1, BoundShape::hypertrapezoid), expected = test::min_time(a, b, 1);
+    const double found = first_contact(a, b, 1, BoundShape::hypertrapezoid), expected = min_time(a, b, 1);
     if (expected == kNoContact || found == kNoContact) {
       ASSERT_EQ(found, expected) << seed;
       continue;
