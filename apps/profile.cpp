@@ -42,7 +42,7 @@ struct PoseProfile {
   bool separated = false;
 };
 
-PoseProfile profile_pose(runtime::NarrowPhase& pair, const runtime::PosePair& pose) {
+PoseProfile profile_pose(runtime::NarrowPhase& pair, const PosePair& pose) {
   using Clock = std::chrono::steady_clock;
   PoseProfile best;
   for (int pass = 0; pass <= kPasses; ++pass) {  // the first one warms up
@@ -235,8 +235,7 @@ std::string chart(const json& report, const std::string& title) {
 }
 
 // Every pose with what each level said, for other programs: a row a level.
-std::string table(const std::vector<runtime::PosePair>& poses, const std::vector<PoseProfile>& profiles,
-                  double radius) {
+std::string table(const std::vector<PosePair>& poses, const std::vector<PoseProfile>& profiles, double radius) {
   std::ostringstream out;
   out.precision(17);
   out << "pose,level,answer,bound_over_radius,sphere_tests,microseconds,rotation_a,translation_a,rotation_b,"
@@ -283,7 +282,7 @@ void profile(const ProfileCommand& command) {
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const Progress progress = bar.callback();
   report_progress(progress, "flights", 0);
-  const std::vector<runtime::PosePair> poses = flight_poses(a, b, command.flights, command.seed);
+  const std::vector<PosePair> poses = flight_poses(a, b, command.flights, command.seed);
   if (poses.empty()) throw InputError("no flight came to a pose; ask for more with --flights");
   constexpr std::size_t room = 1u << 20;
   runtime::NarrowPhase pair(a, b, room);

@@ -10,7 +10,6 @@ namespace orchard::apps {
 namespace {
 
 using runtime::Pose;
-using runtime::PosePair;
 using runtime::Vec3;
 
 constexpr std::uint64_t kStage = 700;  // of the random numbers

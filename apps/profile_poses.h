@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "orchard/runtime/collide.h"
 #include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/pose.h"
 #include "orchard/runtime/vec3.h"
 
 namespace orchard::apps {
@@ -15,12 +15,16 @@ struct RootBall {
 };
 RootBall root_ball(const runtime::TreeView& tree);
 
+struct PosePair {
+  runtime::Pose a, b;
+};
+
 // Poses as a narrow phase is asked about (dissertation 7.2: not random ones, but of bodies that draw near or just
 // meet): each flight turns both bodies at random and takes the second one along a random line whose distance from the
 // first one's centre is that of a point spread evenly over the disk in which the bounding spheres can meet. One pose a
 // sixteenth of the radii's sum, as long as these overlap, until the first that touches, which is kept. The same for a
 // seed on every machine. Flights that end before their first pose leave none.
-std::vector<runtime::PosePair> flight_poses(const runtime::TreeView& a, const runtime::TreeView& b, unsigned flights,
-                                            std::uint64_t seed);
+std::vector<PosePair> flight_poses(const runtime::TreeView& a, const runtime::TreeView& b, unsigned flights,
+                                   std::uint64_t seed);
 
 }  // namespace orchard::apps

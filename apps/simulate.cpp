@@ -30,13 +30,13 @@ using simulation::Simulation;
 constexpr std::size_t kControlFrames = 20;  // for which the steered ship's controls stay
 
 // "20000": so much counted work a frame; "2ms", "500us": so much time.
-runtime::FrameBudget parse_budget(const std::string& text) {
+runtime::Budget parse_budget(const std::string& text) {
   if (text.empty()) return {};
   std::uint64_t number = 0;
   const char* const end = text.data() + text.size();
   const auto [at, error] = std::from_chars(text.data(), end, number);
   const std::string unit(at, end);
-  runtime::FrameBudget budget;
+  runtime::Budget budget;
   if (error != std::errc() || number == 0 || number > 1'000'000'000'000 ||
       (!unit.empty() && unit != "ms" && unit != "us"))
     throw InputError("--budget " + text +
@@ -142,7 +142,7 @@ class Run {
   Run(const SimulateCommand& command, Simulation& simulation, Outputs* outputs)
       : command_(command), simulation_(simulation), outputs_(outputs), draw_(command.seed ^ 0x5eed5u) {}
 
-  void frame(const runtime::FrameBudget& budget) {
+  void frame(const runtime::Budget& budget) {
     if (frames_.size() % kControlFrames == 0)
       steering_ = {draw_.uniform(0, 1), draw_.uniform(-1, 1), draw_.uniform(-1, 1)};
     frames_.push_back(simulation_.frame(budget, steering_));
@@ -196,7 +196,7 @@ void simulate(const SimulateCommand& asked) {
           fmt::format("--frames {}: {} has {}", *command.frames, command.replay.string(), replay->steering.size()));
   }
   const std::size_t frames = command.frames.value_or(100);
-  const runtime::FrameBudget budget = parse_budget(command.budget);
+  const runtime::Budget budget = parse_budget(command.budget);
   std::vector<std::filesystem::path> inputs;
   for (const auto* file : {&command.tree, &command.replay})
     if (!file->empty()) inputs.push_back(*file);

@@ -9,7 +9,9 @@
 // made at the first call: no resolver runs before main(), where neither sanitizers nor other libraries are ready.
 namespace orchard::runtime::detail {
 
-enum class Machine : std::uint8_t { unknown, base, avx2, avx512 };  // each has what those before it have
+// Each has what those before it have. `portable` is the base of the architecture, where the broad phase takes the loops
+// of one number at a time that other compilers get: tests choose it to compare these loops with the others.
+enum class Machine : std::uint8_t { unknown, portable, base, avx2, avx512 };
 
 inline std::atomic<Machine> chosen_machine{Machine::unknown};
 
@@ -30,8 +32,8 @@ inline Machine machine() noexcept {
 // Not where the whole build is for such a machine anyway.
 #if defined(ORCHARD_VECTORS) && defined(__x86_64__) && !defined(__AVX2__)
 #define ORCHARD_MACHINES 1
-#define ORCHARD_AVX2 __attribute__((target("avx2"), noinline))
-#define ORCHARD_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq"), noinline))
+#define ORCHARD_FOR_AVX2 __attribute__((target("avx2"), noinline))
+#define ORCHARD_FOR_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq"), noinline))
 #endif
 
 // Where AVX-512 has GCC's names, for what it does not find by itself.
@@ -54,8 +56,8 @@ struct PerMachine<kernel, base> {
     if (chosen == Machine::avx512) return avx512(arguments...);
     return chosen == Machine::avx2 ? avx2(arguments...) : base(arguments...);
   }
-  ORCHARD_AVX2 static Result avx2(Arguments... arguments) noexcept { return kernel(arguments...); }
-  ORCHARD_AVX512 static Result avx512(Arguments... arguments) noexcept { return kernel(arguments...); }
+  ORCHARD_FOR_AVX2 static Result avx2(Arguments... arguments) noexcept { return kernel(arguments...); }
+  ORCHARD_FOR_AVX512 static Result avx512(Arguments... arguments) noexcept { return kernel(arguments...); }
 #elif defined(ORCHARD_VECTORS) && !defined(__AVX2__)
   static Result call(Arguments... arguments) noexcept { return base(arguments...); }
 #else
@@ -66,11 +68,11 @@ struct PerMachine<kernel, base> {
 // The same for work that needs a class's own names: per_machine([&]() ORCHARD_INLINE_LAMBDA { .. }).
 #ifdef ORCHARD_MACHINES
 template <typename Work>
-ORCHARD_AVX2 void work_with_avx2(const Work& work) {
+ORCHARD_FOR_AVX2 void work_with_avx2(const Work& work) {
   work();
 }
 template <typename Work>
-ORCHARD_AVX512 void work_with_avx512(const Work& work) {
+ORCHARD_FOR_AVX512 void work_with_avx512(const Work& work) {
   work();
 }
 template <typename Work>

@@ -75,7 +75,7 @@ std::array<double, 3> vector_of(const double* v) noexcept { return {v[0], v[1], 
 
 rt::Budget budget_of(const orchard_budget& from) noexcept {
   rt::Budget budget;
-  budget.pair_tests = from.tests;
+  budget.work = from.tests;
   budget.time = rt::detail::time_of(from.nanoseconds);
   return budget;
 }

@@ -5,11 +5,6 @@
 
 namespace orchard::simulation {
 
-bool unlimited(const runtime::FrameBudget& budget) {
-  return budget.work == runtime::FrameBudget{}.work && budget.time == runtime::FrameBudget{}.time &&
-         budget.replay == nullptr;
-}
-
 Shape shape_of(const runtime::TreeView& tree) {
   const runtime::SiblingBlock& root = tree.blocks[0];
   // What a rotation in double may add.
@@ -83,9 +78,9 @@ void Detection::cancel(std::uint32_t body) { detector_.cancel(ids_[body]); }
 
 void Detection::teleport(std::uint32_t body) { detector_.teleport(ids_[body]); }
 
-StepOutcome Detection::step(double time, const runtime::FrameBudget& budget) {
+StepOutcome Detection::step(double time, const runtime::Budget& budget, const runtime::StepCut* replay) {
   const auto begin = std::chrono::steady_clock::now();
-  const runtime::Frame frame = detector_.step(time, budget);
+  const runtime::Frame frame = detector_.step(time, budget, {.replay = replay});
   StepOutcome outcome;
   outcome.overlapping = frame.pairs;
   outcome.work = frame.work;

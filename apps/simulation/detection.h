@@ -17,8 +17,6 @@ struct Shape {
 Shape shape_of(const runtime::TreeView& tree);
 Pose pose_of(const Body& body, const Shape& shape);
 
-bool unlimited(const runtime::FrameBudget& budget);  // neither in work nor in time
-
 // What is known of a pair of bodies when a step's budget is used up.
 struct PairOutcome {
   std::uint32_t a = 0, b = 0;  // a < b
@@ -28,7 +26,7 @@ struct PairOutcome {
 struct StepOutcome {
   std::vector<PairOutcome> pairs;  // that touch or may touch, ascending
   std::uint64_t overlapping = 0;   // pairs whose bounding spheres overlap
-  std::uint64_t work = 0;          // in the units of runtime::FrameBudget
+  std::uint64_t work = 0;          // in the units of runtime::Budget
   std::uint64_t motions = 0;       // that the broad phase asked for
   std::uint64_t left_over = 0;     // bodies and pairs that its budget did not get to: pairs of them may be missing
   runtime::StepCut cut;            // where a budget in time ended
@@ -47,7 +45,8 @@ class Detection {
   void cancel(std::uint32_t body);    // what was promised for it holds no longer
   void teleport(std::uint32_t body);  // it is elsewhere: nor does what was known of its pairs
 
-  StepOutcome step(double time, const runtime::FrameBudget& budget);
+  // `replay`, unless null, says where the step ends, in place of the budget's time.
+  StepOutcome step(double time, const runtime::Budget& budget, const runtime::StepCut* replay = nullptr);
 
   // The promise that the broad phase has of a body, and since when; for looking at.
   struct Promise {

@@ -71,9 +71,9 @@ void count(const StepOutcome& step, const World& world, FrameRecord& record) {
 
 constexpr const char* kLimitNames[] = {"none", "work", "time"};  // by Limits
 
-Limits limits_of(const runtime::FrameBudget& budget) {
-  if (unlimited(budget)) return Limits::none;
-  return budget.time == runtime::FrameBudget{}.time ? Limits::work : Limits::time;
+Limits limits_of(const runtime::Budget& budget) {
+  if (!budget.limited()) return Limits::none;
+  return budget.time == runtime::Budget{}.time ? Limits::work : Limits::time;
 }
 
 // "4000:-:3:120:-": the work granted, and how far the step's parts got; -: no limit.
@@ -129,22 +129,20 @@ Simulation::Simulation(const std::string& scene, const std::vector<Shape>& shape
 }
 
 // A frame's time is shared evenly; work, too, with what does not divide for the first steps.
-runtime::FrameBudget Simulation::budget_of_step(const runtime::FrameBudget& frame) const {
-  runtime::FrameBudget step = frame;
+runtime::Budget Simulation::budget_of_step(const runtime::Budget& frame) const {
+  runtime::Budget step = frame;
   if (replay_ != nullptr) {
-    const StepLimit& limit = replay_->steps.at(steps_done_);
     step = {};
-    step.work = limit.work;
-    if (replay_->limits == Limits::time) step.replay = &limit.cut;
+    step.work = replay_->steps.at(steps_done_).work;
     return step;
   }
   const auto steps = static_cast<std::uint64_t>(steps_);
-  if (frame.work != runtime::FrameBudget{}.work) step.work = (frame.work + steps - 1) / steps;
+  if (frame.work != runtime::Budget{}.work) step.work = (frame.work + steps - 1) / steps;
   if (frame.time != std::chrono::nanoseconds::max()) step.time = frame.time / steps_;
   return step;
 }
 
-FrameRecord Simulation::frame(const runtime::FrameBudget& budget, const Steering& steering) {
+FrameRecord Simulation::frame(const runtime::Budget& budget, const Steering& steering) {
   FrameRecord record;
   record.frame = frames_;
   world_->steering = replay_ != nullptr ? replay_->steering.at(frames_) : steering;
@@ -156,8 +154,9 @@ FrameRecord Simulation::frame(const runtime::FrameBudget& budget, const Steering
     world_->time = static_cast<double>(steps_done_) * world_->scene.step;
     world_->scene.before(*world_, world_->time);
     record.seconds_other += seconds_since(begin);
-    const runtime::FrameBudget allowed = budget_of_step(budget);
-    last_ = world_->detection.step(world_->time, allowed);
+    const runtime::Budget allowed = budget_of_step(budget);
+    const bool cut_again = replay_ != nullptr && replay_->limits == Limits::time;
+    last_ = world_->detection.step(world_->time, allowed, cut_again ? &replay_->steps[steps_done_].cut : nullptr);
     begin = std::chrono::steady_clock::now();
     count(last_, *world_, record);
     recording_.steps.push_back({allowed.work, last_.cut});

@@ -26,7 +26,7 @@ struct FrameRecord {
 
 // What ended a step: its budget in work, and where one in time cut it short.
 struct StepLimit {
-  std::uint64_t work = runtime::FrameBudget{}.work;
+  std::uint64_t work = runtime::Budget{}.work;
   runtime::StepCut cut;
 };
 
@@ -54,7 +54,7 @@ class Simulation {
              const Recording* replay = nullptr);
 
   // One frame: as many steps as it has, each within its share of the budget.
-  FrameRecord frame(const runtime::FrameBudget& budget, const Steering& steering = {});
+  FrameRecord frame(const runtime::Budget& budget, const Steering& steering = {});
 
   const World& world() const { return *world_; }
   World& world() { return *world_; }
@@ -63,7 +63,7 @@ class Simulation {
   int steps_per_frame() const { return steps_; }
 
  private:
-  runtime::FrameBudget budget_of_step(const runtime::FrameBudget& frame) const;
+  runtime::Budget budget_of_step(const runtime::Budget& frame) const;
 
   std::unique_ptr<World> world_;
   const Recording* replay_;

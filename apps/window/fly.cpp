@@ -124,7 +124,7 @@ void fly(const Request& request, const runtime::PackedSphereTree& tree) {
   keys->SetClientData(&controls);
   interactor->AddObserver(vtkCommand::KeyPressEvent, keys);
   interactor->Initialize();
-  runtime::FrameBudget budget;
+  runtime::Budget budget;
   if (request.budget > 0) budget.work = request.budget;
   const auto period = std::chrono::duration<double>(simulation.world().scene.frame);
   FrameRecord frame;

@@ -86,7 +86,7 @@ class OrchardFrames {
   double processor = 0;  // of the last step, in ms
 
   // Frames beyond the recording play it back, then forth again.
-  runtime::Frame step(int frame_number, const runtime::FrameBudget& budget, Clock::duration& time) {
+  runtime::Frame step(int frame_number, const runtime::Budget& budget, Clock::duration& time) {
     const int period = 2 * (scene_.steps - 1), phase = frame_number % period;
     const bool back = phase >= scene_.steps - 1 && frame_number >= scene_.steps;
     const int step = phase < scene_.steps ? phase : period - phase;

@@ -165,8 +165,7 @@ struct Degraded {
   std::size_t pairs = 0, open = 0, left_over = 0;
 };
 
-Degraded within(const FrameBudget& budget, const char* scene, std::size_t bodies, int frames,
-                const PackedSphereTree& tree) {
+Degraded within(const Budget& budget, const char* scene, std::size_t bodies, int frames, const PackedSphereTree& tree) {
   Simulation simulation(scene, {shape_of(tree)}, bodies, 1);
   Draw draw(1001);
   Steering steering;

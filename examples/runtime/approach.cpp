@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     query.start(still, *turned);
     for (std::uint64_t left = 50'000; left > 0 && !query.finished();) {
       const std::uint64_t before = query.pair_tests();
-      query.refine({.pair_tests = left});  // to the next level, or until the budget is spent
+      query.refine({.work = left});  // to the next level, or until the budget is spent
       const std::uint64_t spent = query.pair_tests() - before;
       left -= spent < left ? spent : left;
     }

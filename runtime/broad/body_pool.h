@@ -65,11 +65,10 @@ struct Clock {
 class BudgetTracker {
  public:
   BudgetTracker() = default;
-  explicit BudgetTracker(const WorkBudget& budget) : budget_(budget), begin_(std::chrono::steady_clock::now()) {}
+  explicit BudgetTracker(const Budget& budget, std::uint64_t replay)
+      : budget_(budget), replay_(replay), begin_(std::chrono::steady_clock::now()) {}
 
-  bool limited() const noexcept {
-    return budget_.work != WorkBudget{}.work || budget_.time != WorkBudget{}.time || budget_.replay != 0;
-  }
+  bool limited() const noexcept { return budget_.limited() || replay_ != 0; }
   std::uint64_t done() const noexcept { return done_; }
   void count(std::uint64_t work) noexcept {
     done_ += work;
@@ -79,8 +78,8 @@ class BudgetTracker {
   bool spent() noexcept {
     if (done_ == 0) return false;
     if (done_ >= budget_.work) return true;
-    if (budget_.replay != 0) return done_ >= budget_.replay;
-    if (since_clock_ < kWorkPerClock || budget_.time == WorkBudget{}.time) return late_;
+    if (replay_ != 0) return done_ >= replay_;
+    if (since_clock_ < kWorkPerClock || budget_.time == Budget{}.time) return late_;
     since_clock_ = 0;
     late_ = late_ || std::chrono::steady_clock::now() - begin_ >= budget_.time;
     return late_;
@@ -94,7 +93,8 @@ class BudgetTracker {
   }
 
  private:
-  WorkBudget budget_;
+  Budget budget_;
+  std::uint64_t replay_ = 0;
   std::chrono::steady_clock::time_point begin_{};
   std::uint64_t done_ = 0, since_clock_ = kWorkPerClock;
   bool late_ = false;

@@ -74,7 +74,7 @@ void BoxIndex::take_away(BodyIndex body) noexcept {
   if (places_[body] == Place::inside && !few_) {
     SweptGrid::Removals removals;
     grid_.prepare_removal(body, boxes_[body].whole(), removals);
-    grid_.remove(removals, vectors_);
+    grid_.remove(removals);
   }
   if (places_[body] == Place::oversized) forget_oversized(oversized_, body);
   places_[body] = Place::nowhere;
@@ -102,7 +102,7 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   load(0);
   for (std::size_t begin = 0; begin < bodies.size(); begin += kAtOnce) {
     load(begin + kAtOnce);
-    grid_.remove(removals[begin / kAtOnce % 2], vectors_);
+    grid_.remove(removals[begin / kAtOnce % 2]);
   }
 }
 
@@ -148,8 +148,8 @@ void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& b
 }
 
 void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {
-  if (few_) return list_.insert(bodies, boxes, vectors_, pairs);
-  if (!any_oversized_) return grid_.insert(queue, bodies, boxes, boxes_, vectors_, pairs);
+  if (few_) return list_.insert(bodies, boxes, pairs);
+  if (!any_oversized_) return grid_.insert(queue, bodies, boxes, boxes_, pairs);
   const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
   std::array<BodyIndex, kBlock> in_grid;
   std::size_t count = 0;
@@ -158,12 +158,12 @@ void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock&
     boxes.set(count, boxes_[body].whole());
     in_grid[count++] = body;
   }
-  grid_.insert(queue, std::span(in_grid).first(count), boxes, boxes_, vectors_, pairs);
+  grid_.insert(queue, std::span(in_grid).first(count), boxes, boxes_, pairs);
   meet_oversized(bodies, pairs);
 }
 
 void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) {
-  if (!few_) grid_.finish(queue, boxes_, vectors_, pairs);
+  if (!few_) grid_.finish(queue, boxes_, pairs);
 }
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.

@@ -9,7 +9,6 @@ namespace orchard::runtime::detail {
 // list of few bodies, or the grid of many.
 class BoxIndex {
  public:
-  explicit BoxIndex(bool vectors) : vectors_(vectors) {}
   // Boxes on their way into the grid: finish() before anything else happens to it.
   using Queue = SweptGrid::Queue;
 
@@ -50,13 +49,13 @@ class BoxIndex {
   // takes note of boxes that fit, and has `extent` include them;
   void note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept;
   void scatter(std::span<const BodyIndex> bodies, const BoxBlock& boxes, SweptGrid::VisitsByPart& visits) const {
-    grid_.scatter(bodies, boxes, boxes_, vectors_, visits);
+    grid_.scatter(bodies, boxes, boxes_, visits);
   }
   bool in_order() const noexcept { return in_order_; }
   void empty_part(std::size_t part) noexcept { grid_.empty_part(part); }
   void all_parts_emptied() noexcept { in_order_ = true; }
   void insert_part(std::span<const SweptGrid::Visit> visits, std::vector<BodyPair>& pairs, GridCounts& counts) {
-    grid_.insert_part(visits, boxes_, vectors_, pairs, counts);
+    grid_.insert_part(visits, boxes_, pairs, counts);
   }
   // and at the end of all jobs.
   void include(const QuantumBox& extent) noexcept { extent_.include(extent); }
@@ -87,7 +86,6 @@ class BoxIndex {
                   PortionVisitor& visitor) const;
   std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
 
-  const bool vectors_;
   std::vector<Place> places_;     // by body
   UnsetVector<NarrowBox> boxes_;  // of those in the grid
   struct Oversized {

@@ -344,14 +344,16 @@ ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span
   return valid.all();
 }
 
-bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
-                            bool extent) const noexcept {
+bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                    bool extent) const noexcept {
+  const Machine chosen = machine();
+  if (chosen == Machine::portable) return make_all<PlainMotions>(motions, durations, boxes, extent);
   bool good = false;
   const auto make = [&]<typename Kind>()
                         ORCHARD_INLINE_LAMBDA { good = make_all<Kind>(motions, durations, boxes, extent); };
 #if defined(ORCHARD_VECTORS) && defined(ORCHARD_MACHINES)
 #ifdef ORCHARD_AVX512_NAMES
-  if (machine() == Machine::avx512) {
+  if (chosen == Machine::avx512) {
     work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { make.template operator()<EightMotions>(); });
     return good;
   }
@@ -365,12 +367,6 @@ bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const dou
   make.template operator()<PlainMotions>();
 #endif
   return good;
-}
-
-bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes, bool extent,
-                    bool vectors) const noexcept {
-  return vectors ? boxes_vectors(motions, durations, boxes, extent)
-                 : make_all<PlainMotions>(motions, durations, boxes, extent);
 }
 
 }  // namespace orchard::runtime::detail

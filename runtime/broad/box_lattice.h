@@ -85,8 +85,8 @@ class Lattice {
   // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a
   // motion may not be valid, which costs next to nothing to tell here; its expiry is not looked at.
   // extent: what is told of all boxes together is wanted.
-  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes, bool extent,
-             bool vectors) const noexcept;
+  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+             bool extent) const noexcept;
 
  private:
   template <typename Kind>
@@ -97,8 +97,6 @@ class Lattice {
   template <typename Kind>
   bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
                 bool extent) const noexcept;
-  bool boxes_vectors(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
-                     bool extent) const noexcept;
 
   Vec3 first_{}, origin_{};  // where it was made, and where it is
   Vec3 velocity_{};

@@ -249,13 +249,11 @@ void BoxList::put(std::span<const BodyIndex> bodies, const Group& coarse) noexce
   }
 }
 
-void BoxList::insert_plain(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
-  insert_all<PlainLanes>(bodies, block, pairs);
-}
-
-void BoxList::insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+void BoxList::insert(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+  const Machine chosen = machine();
+  if (chosen == Machine::portable) return insert_all<PlainLanes>(bodies, block, pairs);
 #if defined(ORCHARD_MACHINES)
-  switch (machine()) {
+  switch (chosen) {
     case Machine::avx512:
       return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { insert_all<VectorLanes>(bodies, block, pairs); });
     case Machine::avx2:
@@ -270,11 +268,6 @@ void BoxList::insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& 
 #else
   insert_all<PlainLanes>(bodies, block, pairs);
 #endif
-}
-
-void BoxList::insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors,
-                     std::vector<BodyPair>& pairs) {
-  vectors ? insert_vectors(bodies, block, pairs) : insert_plain(bodies, block, pairs);
 }
 
 }  // namespace orchard::runtime::detail

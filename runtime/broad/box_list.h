@@ -15,7 +15,7 @@ class BoxList {
   void grow(std::size_t slots);   // keeps what is in it
   void release() { give_back(boxes_), give_back(groups_); }
   // Adds bodies[i] with block's box i and appends the pairs whose boxes meet, of each of them and everything in before.
-  void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors, std::vector<BodyPair>& pairs);
+  void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
   void append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;  // those whose boxes meet it
   void remove(BodyIndex body) noexcept {
     boxes_[body] = kNowhere;
@@ -59,8 +59,6 @@ class BoxList {
   static void for_each_hit(const Words& words, const Use& use);
   template <typename Lanes>
   void insert_all(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
-  void insert_plain(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
-  void insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
 
   std::vector<QuantumBox> boxes_;         // by body
   std::vector<Group> groups_;             // the same

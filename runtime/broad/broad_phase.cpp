@@ -83,7 +83,7 @@ void BroadPhase::validate_up_to(Step step) {
 
 bool BroadPhase::may_change() const noexcept { return valid() && !state_->busy; }
 
-Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
+Advance BroadPhase::process(double t_now, const Budget* budget, std::uint64_t replay) {
   if (!(std::fabs(t_now) <= max_time_) || state_->busy) {
     Advance refused{next_time_, {}};
     refused.time_refused = true;
@@ -96,12 +96,12 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
   };
   detail::UndoUnlessDone fails(fail);
   const Busy busy(*state_);
-  const Advance report = process_steps(t_now, budget);
+  const Advance report = process_steps(t_now, budget, replay);
   fails.done();
   return report;
 }
 
-Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
+Advance BroadPhase::process_steps(double t_now, const Budget* budget, std::uint64_t replay) {
   State& state = *state_;
   state.woken = false;
   std::vector<BodyIndex>& bodies_refused = state.pool.refused();
@@ -117,7 +117,7 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   while (state.next != kNeverStep && t_now >= clock.earliest(state.next)) {
     const Step now = state.next;
     if (validating) validate_up_to(now);
-    detail::BudgetTracker tracker = budget ? detail::BudgetTracker(*budget) : detail::BudgetTracker();
+    detail::BudgetTracker tracker = budget ? detail::BudgetTracker(*budget, replay) : detail::BudgetTracker();
     const detail::StepReport report = state.method->step(now, tracker);
     state.next = report.next;
     work = tracker.done();

@@ -141,7 +141,6 @@ orchard_broad_phase_options orchard_default_broad_phase(void) {
   return {options.time_step,
           options.start,
           options.window,
-          as_int(options.vectors),
           options.position_slack,
           0,
           nullptr,
@@ -159,7 +158,7 @@ orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void*
         if (with == nullptr) with = &defaults;
         rt::BroadPhaseOptions options;
         options.time_step = with->time_step, options.start = with->start;
-        options.window = with->window, options.vectors = with->vectors != 0;
+        options.window = with->window;
         options.position_slack = with->position_slack;
         options.validate = with->validate != 0;
         options.broken = listener_of(with->broken, with->broken_context);
@@ -217,11 +216,9 @@ orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t
                                             const orchard_work_budget* budget) {
   orchard_advance result{};
   const auto advance = [&] {
-    rt::WorkBudget within;
-    if (budget != nullptr) {
-      within = {budget->work, rt::detail::time_of(budget->nanoseconds), budget->replay};
-    }
-    const rt::Advance now = world->world.advance(t_now, within);
+    const rt::Budget within =
+        budget == nullptr ? rt::Budget{} : rt::Budget{budget->work, rt::detail::time_of(budget->nanoseconds)};
+    const rt::Advance now = world->world.advance(t_now, within, budget == nullptr ? 0 : budget->replay);
     result.time = now.time;
     result.pairs = indices_of(now.pairs), result.pair_count = now.pairs.size();
     result.refused = now.refused.data(), result.refused_count = now.refused.size();

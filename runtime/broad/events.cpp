@@ -19,7 +19,6 @@ Events::Events(BodyPool& pool, const BroadPhaseOptions& options)
     : pool_(pool),
       options_(options),
       windows_(pool_, options_.window),
-      boxes_(options_.vectors),
       refusals_(pool_, windows_, boxes_, overlaps_, changes_),
       planner_(pool_, options_),
       pairs_(pool_, options_, windows_, wheel_, overlaps_, refusals_),
@@ -254,7 +253,7 @@ void Events::step_by_sorting(Step now) {
     planner_.note(motions);
     sorted_.add(block, motions);
   }
-  sorted_.find(options_.vectors);
+  sorted_.find();
   if (pool_.filters_pairs()) sorted_.drop_pairs([&](const BodyPair& pair) { return !pool_.may_pair(pair); });
   overlaps_.assign(sorted_.pairs(), pool_.slots());
   if (!sorted_.suits()) sorts_from_ = now + kNotSorted;

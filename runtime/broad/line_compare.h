@@ -114,8 +114,9 @@ struct WideCompare {
 // work.template operator()<Kind>() for the comparison that suits the machine.
 template <typename Work>
 void with_best_compare(const Work& work) {
-#if defined(ORCHARD_MACHINES)
   const Machine chosen = machine();
+  if (chosen == Machine::portable) return work.template operator()<PlainCompare>();
+#if defined(ORCHARD_MACHINES)
   if (chosen == Machine::avx512) {
     return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<WideCompare>(); });
   }

@@ -159,8 +159,8 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   };
   PairTimes times;
   find_horizons();
-  if (!options_.vectors || !find_pair_times_at_once(motions.first(2 * events.size()),
-                                                    std::span(limits).first(events.size()), resolution, slack, times)) {
+  if (!find_pair_times_at_once(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution,
+                               slack, times)) {
     events = events.first(refuse_invalid(events, motions, to));
     find_horizons();
     find_pair_times(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution, slack, times);

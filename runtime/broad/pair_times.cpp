@@ -186,12 +186,13 @@ ORCHARD_INLINE bool find_by_fours(std::span<const Motion> motions, std::span<con
 
 bool find_pair_times_at_once(std::span<const Motion> motions, std::span<const double> limits, double resolution,
                              double slack, PairTimes& times) noexcept {
+  const Machine chosen = machine();
+  if (chosen == Machine::portable) return false;
   const auto timeless = [](const Motion& motion) { return std::isnan(motion.expiry); };
   if (std::any_of(motions.begin(), motions.end(), timeless)) return false;
   bool valid = false;
   const auto work = [&]() ORCHARD_INLINE_LAMBDA { valid = find_by_fours(motions, limits, resolution, slack, times); };
 #ifdef ORCHARD_MACHINES
-  const Machine chosen = machine();
   if (chosen < Machine::avx2) return false;
   chosen == Machine::avx512 ? work_with_avx512(work) : work_with_avx2(work);
 #else

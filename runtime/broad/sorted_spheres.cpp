@@ -221,12 +221,12 @@ void SortedSpheres::compare_large() {
   }
 }
 
-std::span<const BodyPair> SortedSpheres::find(bool vectors) {
+std::span<const BodyPair> SortedSpheres::find() {
   const bool too_many = large_.size() > spheres_.size() / kLargeShare;
   if (!spheres_.empty() && (cell_ == 0 || too_many)) choose_cell();
   sort();
+  const Machine chosen = machine();
 #if defined(ORCHARD_MACHINES)
-  const Machine chosen = vectors ? machine() : Machine::base;
   if (chosen == Machine::avx512) {
     work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { find_all<Eight>(); });
   } else if (chosen == Machine::avx2) {
@@ -235,11 +235,11 @@ std::span<const BodyPair> SortedSpheres::find(bool vectors) {
     find_all<Plain>();
   }
 #elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
-  vectors ? find_all<Eight>() : find_all<Plain>();
+  chosen != Machine::portable ? find_all<Eight>() : find_all<Plain>();
 #elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
-  vectors ? find_all<Four>() : find_all<Plain>();
+  chosen != Machine::portable ? find_all<Four>() : find_all<Plain>();
 #else
-  (void)vectors;
+  (void)chosen;
   find_all<Plain>();
 #endif
   compare_large();

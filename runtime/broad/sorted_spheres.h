@@ -16,7 +16,7 @@ class SortedSpheres {
   // At most kBlock of them, with valid motions.
   void add(std::span<const BodyIndex> bodies, std::span<const Motion> motions);
   // All pairs that touch, in any order: spheres_touch() holds. Valid until begin().
-  std::span<const BodyPair> find(bool vectors);
+  std::span<const BodyPair> find();
   template <typename Goes>
   void drop_pairs(const Goes& goes) {  // as if they did not touch
     boxes_met_ -= std::min<std::uint64_t>(boxes_met_, std::erase_if(pairs_, goes));

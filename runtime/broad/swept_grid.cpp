@@ -96,12 +96,6 @@ ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
   return room != 0;
 }
 
-// work.template operator()<Kind>() for the comparison that suits the machine, or the portable one.
-template <typename Work>
-void with_compare(bool vectors, const Work& work) {
-  vectors ? with_best_compare(work) : work.template operator()<PlainCompare>();
-}
-
 }  // namespace
 
 // What is found waits on the stack for room in the vector.
@@ -109,14 +103,13 @@ struct SweptGrid::Insertion {
   static constexpr std::size_t kFound = 256;
 
   std::span<const NarrowBox> boxes;
-  bool vectors;
   std::vector<BodyPair>& pairs;
   GridCounts& counts;
   std::array<BodyPair, kFound> found;
   std::size_t count = 0;
 
-  Insertion(std::span<const NarrowBox> all, bool by_vectors, std::vector<BodyPair>& to, GridCounts& of) noexcept
-      : boxes(all), vectors(by_vectors), pairs(to), counts(of) {}
+  Insertion(std::span<const NarrowBox> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
+      : boxes(all), pairs(to), counts(of) {}
   void hand_over() {
     if (count == 0) return;
     pairs.insert(pairs.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
@@ -198,7 +191,7 @@ void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, std::
            static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
   }
   if (put_off.fulls > 0) {
-    with_compare(insertion.vectors, [&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
+    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
       for (std::size_t i = 0; i < put_off.fulls; ++i) insert_beyond<Kind>(insertion, visit_at(put_off.full[i]));
     });
   }
@@ -208,7 +201,7 @@ void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, std::
 
 void SweptGrid::insert_batch(Insertion& insertion, const Batch& batch) {
   PutOff put_off;
-  with_compare(insertion.vectors, [&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
+  with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
     const std::uint32_t* const lines = batch.lines.data();
     const std::uint64_t *const entries = batch.entries.data(), *const queries = batch.queries.data();
     const auto line_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return lines[k]; };
@@ -242,11 +235,11 @@ void SweptGrid::for_each_part(std::span<const BodyIndex> bodies, const BoxBlock&
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
-                       std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  Insertion insertion(boxes, vectors, pairs, counts_);
+                       std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs) {
+  Insertion insertion(boxes, pairs, counts_);
   for_each_part(bodies, block, [&](const Some& some) {
     Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
-    encode(next, some, vectors);
+    encode(next, some);
     for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
     insert_batch(insertion, waiting);
     queue.current_ = 1 - queue.current_;
@@ -254,8 +247,8 @@ void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const Bo
   insertion.hand_over();
 }
 
-void SweptGrid::finish(Queue& queue, std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  Insertion insertion(boxes, vectors, pairs, counts_);
+void SweptGrid::finish(Queue& queue, std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs) {
+  Insertion insertion(boxes, pairs, counts_);
   Batch& waiting = queue.batches_[queue.current_];
   insert_batch(insertion, waiting);
   waiting.count = waiting.end = waiting.larges = 0;
@@ -263,11 +256,11 @@ void SweptGrid::finish(Queue& queue, std::span<const NarrowBox> boxes, bool vect
 }
 
 void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
-                        bool vectors, VisitsByPart& visits) const {
+                        VisitsByPart& visits) const {
   Batch batch;
   std::array<Visit, kMaxVisits> rest;
   for_each_part(bodies, block, [&](const Some& some) {
-    encode(batch, some, vectors);
+    encode(batch, some);
     std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
     for (std::size_t i = 0; i < kParts; ++i) {
       visits[i].make_room(batch.end);
@@ -292,7 +285,7 @@ void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visit
   PutOff put_off;
   for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), Batch::kMaxVisits))) {
     const std::size_t count = std::min(visits.size(), Batch::kMaxVisits);
-    with_compare(insertion.vectors, [&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
+    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
       const Visit* const all = visits.data();
       const std::size_t size = visits.size();
       const auto line_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
@@ -307,9 +300,9 @@ void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visit
   }
 }
 
-void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, bool vectors,
+void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes,
                             std::vector<BodyPair>& pairs, GridCounts& counts) {
-  Insertion insertion(boxes, vectors, pairs, counts);
+  Insertion insertion(boxes, pairs, counts);
   insert_visits(insertion, visits);
   insertion.hand_over();
 }

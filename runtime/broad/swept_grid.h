@@ -80,18 +80,18 @@ class SweptGrid {
   // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMaxCellsPerAxis
   // cells along an axis. Only finish() makes sure that all pairs have been found.
   void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
-              bool vectors, std::vector<BodyPair>& pairs);
-  void finish(Queue& queue, std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
+              std::vector<BodyPair>& pairs);
+  void finish(Queue& queue, std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs);
   // The same in two steps, for many bodies: the visits that block's bodies make, at any number of threads, appended;
-  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes, bool vectors,
+  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
                VisitsByPart& visits) const;
   // and visits to one part, in the order in which they are to be made, at one thread for each part at most.
-  void insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, bool vectors,
-                   std::vector<BodyPair>& pairs, GridCounts& counts);
+  void insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs,
+                   GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
   class Removals;                                 // of a few bodies at a time
   void prepare_removal(BodyIndex body, const QuantumBox& box, Removals& removals) const noexcept;  // starts loading
-  void remove(Removals& removals, bool vectors) noexcept;
+  void remove(Removals& removals) noexcept;
 
   // Those that have entries in the cell, and in others that share its line; a body as often as it has.
   template <typename Visit>
@@ -127,7 +127,7 @@ class SweptGrid {
   };
   template <typename Use>
   static void for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use);
-  void encode(Batch& batch, const Some& some, bool vectors) const noexcept;
+  void encode(Batch& batch, const Some& some) const noexcept;
   void encode_all(Batch& batch, const Some& some) const noexcept;
   struct PutOff;
   template <typename Kind, typename Line, typename Entry, typename Query>

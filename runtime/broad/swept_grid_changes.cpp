@@ -194,10 +194,9 @@ ORCHARD_INLINE void SweptGrid::remove_all(std::span<const Removal> removals) noe
   }
 }
 
-void SweptGrid::remove(Removals& removals, bool vectors) noexcept {
+void SweptGrid::remove(Removals& removals) noexcept {
   const auto all = std::span(std::as_const(removals.all_)).first(removals.count_);
   removals.count_ = 0;
-  if (!vectors) return remove_all<PlainCompare>(all);
   with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { remove_all<Kind>(all); });
 }
 

@@ -137,9 +137,8 @@ ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Coded& coded, con
   batch.end = end;
 }
 
-void SweptGrid::encode(Batch& batch, const Some& some, bool vectors) const noexcept {
-  const auto work = [&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, some); };
-  vectors ? per_machine(work) : work();
+void SweptGrid::encode(Batch& batch, const Some& some) const noexcept {
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, some); });
 }
 
 SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept {

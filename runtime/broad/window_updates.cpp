@@ -63,7 +63,7 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bo
   const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
   bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
   const auto durations = std::span(block.durations).first(motions.size());
-  valid = block.lattice.boxes(motions, durations, block.boxes, !parts_.boxes.few(), options_.vectors) && valid;
+  valid = block.lattice.boxes(motions, durations, block.boxes, !parts_.boxes.few()) && valid;
   const auto is_one = [](const Motion& motion) { return is_valid(motion); };
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
@@ -118,7 +118,7 @@ void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
   const auto box_for = [&](Step wanted) {
     const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
     BoxBlock box;
-    block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, false, options_.vectors);
+    block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, false);
     return box.get(0);
   };
   const QuantumBox least = box_for(1);

@@ -49,9 +49,10 @@ struct PlacedSphere {  // in the world
 
 // By lines of memory: what each pair asks about, what a new pose does, and the rest.
 struct alignas(64) Body {
-  BodyId id = kNoBody;  // kNoBody: no body has this index now
-  std::uint32_t group = 1, mask = 0;
-  std::uint32_t filters = 0;   // grows with changes of group, mask, sleep
+  BodyId id = kNoBody;                   // kNoBody: no body has this index now
+  std::uint32_t category = 1, mask = 0;  // of its BodyFilter, as `group` and `ignores_static` are
+  std::int32_t group = 0;
+  std::uint32_t filters = 0;   // grows with changes of its filter and sleep
   std::uint32_t jumps = 0;     // teleports
   std::uint32_t deformed = 0;  // changes of its shapes' trees
   ShapeId shape = kNoShape;    // of its first part
@@ -60,9 +61,10 @@ struct alignas(64) Body {
   bool asleep = false;  // wanted by the application
   bool frozen = false;  // asleep, and its state is known: never asked again
   bool suggest = false;
-  bool valid = true;           // the state that is known
-  bool one = false;            // it has one part,
-  bool at_origin = false;      // and that in its own frame
+  bool valid = true;       // the state that is known
+  bool one = false;        // it has one part,
+  bool at_origin = false;  // and that in its own frame
+  bool ignores_static = false;
   bool by_parts = false;       // its pairs with static bodies are found by a PartSearch
   Step moved = -1;             // the last step at which the pose was another one than at the time asked before
   Step stretched = kNotAsked;  // the step after which parts went farther out than ever before
@@ -94,7 +96,19 @@ struct alignas(64) Body {
   std::vector<NearSphere> near_part_spheres;
 
   bool has_middle() const noexcept { return middle_reach < reach; }
+
+  BodyFilter filter() const noexcept { return {category, mask, group, ignores_static}; }
+  void set_filter(const BodyFilter& to) noexcept {
+    category = to.category, mask = to.mask, group = to.group, ignores_static = to.ignores_static;
+  }
 };
+
+// Half-spaces are static, too.
+inline bool filters_allow(const Body& a, const Body& b) noexcept {
+  const auto at_rest = [](const Body& body) { return body.is_static || is_half_space(body.id); };
+  if ((a.ignores_static && at_rest(b)) || (b.ignores_static && at_rest(a))) return false;
+  return may_pair(a.filter(), b.filter());
+}
 
 // What a gap between spheres may be rounded by, in units of Whereabouts::slack.
 inline constexpr double kRoundingOfGaps = 1e3;

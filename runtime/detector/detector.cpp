@@ -20,7 +20,8 @@ constexpr double kStretchAhead = 1 + 0x1p-4;
 
 bool is_valid_option(const DetectorOptions& options) noexcept {
   return options.steps_to_end >= 1 && options.max_events >= 1 &&
-         is_valid(BroadPhaseOptions{options.time_step, options.start, 0, true, options.position_slack});
+         is_valid(BroadPhaseOptions{
+             .time_step = options.time_step, .start = options.start, .position_slack = options.position_slack});
 }
 
 bool are_valid(const BodyOptions& options) noexcept {
@@ -124,7 +125,7 @@ bool Detector::State::acceptable(const BodyOptions& with) const noexcept {
 Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with) {
   Body& body = bodies.take_in(id, parts.size());
   ++count;
-  body.group = with.group, body.mask = with.mask;
+  body.set_filter(with.filter);
   filters_pairs = filters_pairs || broad_filter(body) != BodyFilter{};
   body.importance = with.importance;
   body.suggest = with.suggest;
@@ -164,7 +165,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
   State& s = *state_;
   if (!s.acceptable(parts) || !s.acceptable(options) || !s.bodies.has_source()) return kNoBody;
   return s.or_fail([&] {
-    const BodyId id = s.broad.add(options.importance, {options.group, options.mask});
+    const BodyId id = s.broad.add(options.importance, options.filter);
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
@@ -175,7 +176,9 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
 }
 
 BodyFilter Detector::State::broad_filter(const Body& body) noexcept {
-  return {body.group, body.mask, 0, body.by_parts};
+  BodyFilter filter = body.filter();
+  filter.ignores_static = filter.ignores_static || body.by_parts;
+  return filter;
 }
 
 // It has rested up to the last step: where it was then is known.
@@ -197,7 +200,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
   somewhere.position = pose.translation;
   if (!is_valid(somewhere)) return kNoBody;
   return s.or_fail([&] {
-    const BodyId id = s.broad.add_static(somewhere, options.importance, {options.group, options.mask});
+    const BodyId id = s.broad.add_static(somewhere, options.importance, options.filter);
     if (id == kNoBody) return id;
     Body& body = s.take_in(id, parts, options);
     body.is_static = true;
@@ -222,7 +225,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   if (!s.valid || s.failed || s.stepping || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber))
     return kNoBody;
   Body body;
-  body.group = options.group, body.mask = options.mask;
+  body.set_filter(options.filter);
   body.importance = options.importance;
   body.since = s.answered + 1;
   return s.or_fail([&] {
@@ -341,10 +344,10 @@ bool Detector::set_importance(BodyId body, std::uint8_t importance) {
   return is_half_space(body.index) || state_->or_fail([&] { return state_->broad.set_importance(body, importance); });
 }
 
-bool Detector::set_groups(BodyId body, std::uint32_t group, std::uint32_t mask) {
+bool Detector::set_filter(BodyId body, const BodyFilter& filter) {
   Body* found = state_->find(body);
   if (found == nullptr) return false;
-  found->group = group, found->mask = mask;
+  found->set_filter(filter);
   ++found->filters;
   state_->filters_pairs = true;
   if (is_half_space(body.index)) return true;
@@ -393,7 +396,7 @@ bool Detector::shape_changed(ShapeId shape) {
   return true;
 }
 
-void Detector::set_filter(PairFilter filter) {
+void Detector::set_pair_filter(PairFilter filter) {
   State& s = *state_;
   if (s.stepping) return;
   ++s.filter_version;

@@ -27,9 +27,13 @@ rt::Vec3 vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
 rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
 orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
 
+rt::BodyFilter filter_of(const orchard_body_filter& from) noexcept {
+  return {from.category, from.mask, from.group, from.ignores_static != 0};
+}
+
 rt::BodyOptions options_of(const orchard_body_options* from) noexcept {
   if (from == nullptr) return {};
-  return {from->importance, from->group, from->mask, from->continuous_speed, from->reach, from->suggest != 0};
+  return {from->importance, filter_of(from->filter), from->continuous_speed, from->reach, from->suggest != 0};
 }
 
 rt::BodyState state_of(const orchard_body_state& from) noexcept {
@@ -72,8 +76,10 @@ Result guarded(Result otherwise, Make&& make) noexcept {
   return rt::detail::guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
 }
 
-orchard_frame step(orchard_detector& detector, double time, const rt::FrameBudget& budget) {
-  const rt::Frame& frame = detector.frame = detector.detector->step(time, budget);
+orchard_frame step(orchard_detector& detector, double time, const orchard_budget& given,
+                   const rt::StepOptions& options) {
+  const rt::Budget budget{given.tests, rt::detail::time_of(given.nanoseconds)};
+  const rt::Frame& frame = detector.frame = detector.detector->step(time, budget, options);
   orchard_frame result{};
   result.time = frame.time, result.next_time = frame.next_time;
   result.steps = frame.steps;
@@ -96,7 +102,7 @@ constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 
 extern "C" {
 
-orchard_body_options orchard_default_body(void) { return {0, 1, 0xffffffffu, 0, 0, 0}; }
+orchard_body_options orchard_default_body(void) { return {0, orchard_default_filter(), 0, 0, 0}; }
 
 orchard_body_state orchard_default_state(void) { return state_of(rt::BodyState{}); }
 
@@ -206,8 +212,9 @@ int orchard_detector_set_local(orchard_detector* detector, orchard_body body, si
 int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance) {
   return guarded(0, [&] { return int{detector->detector->set_importance(id_of(body), importance)}; });
 }
-int orchard_detector_set_groups(orchard_detector* detector, orchard_body body, uint32_t group, uint32_t mask) {
-  return guarded(0, [&] { return int{detector->detector->set_groups(id_of(body), group, mask)}; });
+int orchard_detector_set_filter(orchard_detector* detector, orchard_body body, const orchard_body_filter* filter) {
+  const rt::BodyFilter made = filter == nullptr ? rt::BodyFilter{} : filter_of(*filter);
+  return guarded(0, [&] { return int{detector->detector->set_filter(id_of(body), made)}; });
 }
 int orchard_detector_set_state(orchard_detector* detector, orchard_body body, const orchard_body_state* state) {
   return guarded(0, [&] { return int{detector->detector->set_state(id_of(body), state_of(*state))}; });
@@ -222,13 +229,13 @@ int orchard_detector_wake(orchard_detector* detector, orchard_body body) {
   return guarded(0, [&] { return int{detector->detector->wake(id_of(body))}; });
 }
 
-int orchard_detector_set_filter(orchard_detector* detector, orchard_pair_filter filter, void* context) {
+int orchard_detector_set_pair_filter(orchard_detector* detector, orchard_pair_filter filter, void* context) {
   return guarded(0, [&] {
     rt::PairFilter made;
     if (filter != nullptr) {
       made = [filter, context](rt::BodyId a, rt::BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
     }
-    detector->detector->set_filter(std::move(made));
+    detector->detector->set_pair_filter(std::move(made));
     return 1;
   });
 }
@@ -243,12 +250,10 @@ int orchard_detector_moves(const orchard_detector* detector, orchard_body body) 
 }
 
 orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget) {
-  return step(*detector, time, {budget.tests, rt::detail::time_of(budget.nanoseconds)});
+  return step(*detector, time, budget, {});
 }
 orchard_frame orchard_detector_step_latest(orchard_detector* detector, double time, orchard_budget budget) {
-  rt::FrameBudget latest{budget.tests, rt::detail::time_of(budget.nanoseconds)};
-  latest.latest_only = true;
-  return step(*detector, time, latest);
+  return step(*detector, time, budget, {.latest_only = true});
 }
 
 orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index) {

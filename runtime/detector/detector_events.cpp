@@ -217,7 +217,7 @@ bool Detector::State::allowed(Record& record) {
   }
   record.filter_version = filter_version;
   record.filters_a = a.filters, record.filters_b = b.filters;
-  record.allowed = (a.mask & b.group) != 0 && (b.mask & a.group) != 0 && (!filter || filter(record.a, record.b));
+  record.allowed = detail::filters_allow(a, b) && (!filter || filter(record.a, record.b));
   return record.allowed;
 }
 

@@ -52,8 +52,7 @@ void Detector::State::find_part_pairs(Step step) {
   if (!filters_pairs && !filter) return;
   std::erase_if(part_pairs, [this](const BodyPair& pair) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
-    const bool may_pair = (a.mask & b.group) != 0 && (b.mask & a.group) != 0;
-    return !may_pair || (filter && !filter(a.id, b.id));
+    return !detail::filters_allow(a, b) || (filter && !filter(a.id, b.id));
   });
 }
 

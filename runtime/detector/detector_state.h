@@ -58,7 +58,7 @@ struct Detector::State {
   bool acceptable(const BodyOptions& with) const noexcept;
 
   // detector_step.cpp
-  void run(double time, const FrameBudget& budget, Frame& frame);
+  void run(double time, const Budget& budget, const StepOptions& with, Frame& frame);
   void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
   void leave_out_before(Step end, Frame& frame);
   bool full() const noexcept { return event_count >= options.max_events; }
@@ -145,7 +145,7 @@ struct Detector::State {
   bool failed = false;          // out of memory
   bool any_continuous = false;  // bodies, ever
   bool any_static = false;      // bodies, ever
-  bool filters_pairs = false;   // any body, ever: by its group and mask
+  bool filters_pairs = false;   // any body, ever: by its filter
   bool any_jumped = false;      // bodies, since the last step that was answered
   bool interrupted = false;     // the broad phase, at the step before
   // For foresee(), smoothed: of what the timing wheel has as meeting, the share that overlaps; of the pairs that

@@ -39,14 +39,14 @@ void learn_time(double& mean, double value, double max_growth) noexcept {
 
 }  // namespace
 
-Frame Detector::step(double time, const FrameBudget& budget) noexcept {
+Frame Detector::step(double time, const Budget& budget, const StepOptions& options) noexcept {
   State& s = *state_;
   Frame frame;
   frame.time_refused = s.stepping || !s.valid || !(std::fabs(time) <= kMaxSteps * s.clock.time_step);
   frame.out_of_memory = s.failed;
   if (frame.time_refused || s.failed) return frame;
   s.stepping = true;
-  detail::guarded([&] { s.run(time, budget, frame); },  // sources and filters throw nothing
+  detail::guarded([&] { s.run(time, budget, options, frame); },  // sources and filters throw nothing
                   [&] {
                     s.failed = true;
                     frame = Frame{};
@@ -76,15 +76,15 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   return known;
 }
 
-void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
+void Detector::State::run(double time, const Budget& given, const StepOptions& with, Frame& frame) {
   event_count = 0, ended.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
                   any_continuous, options.max_fronts);
-  StepBudget budget(given);
+  StepBudget budget(given, with.replay);
   const Step end = std::max<Step>(-1, clock.step_at(time));
   const std::uint64_t asked_before = broad.motions_asked();
-  if (given.latest_only) leave_out_before(end, frame);
+  if (with.latest_only) leave_out_before(end, frame);
   while (watches && answered < end && !full()) {
     watch(answered + 1);
     run_to(answered + 1, end, budget, frame);
@@ -126,18 +126,17 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     broad.foresee(clock.time(answered), {&next, 1});
     meetings = static_cast<double>(next.meetings);
     Advance now{};
-    StepBudget share(budget.share(static_cast<std::uint64_t>(end - answered)));
+    StepBudget share = budget.share(static_cast<std::uint64_t>(end - answered));
     if (!budget.limited()) {
       if (stop == answered + 1) ask_all(stop);
       now = broad.advance(time);
       all_asked = false;
     } else {
-      WorkBudget work;
+      Budget work;
       if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
       if (share.timed()) work.time = time_for_broad(share);
-      if (share.replay() != nullptr) work.replay = share.replay()->broad;
       const StepBudget::Stopwatch watch(share.timed());
-      now = broad.advance(time, work);
+      now = broad.advance(time, work, share.replay() != nullptr ? share.replay()->broad : 0);
       if (share.timed() && now.incomplete_from != kNoClass)
         learn_time(broad_excess, watch.passed() - nanoseconds(work.time), kMaxGrowthOfBroad);
       if (now.incomplete_from != kNoClass) share.cut_broad(now.work);

@@ -145,7 +145,7 @@ Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t&
   if (!limited) {
     while (!narrow.finished()) narrow.refine_exactly();
   } else if (work < most) {
-    narrow.refine_exactly({.pair_tests = most - work});
+    narrow.refine_exactly({.work = most - work});
   }
   work += narrow.work();
   return verdict_of(narrow, pair);

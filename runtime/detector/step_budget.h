@@ -23,8 +23,8 @@ class StepBudget {
     bool runs_;
     Clock::time_point begin_;
   };
-  explicit StepBudget(const FrameBudget& budget) noexcept
-      : left_(budget.work), limited_(budget.work != FrameBudget{}.work), replay_(budget.replay) {
+  StepBudget(const Budget& budget, const StepCut* replay) noexcept
+      : left_(budget.work), limited_(budget.work != Budget{}.work), replay_(replay) {
     if (replay_ != nullptr) return;
     if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
       timed_ = true;
@@ -44,15 +44,14 @@ class StepBudget {
   bool late() const noexcept { return timed_ && Clock::now() >= deadline_; }
   std::chrono::nanoseconds time_left() const noexcept {
     return timed_ ? std::max(std::chrono::nanoseconds(0), std::chrono::nanoseconds(deadline_ - Clock::now()))
-                  : FrameBudget{}.time;
+                  : Budget{}.time;
   }
   // One of `among` equal shares of what is left, this one first.
-  FrameBudget share(std::uint64_t among) const noexcept {
-    FrameBudget part;
+  StepBudget share(std::uint64_t among) const noexcept {
+    Budget part;
     if (limited_) part.work = left_ / among + (left_ % among != 0 ? 1 : 0);
     if (timed_) part.time = time_left() / static_cast<std::int64_t>(among);
-    part.replay = replay_;
-    return part;
+    return {part, replay_};
   }
 
   // Where the step is cut short: as the clock says, or as another run's clock said. For one thread.

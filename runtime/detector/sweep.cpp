@@ -60,7 +60,7 @@ class PairSweep {
     result_.answer = Answer::maybe;
     for (bool certain = true; work_ < most_; certain = false, skip *= kSkipGrowth) {
       work_ += kPairWork;
-      options.budget.pair_tests = most_ - std::min(work_, most_);
+      options.budget.work = most_ - std::min(work_, most_);
       const Impact impact = time_of_impact(workspace_, pair_, a_, b_, options);
       work_ += impact.work;
       if (certain) result_.from = impact.t0;

@@ -129,7 +129,7 @@ struct Coherence {
       return remembered();
     }
     Budget rest = budget;
-    if (!leaves_meet(rest.pair_tests) && !older_meet() && !near_meet(rest)) {
+    if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
       if (pair.front_ != nullptr) pair.front_->clear();
       PairAccess::search(narrow, rest);
     }
@@ -220,7 +220,7 @@ struct Coherence {
     const PairAccess::Place place = place_of(memory.witnesses[0]);
     const std::uint64_t before = workspace.narrow.work();
     const bool meet = PairAccess::search_near(workspace.narrow, place.first, place.second, left);
-    left.pair_tests -= std::min(left.pair_tests, workspace.narrow.work() - before);
+    left.work -= std::min(left.work, workspace.narrow.work() - before);
     return meet;
   }
 

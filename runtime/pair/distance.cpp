@@ -109,7 +109,7 @@ void DistanceQuery::find_cut() noexcept {
 bool DistanceQuery::may_be_nearer(double lower) const noexcept { return below_nearest_ ? lower < cut_ : lower <= cut_; }
 
 void DistanceQuery::refine(const Budget& budget) noexcept {
-  if (finished_ || budget.pair_tests == 0) return;
+  if (finished_ || budget.work == 0) return;
   NarrowPhase::BudgetTracker tracker(budget);
   const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
   while (stack_size_ > 0 && nearest_ > enough_ && !tracker.exhausted()) {

@@ -147,7 +147,7 @@ void NarrowPhase::start_near(const NodePair& leaves) noexcept {
 }
 
 bool NarrowPhase::refine_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept {
-  if (budget.pair_tests == 0) return false;
+  if (budget.work == 0) return false;
   BudgetTracker tracker(budget);
   start_exact();
   start_near({a, b});

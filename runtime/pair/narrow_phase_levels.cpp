@@ -52,7 +52,7 @@ std::uint32_t deepest_of(std::uint64_t bits, const BlockPair& block, const Block
 }  // namespace
 
 Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
-  if (budget.pair_tests == 0) return answer_;
+  if (budget.work == 0) return answer_;
   if (roots_pending_) {
     place();
     roots_pending_ = false;
@@ -69,7 +69,7 @@ Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
 }
 
 Answer NarrowPhase::refine_last(const Budget& budget) noexcept {
-  if (budget.pair_tests == 0) return answer_;
+  if (budget.work == 0) return answer_;
   if (!has_last_level()) return refine(budget);
   BudgetTracker tracker(budget);
   if (!exact_started_) {

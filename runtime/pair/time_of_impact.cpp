@@ -343,7 +343,7 @@ void Search::report(const Critical& critical) noexcept {
 // False where the budget ends it.
 bool Search::touching(PairAccess::BudgetTracker& tracker, double time) noexcept {
   if (tracker.exhausted()) return false;
-  const std::uint64_t left = options_.budget.pair_tests - tracker.spent();
+  const std::uint64_t left = options_.budget.work - tracker.spent();
   const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
   tracker.spend(options_.margin > 0 ? workspace_.distance.work() : workspace_.narrow.work());
   return answer == Answer::yes;

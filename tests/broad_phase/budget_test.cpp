@@ -34,7 +34,7 @@ int steps_to_find_all(const std::vector<Motion>& motions, const test::AnyOptions
   std::set<BodyPair> seen;
   std::uint64_t asked = 0;
   for (int step = 0; step < most; ++step) {
-    const Advance now = world.advance(options.common.time_step * step, WorkBudget{.work = work});
+    const Advance now = world.advance(options.common.time_step * step, Budget{.work = work});
     for (const BodyPair& pair : now.pairs) {
       EXPECT_TRUE(std::binary_search(expected.begin(), expected.end(), pair));
       seen.insert(pair);
@@ -100,7 +100,7 @@ TEST(Budget, ReportsTheMoreTheLargerItIs) {
     const std::vector<BodyPair> expected = test::touching_pairs(motions);
     all += expected.size();
     for (std::size_t w = 0; w < works.size(); ++w) {
-      const Advance now = worlds[w].advance(kStep * step, WorkBudget{.work = works[w]});
+      const Advance now = worlds[w].advance(kStep * step, Budget{.work = works[w]});
       ASSERT_TRUE(std::includes(expected.begin(), expected.end(), now.pairs.begin(), now.pairs.end())) << works[w];
       if (now.incomplete_from == kNoClass) {
         ASSERT_EQ(now.pairs.size(), expected.size()) << works[w];
@@ -128,7 +128,7 @@ TEST(Budget, IsSpentOnTheImportantBodiesFirst) {
   for (int step = 0; step <= kSteps; ++step) {
     for (BodyIndex i = 0; i < motions.size(); ++i) motions[i] = bodies.motion(i, kStep * step);
     const std::vector<BodyPair> expected = test::touching_pairs(motions);
-    const Advance now = world.advance(kStep * step, WorkBudget{.work = 150});  // 200 bodies are in the highest class
+    const Advance now = world.advance(kStep * step, Budget{.work = 150});  // 200 bodies are in the highest class
     ASSERT_TRUE(std::includes(expected.begin(), expected.end(), now.pairs.begin(), now.pairs.end()));
     for (const BodyPair& pair : expected) {
       const unsigned rank = std::max(importance(pair.a), importance(pair.b));
@@ -157,7 +157,7 @@ TEST(Budget, ThatNeverReachesAClassKeepsNoEndlessList) {
       world.advance(0);  // all are in the grid, where the important ones find the others from now on
       continue;
     }
-    const Advance now = world.advance(kStep * step, WorkBudget{.work = 200});
+    const Advance now = world.advance(kStep * step, Budget{.work = 200});
     EXPECT_EQ(now.incomplete_from, step > 3 ? 0u : now.incomplete_from);
     if (step == 500) memory = world.memory_bytes();
   }
@@ -170,7 +170,7 @@ TEST(Budget, LeftOverWorkIsDoneByAStepWithoutOne) {
   for (std::size_t i = 0; i < bodies.size(); ++i) world.add(static_cast<std::uint8_t>(i % 3));
   for (int step = 0; step < 90; ++step) {
     const bool limited = step % 7 != 6;
-    const Advance now = limited ? world.advance(kStep * step, WorkBudget{.work = 100}) : world.advance(kStep * step);
+    const Advance now = limited ? world.advance(kStep * step, Budget{.work = 100}) : world.advance(kStep * step);
     if (limited) continue;
     EXPECT_EQ(now.incomplete_from, kNoClass);
     EXPECT_EQ(now.left_over, 0u);

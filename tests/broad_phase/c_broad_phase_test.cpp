@@ -57,7 +57,7 @@ class Twins {
   }
 
   bool advance(double t, const orchard_work_budget* budget) {
-    const Advance a = budget == nullptr ? in_cpp_.advance(t) : in_cpp_.advance(t, WorkBudget{.work = budget->work});
+    const Advance a = budget == nullptr ? in_cpp_.advance(t) : in_cpp_.advance(t, Budget{.work = budget->work});
     const orchard_advance b = orchard_broad_phase_advance(in_c_.get(), t, budget);
     EXPECT_EQ(a.time, b.time);
     EXPECT_EQ(a.pairs.size(), b.pair_count);

@@ -61,7 +61,7 @@ struct Meddler {
     EXPECT_FALSE(world->set_importance(body, 1) || world->set_filter(body, {}));
     world->set_pair_filter([](BodyId, BodyId) { return false; });
     EXPECT_TRUE(world->advance(1e6).time_refused);
-    EXPECT_TRUE(world->advance(1e6, WorkBudget{.work = 1}).time_refused);
+    EXPECT_TRUE(world->advance(1e6, Budget{.work = 1}).time_refused);
     EXPECT_EQ(world->skip_to(1e6), 0u);
     EXPECT_TRUE(queries->touching_sphere({}, 5).empty());
     EXPECT_TRUE(queries->all_hits({{-9, 0, 0}, {1, 0, 0}}).empty());
@@ -173,7 +173,7 @@ TEST(SkipTo, LeavesOutAllStepsButTheLastOne) {
       const double time = static_cast<double>(step) * kStep;
       const std::uint64_t asked = paused.world.motions_asked();
       const bool within = k % 4 == 3;
-      Advance now = within ? paused.world.advance(time, WorkBudget{.work = 7}) : paused.world.advance(time);
+      Advance now = within ? paused.world.advance(time, Budget{.work = 7}) : paused.world.advance(time);
       const Pairs truth = paused.touching(time), found = now.time <= time + 1e-9 ? pairs_of(now) : Pairs{};
       if (within) {
         for (const auto& pair : found) ASSERT_TRUE(truth.count(pair) != 0);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "any_broad_phase.h"
+#include "runtime/every_machine.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
@@ -137,7 +138,8 @@ TEST_P(Changes, TakePartFromTheNextStep) {
 TEST(BroadPhase, ChangesAroundACommonExpiryTakePart) {
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const int period = 3 + static_cast<int>(seed % 9), bodies = seed % 3 == 0 ? 300 : seed % 3 == 1 ? 189 : 60;
-    Application application(seed, {.common = {.time_step = kStep, .vectors = seed % 5 != 0}}, bodies, period);
+    const auto machine = test::on_portable_machine(seed % 5 == 0);
+    Application application(seed, {.common = {.time_step = kStep}}, bodies, period);
     for (int step = 0; step < 60; ++step) {
       application.frame(step);
       if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
@@ -241,7 +243,7 @@ TEST_P(Changes, InterruptedKeepTheImportantPairs) {
     test::Draw draw(seed);
     std::map<int, unsigned> complete;
     for (int step = 0; step < 60; ++step) {
-      const WorkBudget budget{.work = 50 + draw.bits() % 300};
+      const Budget budget{.work = 50 + draw.bits() % 300};
       const Advance now = world.advance(kStep * step, budget);
       std::vector<BodyPair> expected, found;
       const auto counts = [&](const BodyPair& pair) {
@@ -267,7 +269,7 @@ TEST_P(Changes, WithoutAnyTimeGetSomewhereAndSayWhatIsMissing) {
   for (std::size_t i = 0; i < bodies.size(); ++i) world.add(static_cast<std::uint8_t>(i % 2));
   std::uint64_t asked = 0;
   for (int step = 0; step < 50; ++step) {
-    const Advance now = world.advance(kStep * step, WorkBudget{.time = std::chrono::nanoseconds(0)});
+    const Advance now = world.advance(kStep * step, Budget{.time = std::chrono::nanoseconds(0)});
     for (const BodyPair& pair : now.pairs) {
       ASSERT_TRUE(spheres_touch(bodies.motion(pair.a, now.time), bodies.motion(pair.b, now.time)));
     }

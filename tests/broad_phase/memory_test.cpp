@@ -113,7 +113,7 @@ class Application {
     const bool within = draw_.bits() % 3 == 0;
     attempt([&] {
       const Advance now =
-          within ? world_->advance(kStep * step, WorkBudget{.work = 1'000'000}) : world_->advance(kStep * step);
+          within ? world_->advance(kStep * step, Budget{.work = 1'000'000}) : world_->advance(kStep * step);
       found.assign(now.pairs.begin(), now.pairs.end());
     });
     if (!world_->valid()) {

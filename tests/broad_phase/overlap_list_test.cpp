@@ -110,9 +110,9 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
         boxes[ids[i]] = NarrowBox(box);
         block.set(i, box);
       }
-      grid.insert(queue, ids, block, boxes, true, pairs);
+      grid.insert(queue, ids, block, boxes, pairs);
     }
-    grid.finish(queue, boxes, true, pairs);
+    grid.finish(queue, boxes, pairs);
     const GridCounts counts = grid.counts();
     EXPECT_LT(static_cast<double>(counts.lines_read), 1.5 * static_cast<double>(counts.entries)) << cells[0];
   }

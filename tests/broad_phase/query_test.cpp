@@ -98,7 +98,7 @@ class Application {
 
   void advance(int step) {
     if (step % 15 == 0) mode_ = draw_.bits() % 3;
-    WorkBudget budget;
+    Budget budget;
     if (mode_ == 1) budget.work = 1 + draw_.bits() % crowd_;
     const double t = kStep * step;
     const auto go = [&] { return mode_ == 0 ? world_.advance(t) : world_.advance(t, budget); };

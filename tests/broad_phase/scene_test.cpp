@@ -72,14 +72,12 @@ TEST_P(EveryScene, IsWhatBruteForceSaysOfFewBodies) {
     few.bodies = bodies;
     const Reports reports = expected(few, steps());
     test::on_every_machine([&] { expect_reports(few, {}, reports); });
-    expect_reports(few, {.common = {.vectors = false}}, reports);
   }
 }
 
 TEST_P(EveryScene, IsWhatBruteForceSaysOnEveryMachine) {
   const Reports reports = expected(GetParam(), steps());
   test::on_every_machine([&] { expect_reports(GetParam(), {}, reports); });
-  expect_reports(GetParam(), {.common = {.vectors = false}}, reports);
   expect_reports(GetParam(), {.common = {.window = 20}}, reports);
 }
 

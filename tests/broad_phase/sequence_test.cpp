@@ -4,6 +4,7 @@
 
 #include "../support/effort.h"
 #include "any_broad_phase.h"
+#include "runtime/every_machine.h"
 #include "worlds.h"
 
 // Random sequences of everything an application can do, hostile values included, against comparing all bodies.
@@ -218,7 +219,7 @@ class Sequence {
   void advance(int step) {
     // Stretches without a budget, with some, with one unit, with no time at all.
     if (step % 20 == 0) mode_ = static_cast<int>(draw_.bits() % 5);
-    WorkBudget budget;
+    Budget budget;
     if (mode_ == 1) budget.work = 1 + draw_.bits() % (2 * crowd_);
     if (mode_ == 2) budget.work = 1;
     if (mode_ == 3) budget.time = std::chrono::nanoseconds(0);
@@ -282,7 +283,7 @@ TEST_P(Sequences, OfAnyCallsAreAnsweredRight) {
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
     test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep}};
     if (seed % 3 == 1) options.common.window = static_cast<std::uint32_t>(1 + seed % 30);
-    if (seed % 4 == 2) options.common.vectors = false;
+    const auto machine = test::on_portable_machine(seed % 4 == 2);
     options.common.validate = seed % 5 == 0;
     if (seed % 2 == 1) options.rebuild = test::Rebuild::everything;
     const std::size_t crowd = !events ? 12 : seed % 10 == 9 ? 260 : seed % 10 == 8 ? 90 : 15;

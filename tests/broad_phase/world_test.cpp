@@ -6,6 +6,7 @@
 #include <map>
 
 #include "any_broad_phase.h"
+#include "runtime/every_machine.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
@@ -78,7 +79,7 @@ TEST(BroadPhase, ReportsWhatOverlapsAtEachStepInThousandsOfWorlds) {
     const MovingBodies bodies(shape, seed);
     BroadPhaseOptions options{.time_step = draw.uniform(0.008, 0.03)};
     if (seed % 4 == 0) options.window = static_cast<std::uint32_t>(1 + seed % 40);
-    if (seed % 5 == 0) options.vectors = false;
+    const auto machine = test::on_portable_machine(seed % 5 == 0);
     ASSERT_EQ(run(bodies, {.common = options}, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options, 1))
         << "seed " << seed;
   }
@@ -154,9 +155,9 @@ TEST(BroadPhase, SleepsWhileNothingCanHappen) {
 TEST(BroadPhase, PortableAndVectorLoopsDoTheSame) {
   const WorldShape shape{.bodies = 3000, .ball = 60, .staggered = true};
   const MovingBodies bodies(shape, 5);
-  const BroadPhaseOptions with{}, without{.vectors = false};
-  const auto transcript = [&](const BroadPhaseOptions& options) {
-    BroadPhase world(bodies.source(), options);
+  const auto transcript = [&](bool portable) {
+    const auto machine = test::on_portable_machine(portable);
+    BroadPhase world(bodies.source());
     for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
     std::vector<std::uint64_t> log;
     for (double t = 0; t <= 0.5; t += 0.01) {
@@ -165,7 +166,7 @@ TEST(BroadPhase, PortableAndVectorLoopsDoTheSame) {
     }
     return log;
   };
-  EXPECT_EQ(transcript(with), transcript(without));
+  EXPECT_EQ(transcript(false), transcript(true));
 }
 
 TEST(BroadPhase, HandlesAlignedAndDegenerateConfigurations) {

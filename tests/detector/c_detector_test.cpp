@@ -102,12 +102,14 @@ TEST(CDetector, HasTheOtherCallsToo) {
   const orchard_body still = orchard_detector_add_static(w.detector, &part, 1, &place, &with);
   for (orchard_body_state& state : w.states) state.expiry = INFINITY;
   int asked = 0;
-  EXPECT_EQ(orchard_detector_set_filter(w.detector, refuse, &asked), 1);
+  EXPECT_EQ(orchard_detector_set_pair_filter(w.detector, refuse, &asked), 1);
   EXPECT_EQ(orchard_detector_step(w.detector, 0, kNoLimit).events, 0u);
   EXPECT_EQ(asked, 1);
-  EXPECT_EQ(orchard_detector_set_filter(w.detector, nullptr, nullptr), 1);
+  EXPECT_EQ(orchard_detector_set_pair_filter(w.detector, nullptr, nullptr), 1);
   EXPECT_EQ(orchard_detector_step(w.detector, 0.01, kNoLimit).events, 1u);
-  EXPECT_EQ(orchard_detector_set_groups(w.detector, a, 2, 2), 1);
+  orchard_body_filter filter = orchard_default_filter();
+  filter.category = filter.mask = 2;
+  EXPECT_EQ(orchard_detector_set_filter(w.detector, a, &filter), 1);
   EXPECT_EQ(orchard_detector_step(w.detector, 0.02, kNoLimit).events, 1u);  // an end
   w.put(b, 49);                                                             // it had promised not to move
   const orchard_frame frame = orchard_detector_step(w.detector, 0.03, kNoLimit);

@@ -32,9 +32,9 @@ struct World {
     states[body.index].pose.translation = place;
     states[body.index].pose.scale = scale;
   }
-  Frame step(const FrameBudget& budget = {}) { return detector.step(kStep * steps++, budget); }
+  Frame step(const Budget& budget = {}) { return detector.step(kStep * steps++, budget); }
   // Of the only event.
-  PairEvent only(const FrameBudget& budget = {}) {
+  PairEvent only(const Budget& budget = {}) {
     const Frame frame = step(budget);
     EXPECT_EQ(frame.events.size(), 1u);
     return frame.events.empty() ? PairEvent{} : frame.events[0];
@@ -93,7 +93,7 @@ TEST(DetectorBodies, AreRefusedWhereTheyMakeNoSense) {
   EXPECT_TRUE(w.detector.remove(body));
   for (const bool done :
        {w.detector.remove(body), w.detector.cancel(body), w.detector.teleport(body), w.detector.sleep(body),
-        w.detector.wake(body), w.detector.set_importance(body, 1), w.detector.set_groups(body, 1, 1),
+        w.detector.wake(body), w.detector.set_importance(body, 1), w.detector.set_filter(body, {.mask = 1}),
         w.detector.set_local(body, 0, {}), w.detector.move_static(body, {})}) {
     EXPECT_FALSE(done);
   }
@@ -277,13 +277,13 @@ TEST(DetectorEvents, ArePossibleWhileTheBudgetDoesNotReach) {
 TEST(DetectorPairs, GoByGroupsMasksAndTheFilter) {
   World w;
   const ShapeId ball = w.detector.add_sphere(1);
-  const BodyId a = w.detector.add_body({{ball, {}}}, {.group = 1, .mask = 2});
-  const BodyId b = w.detector.add_body({{ball, {}}}, {.group = 2, .mask = 4});
+  const BodyId a = w.detector.add_body({{ball, {}}}, {.filter = {.category = 1, .mask = 2}});
+  const BodyId b = w.detector.add_body({{ball, {}}}, {.filter = {.category = 2, .mask = 4}});
   EXPECT_TRUE(w.silent());
-  EXPECT_TRUE(w.detector.set_groups(b, 2, 1));
+  EXPECT_TRUE(w.detector.set_filter(b, {.category = 2, .mask = 1}));
   EXPECT_EQ(w.only().change, PairChange::begin);
   int asked = 0;
-  w.detector.set_filter([&](BodyId p, BodyId q) {
+  w.detector.set_pair_filter([&](BodyId p, BodyId q) {
     ++asked;
     EXPECT_EQ(p, a);
     EXPECT_EQ(q, b);
@@ -293,8 +293,31 @@ TEST(DetectorPairs, GoByGroupsMasksAndTheFilter) {
   EXPECT_TRUE(w.silent());
   EXPECT_GE(asked, 1);
   EXPECT_LE(asked, 4);  // a few times while they are near, at most
-  w.detector.set_filter(nullptr);
+  w.detector.set_pair_filter(nullptr);
   EXPECT_EQ(w.only().change, PairChange::begin);
+}
+
+TEST(DetectorPairs, GoByTheGroupBeforeTheMasks) {
+  World w;
+  const ShapeId ball = w.detector.add_sphere(1);
+  const BodyId a = w.detector.add_body({{ball, {}}}, {.filter = {.mask = 0, .group = 3}});
+  const BodyId b = w.detector.add_body({{ball, {}}}, {.filter = {.mask = 0, .group = 3}});
+  EXPECT_EQ(w.only().change, PairChange::begin);  // always, whatever the masks say
+  EXPECT_TRUE(w.detector.set_filter(a, {.group = -3}));
+  EXPECT_TRUE(w.detector.set_filter(b, {.group = -3}));
+  EXPECT_EQ(w.only().change, PairChange::end);  // never
+  EXPECT_TRUE(w.silent());
+}
+
+TEST(DetectorPairs, LeaveOutWhatIsStaticWhereTheFilterSaysSo) {
+  World w;
+  const ShapeId ball = w.detector.add_sphere(1);
+  const BodyId body = w.detector.add_body({{ball, {}}}, {.filter = {.ignores_static = true}});
+  w.detector.add_static({{ball, {}}}, {.translation = {0.5, 0, 0}});
+  w.detector.add_half_space({0, 0, 1}, 0);
+  EXPECT_TRUE(w.silent());
+  EXPECT_TRUE(w.detector.set_filter(body, {}));
+  EXPECT_EQ(w.step().events.size(), 2u);
 }
 
 TEST(DetectorPairs, PartsOfOneBodyAreNone) {
@@ -516,7 +539,7 @@ TEST(DetectorBudget, WhatTheLastStepFoundCostsNextToNothing) {
   for (int step = 0; step < 12; ++step) {
     for (const BodyId id : bodies) w.states[id.index].pose.translation[2] += id.index % 2 == 0 ? 1e-6 : 0;
     const std::uint64_t enough = frame.pairs * (kPairWork + 4 * kMotionWork);
-    frame = w.step(step < 4 ? FrameBudget{} : FrameBudget{.work = enough});
+    frame = w.step(step < 4 ? Budget{} : Budget{.work = enough});
     EXPECT_EQ(frame.pairs, 12u);
     EXPECT_EQ(frame.certain, frame.pairs) << step;
   }

@@ -140,10 +140,10 @@ class Factory {
     for (std::size_t i = 0; i < arms; ++i) add_arm();
     for (int k = static_cast<int>(draw_.uniform(30, 350)); k > 0; --k) add_static();
     if (!filters_) return;
-    world_.set_filter([this](BodyId a, BodyId b) { return !excluded(a, b); });
+    world_.set_pair_filter([this](BodyId a, BodyId b) { return !excluded(a, b); });
   }
 
-  void step(int step, const FrameBudget& budget) {
+  void step(int step, const Budget& budget) {
     const double time = step * kStep;
     move_joints(time);
     if (step % 4 == 3) change();
@@ -179,7 +179,7 @@ class Factory {
   void add(Thing thing) {
     BodyOptions options;
     if (filters_ && draw_.uniform(0, 1) < 0.3) thing.group = 2;
-    options.group = thing.group, options.mask = thing.mask;
+    options.filter = {.category = thing.group, .mask = thing.mask};
     thing.id =
         thing.is_static ? world_.add_static(thing.parts, thing.pose, options) : world_.add_body(thing.parts, options);
     ASSERT_NE(thing.id, kNoBody);
@@ -239,7 +239,7 @@ class Factory {
       } else if (what == 1 && filters_) {
         thing.group = draw_.uniform(0, 1) < 0.5 ? 1 : 2;
         thing.mask = draw_.uniform(0, 1) < 0.7 ? ~0u : 1;
-        ASSERT_TRUE(world_.set_groups(thing.id, thing.group, thing.mask));
+        ASSERT_TRUE(world_.set_filter(thing.id, {.category = thing.group, .mask = thing.mask}));
       } else if (thing.is_static && what < 5) {
         thing.pose = static_pose();
         ASSERT_TRUE(world_.move_static(thing.id, thing.pose));
@@ -302,7 +302,7 @@ TEST(PartSearch, TellsWhoTouchesAmongManyStaticBodiesWhileAllChanges) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     SCOPED_TRACE(seed);
     Factory factory(seed, seed % 2 == 1, seed / 2 % 2 == 1);
-    FrameBudget budget;
+    Budget budget;
     if (seed / 4 % 3 == 2) budget.work = 1 + seed * 7919 % 3000;
     for (int step = 0; step < 60 && !::testing::Test::HasFailure(); ++step) factory.step(step, budget);
     touching += factory.touching;

@@ -93,8 +93,8 @@ TEST(Pauses, AreLeftOutWhereOnlyTheLatestStepIsWanted) {
       const auto pause = static_cast<std::int64_t>(std::exp(all.draw.uniform(0, 11)));  // up to ten minutes
       step += pause;
       const double time = static_cast<double>(step) * kStep;
-      const FrameBudget budget{.latest_only = true};
-      const Frame frame = world.step(time, budget);
+      const StepOptions latest_only{.latest_only = true};
+      const Frame frame = world.step(time, {}, latest_only);
       ASSERT_EQ(frame.skipped, static_cast<std::uint64_t>(pause - 1));
       ASSERT_EQ(frame.steps_left, 0u);
       ASSERT_LE(frame.steps, 1u);
@@ -118,8 +118,8 @@ TEST(Pauses, OfNoLengthAreNothingSpecial) {
   Carousel all(1, 20), same(1, 20);
   Detector latest = all.detector({}), each = same.detector({});
   for (int step = 0; step < 200; ++step) {
-    const FrameBudget budget{.latest_only = true};
-    const Frame frame = latest.step(step * kStep, budget), other = each.step(step * kStep);
+    const StepOptions latest_only{.latest_only = true};
+    const Frame frame = latest.step(step * kStep, {}, latest_only), other = each.step(step * kStep);
     ASSERT_EQ(frame.skipped, 0u);
     ASSERT_EQ(frame.events.size(), other.events.size());
     ASSERT_EQ(frame.work, other.work);
@@ -133,17 +133,17 @@ TEST(Pauses, OfADetectorThatKeepsTheStatesEndWhereBodiesAreThen) {
   world.add_static({{ball}}, {.translation = {600, 0, 0}});
   world.add_half_space({-1, 0, 0}, -10'000);
   world.step(0);
-  const FrameBudget budget{.latest_only = true};
-  Frame frame = world.step(600, budget);
+  const StepOptions latest_only{.latest_only = true};
+  Frame frame = world.step(600, {}, latest_only);
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::begin);
   EXPECT_NEAR(world.state(a).pose.translation[0], 600, 1e-6);
   world.set_velocity(a, {-1, 0, 0});
-  frame = world.step(700, budget);
+  frame = world.step(700, {}, latest_only);
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::end);
   world.set_velocity(a, {100, 0, 0});
-  frame = world.step(800, budget);
+  frame = world.step(800, {}, latest_only);
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].b.index, 0xf0000000u);
 }

@@ -234,9 +234,9 @@ struct Meddler {
     EXPECT_EQ(world->add_half_space({0, 0, 1}, 0), kNoBody);
     EXPECT_FALSE(world->remove(body) || world->cancel(body) || world->teleport(body) || world->move_static(body, pose));
     EXPECT_FALSE(world->set_state(body, {}) || world->set_velocity(body, {}) || world->set_local(body, 0, pose));
-    EXPECT_FALSE(world->set_importance(body, 1) || world->set_groups(body, 1, 1));
+    EXPECT_FALSE(world->set_importance(body, 1) || world->set_filter(body, {.mask = 1}));
     EXPECT_FALSE(world->sleep(body) || world->wake(body) || world->shape_changed(0));
-    world->set_filter([](BodyId, BodyId) { return false; });
+    world->set_pair_filter([](BodyId, BodyId) { return false; });
     world->set_executor({});
     EXPECT_TRUE(world->step(1e3).time_refused);
     EXPECT_EQ(world->manifold(event).answer, Answer::maybe);
@@ -268,7 +268,7 @@ TEST(CallsFromWithinAStep, AreRefusedAndChangeNothing) {
       const ShapeId ball = each->add_sphere(1), box = each->add_box({1, 1, 1});
       for (int k = 0; k < 5; ++k) each->add_body({{ball}}), each->add_body({{box}});
     }
-    world.set_filter([&](BodyId, BodyId) { return meddler.meddle(), true; });
+    world.set_pair_filter([&](BodyId, BodyId) { return meddler.meddle(), true; });
     meddler.world = &world, meddler.body = {0, 1};
     for (int step = 0; step < 5; ++step) {
       for (BodyState& state : states) {

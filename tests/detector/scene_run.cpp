@@ -69,7 +69,7 @@ void SceneRun::add(std::size_t body) {
   numbers_[key(id)] = body;
 }
 
-Frame SceneRun::step(int time_step, const FrameBudget& budget) {
+Frame SceneRun::step(int time_step, const Budget& budget, const StepOptions& options) {
   step_ = recorded(time_step);
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     const bool there = scene_->bodies[i].birth <= step_ && step_ < scene_->bodies[i].death;
@@ -82,7 +82,7 @@ Frame SceneRun::step(int time_step, const FrameBudget& budget) {
       if (!scene_->bodies[i].is_static) detector_->set_local(ids_[i], k, scene_->local(step_, i, k));
     }
   }
-  return detector_->step(time_step * scene_->dt, budget);
+  return detector_->step(time_step * scene_->dt, budget, options);
 }
 
 std::size_t SceneRun::number(BodyId id) const { return numbers_.at(key(id)); }

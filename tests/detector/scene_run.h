@@ -20,7 +20,7 @@ class SceneRun {
 
   // Bodies come and go, joints move, then the step is answered. Steps may be any, in ascending order of `time_step`:
   // the recording is played forth and back.
-  Frame step(int time_step, const FrameBudget& budget = {});
+  Frame step(int time_step, const Budget& budget = {}, const StepOptions& options = {});
   int recorded(int time_step) const;  // which recorded step that is
 
   // The scene's numbers of an event's bodies, the smaller one first; half-space i is bodies + i.

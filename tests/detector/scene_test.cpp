@@ -180,7 +180,7 @@ TEST(Detector, ReplaysWhatABudgetInTimeHasCutShort) {
     }
     for (int step = 0; step < steps; ++step) {
       const auto at = static_cast<std::size_t>(step);
-      const Frame frame = replay.step(step, {.replay = &taken[at]});
+      const Frame frame = replay.step(step, {}, {.replay = &taken[at]});
       test::append(again, frame);
       EXPECT_EQ(frame.cut, taken[at]) << c.scene->name << ", step " << step;
     }
@@ -207,7 +207,7 @@ TEST(Detector, AllocatesNothingOnceWarm) {
   std::size_t warm = 0;
   for (const Case& c : cases()) {
     if (c.scene->name == "conveyor") continue;  // adding bodies may
-    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
+    for (const std::uint64_t work : {Budget{}.work, std::uint64_t{5000}}) {
       SceneRun run(*c.scene, {});
       int step = 0;
       Load first, later;
@@ -219,7 +219,7 @@ TEST(Detector, AllocatesNothingOnceWarm) {
       ++warm;
       // What a small budget leaves waiting, class by class, is more than ever at some time or other: a list or two
       // grow.
-      const std::size_t lists = work == FrameBudget{}.work ? 0 : 2;
+      const std::size_t lists = work == Budget{}.work ? 0 : 2;
       EXPECT_LE(test::allocations - before, lists) << c.scene->name << " with " << work;
       EXPECT_LE(run.detector().memory_bytes(), bytes + lists * bytes / 50) << c.scene->name << " with " << work;
     }

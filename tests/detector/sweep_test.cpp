@@ -131,7 +131,7 @@ struct Met {
 };
 
 // What the detector says of the step from 0 to 1.
-Met sweep(const Form& a, const Way& way_a, const Form& b, const Way& way_b, const FrameBudget& budget = {}) {
+Met sweep(const Form& a, const Way& way_a, const Form& b, const Way& way_b, const Budget& budget = {}) {
   std::vector<BodyState> states(2);
   for (BodyState& state : states) state.expiry = 0;
   Detector detector(states_of(states), {.time_step = kStep, .watch = false});
@@ -144,7 +144,7 @@ Met sweep(const Form& a, const Way& way_a, const Form& b, const Way& way_b, cons
   Met met;
   for (int step = 0; step < 2; ++step) {
     states[first.index].pose = way_a.at(step), states[second.index].pose = way_b.at(step);
-    const Frame frame = detector.step(step * kStep, step == 0 ? FrameBudget{} : budget);
+    const Frame frame = detector.step(step * kStep, step == 0 ? Budget{} : budget);
     if (step == 0) continue;
     for (const PairEvent& event : frame.events) {
       if (event.change == PairChange::end) continue;
@@ -317,7 +317,7 @@ TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
     for (std::size_t i = 0; i < states.size(); ++i) {
       states[i].pose.translation = {0.08 * double(i) - 4, 0, step < 2 ? 1.0 : -1.0};
     }
-    const Frame frame = detector.step(step * kStep, {.work = step < 2 ? 1 : FrameBudget{}.work});
+    const Frame frame = detector.step(step * kStep, {.work = step < 2 ? 1 : Budget{}.work});
     if (step < 2) {
       EXPECT_NE(frame.incomplete_from, kNoClass);
       continue;

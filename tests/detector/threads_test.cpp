@@ -37,7 +37,7 @@ void expect_same_frames(const test::Scene& scene, std::uint64_t work) {
 TEST(Threads, GiveTheSameFramesWhateverTheirNumber) {
   const bool more = orchard::test::more() > 1;
   for (const test::Scene& scene : test::every_scene(more ? 60 : 24, more ? 200 : 12, 1 + orchard::test::first_seed())) {
-    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) expect_same_frames(scene, work);
+    for (const std::uint64_t work : {Budget{}.work, std::uint64_t{5000}}) expect_same_frames(scene, work);
   }
 }
 

@@ -29,12 +29,12 @@ void query(const TreeView& tree) {
                                      *pose_from_quaternion({1, 2, 3, 4}, {0, 0.5 * size, 0})};
   for (const Pose& pose : poses) {
     pair.start(Pose{}, pose);
-    for (int step = 0; step < 8 && !pair.finished(); ++step) pair.refine({.pair_tests = 2000});
-    pair.refine_exactly({.pair_tests = 2000});
+    for (int step = 0; step < 8 && !pair.finished(); ++step) pair.refine({.work = 2000});
+    pair.refine_exactly({.work = 2000});
     probed.start(Pose{}, pose);
     probed.probe(2);
     distance.start(Pose{}, pose);
-    for (int step = 0; step < 4 && !distance.finished(); ++step) distance.refine({.pair_tests = 500});
+    for (int step = 0; step < 4 && !distance.finished(); ++step) distance.refine({.work = 500});
     require(distance.lower() <= distance.upper());
     require(pair.separation_bound() >= 0 && pair.lower_bound() >= 0);
     pair.contact();

@@ -50,7 +50,7 @@ TEST(TreePair, IsSmallAndAnswersAsANarrowPhaseOfItsOwn) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Case c = random_case(all, seed);
     NarrowPhase own(all[c.a].tree, all[c.b].tree);
-    const Budget budget = {.pair_tests = seed % 3 == 0 ? 200 : Budget{}.pair_tests};
+    const Budget budget = {.work = seed % 3 == 0 ? 200 : Budget{}.work};
     for (const Order order : {Order::exact_first, Order::level_by_level}) {
       ASSERT_TRUE(same_verdict(collide(workspace, TreePair(trees[c.a], trees[c.b]), c.at_a, c.at_b, budget, order),
                                collide(own, c.at_a, c.at_b, budget, order)))
@@ -113,7 +113,7 @@ TEST(Budget, DecidesAtOnceWhatIsEasyToDecideExactly) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const Case c = random_case(all, seed);
     NarrowPhase pair(all[c.a].tree, all[c.b].tree);
-    const Budget budget = {.pair_tests = 500};
+    const Budget budget = {.work = 500};
     first += collide(pair, c.at_a, c.at_b, budget).answer != Answer::maybe;
     levels += collide(pair, c.at_a, c.at_b, budget, Order::level_by_level).answer != Answer::maybe;
   }

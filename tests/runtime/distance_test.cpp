@@ -52,7 +52,7 @@ TEST(Distance, ClosesInOnTheTruthFromBothSides) {
       ASSERT_LE(query.upper(), upper);
       lower = query.lower(), upper = query.upper();
       if (query.finished()) break;
-      query.refine({.pair_tests = 1 + seed % 200});
+      query.refine({.work = 1 + seed % 200});
     }
     ASSERT_LE(upper, lower * (seed % 2 == 0 ? 1.01 : 1) + rounding * (1 + truth));
     const auto points = query.points();
@@ -74,7 +74,7 @@ TEST(Distance, IsTheSameHoweverItIsCutAndWhicheverBodyComesFirst) {
     whole.start(s.pose_a, s.pose_b), back.start(s.pose_b, s.pose_a);
     const std::size_t before = allocations;
     whole.refine();
-    while (!back.finished()) back.refine({.pair_tests = 40});
+    while (!back.finished()) back.refine({.work = 40});
     ASSERT_EQ(allocations, before);
     ASSERT_EQ(whole.lower(), back.lower()) << seed;
     ASSERT_EQ(whole.upper(), back.upper()) << seed;

@@ -5,16 +5,29 @@
 
 namespace orchard::runtime::test {
 
+// While one lives, the inner loops are those of this machine.
+class OnMachine {
+ public:
+  explicit OnMachine(detail::Machine machine) noexcept { detail::use_machine(machine); }
+  OnMachine(const OnMachine&) = delete;
+  OnMachine& operator=(const OnMachine&) = delete;
+  ~OnMachine() { detail::use_machine(detail::best_machine()); }
+};
+
+// With the portable inner loops, or with the best ones.
+inline OnMachine on_portable_machine(bool portable) {
+  return OnMachine(portable ? detail::Machine::portable : detail::best_machine());
+}
+
 // Runs `check` with the inner loops of every machine that this one can be.
 template <typename Check>
 void on_every_machine(const Check& check) {
-  for (detail::Machine m = detail::Machine::base; m <= detail::best_machine();
+  for (detail::Machine m = detail::Machine::portable; m <= detail::best_machine();
        m = static_cast<detail::Machine>(static_cast<int>(m) + 1)) {
     SCOPED_TRACE(static_cast<int>(m));
-    detail::use_machine(m);
+    const OnMachine chosen(m);
     check();
   }
-  detail::use_machine(detail::best_machine());
 }
 
 }  // namespace orchard::runtime::test

@@ -42,7 +42,7 @@ TEST(ImproperPose, IsAnsweredByMaybeAndNothingElse) {
         expect_nothing_known(query);
         query.refine(), query.probe(2), query.refine_exactly();
         expect_nothing_known(query);
-        ASSERT_EQ(collide(query, p, q, {.pair_tests = 100}).answer, Answer::maybe);
+        ASSERT_EQ(collide(query, p, q, {.work = 100}).answer, Answer::maybe);
         ASSERT_EQ(collide(query, p, q).answer, Answer::maybe);
         distance.start(p, q);
         distance.refine();
@@ -98,48 +98,6 @@ TEST(ImproperPose, MakesNobodyMissAShape) {
   expect_unknown({}, far, farther, std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(cast_ray(tree, {}, {0.5, 0.5, -1}, {0, 0, 1}, -1));
   EXPECT_TRUE(can_ask(tree, {}, far));
-}
-
-TEST(ImproperPose, OfABodyOrAPartMakesNoArticulatedPairSayNo) {
-  const auto tree = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  const std::vector<Part> parts = {{tree, {}}, {tree, Pose{.translation = {2, 0, 0}}}};
-  ArticulatedPair pair(parts, parts, 16);
-  const Pose away = Draw(4).pose(20);
-  EXPECT_EQ(pair.start({}, away), Answer::no);
-  for (const auto& [name, pose] : improper_poses(away)) {
-    EXPECT_EQ(pair.start({}, pose), Answer::maybe) << name;
-    EXPECT_EQ(pair.start(pose, {}), Answer::maybe) << name;
-    pair.set_local_b(1, pose);
-    EXPECT_EQ(pair.start({}, pose), Answer::maybe) << name << " twice";  // a mirror of a mirror is proper
-    EXPECT_EQ(pair.start({}, away), Answer::maybe) << name << " of a part";
-    pair.set_local_b(1, parts[1].local);
-  }
-}
-
-TEST(ArticulatedPair, AnswersForPosesThatAreRigidOnlyApart) {
-  const auto tree = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  Pose pose = Draw(3).pose(0);
-  for (double& x : pose.rotation) x *= 1 + 3e-13;
-  ASSERT_TRUE(is_rigid(pose));
-  ASSERT_FALSE(is_rigid(compose(pose, pose)));
-  const std::vector<Part> part = {{tree, pose}};
-  ArticulatedPair pair(part, part, 16);
-  pair.start(pose, pose);
-  while (!pair.finished()) pair.refine({});
-  EXPECT_EQ(pair.verdict().answer, Answer::yes);
-}
-
-TEST(ArticulatedPair, WithoutPartsTouchesNothing) {
-  const auto tree = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  const std::vector<Part> part = {{tree, {}}}, none;
-  for (const auto& [a, b] : {std::pair(part, none), std::pair(none, part), std::pair(none, none)}) {
-    ArticulatedPair pair(a, b, 16);
-    EXPECT_EQ(pair.start({}, {}), Answer::no);
-    EXPECT_TRUE(pair.finished());
-    EXPECT_EQ(pair.verdict().answer, Answer::no);
-    EXPECT_EQ(pair.contact_part_a(), 0u);
-    EXPECT_EQ(pair.contact_part_b(), 0u);
-  }
 }
 
 // The bodies are so far apart, or so different in size, that no float could say how.

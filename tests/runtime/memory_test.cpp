@@ -21,7 +21,7 @@ TEST(Memory, IsNotAllocatedByAQuery) {
   const Pose pose = draw.pose(0.7);
   const std::size_t before = allocations;
   query.start({}, pose);
-  while (!query.finished()) query.refine({.pair_tests = 100});
+  while (!query.finished()) query.refine({.work = 100});
   query.verdict();
   query.start({}, pose);
   query.refine_exactly();
@@ -94,7 +94,7 @@ TEST(Memory, WithoutAStackForTheTrianglesTwoLeavesStayUndecided) {
     EXPECT_TRUE(query.finished());
     EXPECT_EQ(query.start({}, Pose{.translation = {5, 0, 0}}), Answer::no);
   }
-  EXPECT_EQ(collide(query, {}, Pose{.translation = {1, 0, 0}}, {.pair_tests = 10}).answer, Answer::maybe);
+  EXPECT_EQ(collide(query, {}, Pose{.translation = {1, 0, 0}}, {.work = 10}).answer, Answer::maybe);
   distance.start({}, {});
   EXPECT_TRUE(distance.finished());
 }

@@ -91,7 +91,7 @@ TEST(NarrowPhase, AgreesWithEveryPairOfTrianglesAtTenThousandPoses) {
       query.start({}, b);
       const Answer quick = query.refine_exactly();
       query.start({}, b);
-      while (!query.finished()) query.refine({.pair_tests = 1000});
+      while (!query.finished()) query.refine({.work = 1000});
       ASSERT_EQ(query.answer(), quick);
       const bool truth = touch(shapes[i], shapes[j], b);
       touching += truth;

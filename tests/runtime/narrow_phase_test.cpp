@@ -92,12 +92,12 @@ TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
     sliced.start(s.pose_a, s.pose_b);
     double bound = sliced.separation_bound();
     while (!sliced.finished()) {
-      const Budget budget{.pair_tests = 1 + draw.bits() % most};
+      const Budget budget{.work = 1 + draw.bits() % most};
       const std::uint64_t before = sliced.work();
-      ASSERT_EQ(sliced.refine({.pair_tests = 0}), sliced.answer());
+      ASSERT_EQ(sliced.refine({.work = 0}), sliced.answer());
       sliced.refine(budget);
       const std::uint64_t spent = sliced.work() - before;
-      ASSERT_LT(spent, budget.pair_tests + kLeafPairTests * kTriangleTestCost);
+      ASSERT_LT(spent, budget.work + kLeafPairTests * kTriangleTestCost);
       ASSERT_TRUE(spent > 0 || sliced.finished());
       ASSERT_LE(sliced.separation_bound(), bound);
       bound = sliced.separation_bound();
@@ -133,7 +133,7 @@ TEST(NarrowPhase, ReplaysATimedRunFromItsCount) {
       timed.refine({.time = std::chrono::nanoseconds(seed % 3 * 500)});
     }
     replayed.start(s.pose_a, s.pose_b);
-    while (replayed.work() < timed.work()) replayed.refine({.pair_tests = timed.work() - replayed.work()});
+    while (replayed.work() < timed.work()) replayed.refine({.work = timed.work() - replayed.work()});
     ASSERT_EQ(outcome_of(timed), outcome_of(replayed)) << seed;
   }
 }
@@ -171,7 +171,7 @@ TEST(NarrowPhase, CanBeUsedAgainAfterAnyInterruption) {
     reused.start(pose_a, pose_b);
     fresh.start(pose_a, pose_b);
     for (std::uint64_t steps = draw.bits() % 8; steps > 0; --steps) {
-      const Budget budget{.pair_tests = 1 + draw.bits() % 200};
+      const Budget budget{.work = 1 + draw.bits() % 200};
       reused.refine(budget);
       fresh.refine(budget);
     }

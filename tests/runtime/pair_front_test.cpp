@@ -123,7 +123,7 @@ TEST(PairFront, GoesOnWhereABudgetEndedIt) {
       const Pose at = centered(trees[journey.j], journey.b);
       Verdict verdict;
       const bool known = CoherentPair::recall(workspace, pair, journey.a, at, verdict);
-      const Budget budget = {.pair_tests = step % 3 == 2 ? Budget{}.pair_tests : 1 + journey.draw.bits() % 400};
+      const Budget budget = {.work = step % 3 == 2 ? Budget{}.work : 1 + journey.draw.bits() % 400};
       if (!known) verdict = CoherentPair::search(workspace, pair, journey.a, at, budget);
       (verdict.answer == Answer::maybe ? maybe : certain) += 1;
       if (verdict.answer == Answer::maybe) {

@@ -188,16 +188,16 @@ TEST(TimeOfImpact, ComesNearerWithEveryBudgetAndNeverTooFar) {
     b_moves.spin = {1, 2, 0.5};
     const TreePair pair(a, b);
     const Impact whole = time_of_impact(workspace, pair, {}, b_moves);
-    ImpactOptions options{.budget = {.pair_tests = 60}};
+    ImpactOptions options{.budget = {.work = 60}};
     Impact part = time_of_impact(workspace, pair, {}, b_moves, options);
     for (int i = 0; i < 2000 && !part.finished; ++i) {
-      ASSERT_LT(part.work, options.budget.pair_tests + kLeafPairTests * kTriangleTestCost) << seed;
+      ASSERT_LT(part.work, options.budget.work + kLeafPairTests * kTriangleTestCost) << seed;
       ASSERT_GE(part.t0, options.begin) << seed;
       if (whole.answer == Answer::yes) {
         ASSERT_LE(part.t0, whole.t1) << seed;
       }
       ++interrupted;
-      if (part.t0 == options.begin) options.budget.pair_tests *= 2;  // too little for one step here
+      if (part.t0 == options.begin) options.budget.work *= 2;  // too little for one step here
       options.begin = part.t0;
       part = time_of_impact(workspace, pair, {}, b_moves, options);
     }

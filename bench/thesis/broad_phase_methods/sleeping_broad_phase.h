@@ -26,7 +26,7 @@ enum class Rebuild : std::uint8_t { what_intersected, everything };
 struct SleepingOptions {
   SleepingMethod method = SleepingMethod::projection;
   Rebuild rebuild = Rebuild::what_intersected;
-  BroadPhaseOptions common{};  // `window` and `vectors` have no meaning here
+  BroadPhaseOptions common{};  // `window` has no meaning here
 };
 
 // The dissertation's broad phase (Fig. 4.23): it sleeps until the earliest two bounds touch, asks for new ones, and

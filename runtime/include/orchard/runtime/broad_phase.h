@@ -1,5 +1,4 @@
 #pragma once
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "orchard/runtime/budget.h"
 #include "orchard/runtime/executor.h"
 #include "orchard/runtime/promise.h"
 
@@ -100,7 +100,6 @@ struct BroadPhaseOptions {
   double start = 0;         // the time of step 0
   // Most steps between two updates of a body's window; 0 lets the broad phase choose.
   std::uint32_t window = 0;
-  bool vectors = true;  // false: the portable inner loop. Same answers
   // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
   // float float_slack() in motion_helpers.h. A length; it costs what radii larger by twice as much would.
   double position_slack = 0;
@@ -129,16 +128,9 @@ inline constexpr double kMaxSteps = 0x1p40;
 // within kMaxSteps time steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
-// Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. A pair's
-// test takes two and is not split, so a step may ask for one more than `work`. The clock is read once per kWorkPerClock
-// units.
-struct WorkBudget {
-  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
-  std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
-  // Not 0: the step ends where that of another run did, in place of `time`: after its Advance::work if it was
-  // interrupted, or kWholeStep if not. For replaying what a clock cut short.
-  std::uint64_t replay = 0;
-};
+// A unit of a Budget's work is a motion that is asked for (8.2). A call asks for at least one of them. A pair's test
+// takes two and is not split, so a step may ask for one more than the budget allows. The clock is read once per
+// kWorkPerClock units.
 inline constexpr std::uint64_t kWorkPerClock = 64;
 inline constexpr std::uint64_t kWholeStep = std::numeric_limits<std::uint64_t>::max();
 
@@ -192,7 +184,7 @@ BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& option
 //     for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) ..     // see Fig. 4.23
 // While pairs overlap, each step reports them.
 //
-// Deterministic: same calls, same motions, same reports in the same order, with vectors or without, whatever a budget
+// Deterministic: same calls, same motions, same reports in the same order, on every machine, whatever a budget
 // cut short in *work* leaves out. Not thread-safe.
 //
 // Throws only std::bad_alloc, and what the source throws. Where a change of bodies throws, nothing has changed. Where
@@ -232,15 +224,17 @@ class BroadPhase {
   // Processes the steps up to t_now that may have something, and stops at the first one that has. A long time ahead
   // takes a long time: a body is updated every 254 steps at least.
   Advance advance(double t_now) {
-    if (!sleeps_until(t_now)) return process(t_now, nullptr);
+    if (!sleeps_until(t_now)) return process(t_now, nullptr, 0);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
   // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
   // over is resumed at the next step. Any budget gets to every body and pair of a class in time, unless a more
   // important class takes it all. Each pair reported was tested at this step.
-  Advance advance(double t_now, const WorkBudget& budget) {
-    if (!sleeps_until(t_now)) return process(t_now, &budget);
+  // `replay`, if not 0, replays what a clock has cut short: the step ends where that of another run did, in place of
+  // budget.time. It is that run's Advance::work if the step was interrupted, else kWholeStep.
+  Advance advance(double t_now, const Budget& budget, std::uint64_t replay = 0) {
+    if (!sleeps_until(t_now)) return process(t_now, &budget, replay);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
@@ -271,8 +265,8 @@ class BroadPhase {
                                              const detail::MakeMethod& make);
   BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make,
              const MotionArrays* arrays = nullptr);
-  Advance process(double t_now, const WorkBudget* budget);
-  Advance process_steps(double t_now, const WorkBudget* budget);
+  Advance process(double t_now, const Budget* budget, std::uint64_t replay);
+  Advance process_steps(double t_now, const Budget* budget, std::uint64_t replay);
   BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= max_time_; }
   std::int64_t step_reported() const noexcept;

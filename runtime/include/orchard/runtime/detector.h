@@ -76,9 +76,9 @@ StateSource states_of(const std::vector<BodyState>& values);
 
 struct BodyOptions {
   std::uint8_t importance = 0;  // 0 is the highest class; a pair is as important as the less important of its bodies
-  // Two bodies may touch if each one's mask has a bit of the other's group (BodyFilter::category). Others are no pair
-  // in the broad phase already, and cost nothing.
-  std::uint32_t group = 1, mask = 0xffffffffu;
+  // Which pairs the body is in. Others are no pair in the broad phase already, and cost nothing. Half-spaces are
+  // static.
+  BodyFilter filter{};
   // Above 0: also what happens between two steps is found, by time_of_impact() from pose to pose, those of the body and
   // of its parts: of each part the centre straight, the rotation by the smallest angle. It is a promise that relative
   // to whatever the body may meet no origin moves faster. Lengths per second. Where the scale changes within a step,
@@ -125,35 +125,35 @@ struct DetectorOptions {
 
 // How far a step got that a budget in time cut short.
 struct StepCut {
-  std::uint64_t broad = kWholeStep;    // WorkBudget::replay
+  std::uint64_t broad = kWholeStep;    // the replay of BroadPhase::advance()
   std::uint64_t begun = kWholeStep;    // beginnings of pairs of parts, and first searches
   std::uint64_t refined = kWholeStep;  // their work, and 1 for each piece of it
   std::uint64_t swept = kWholeStep;    // pairs
   friend bool operator==(const StepCut&, const StepCut&) = default;
 };
 
-// Whichever ends first. Work is counted as Budget::pair_tests is; a motion that the broad phase asks for counts as
-// kMotionWork, beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of
-// a limited budget at most, sweeps half of what it leaves. Of a budget in time, what a step does in any case is
-// foreseen from the steps before, and set aside; where that alone takes longer, nothing keeps the step to its budget. A
-// step exceeds `work` by less than kMaxOvershoot, one pair of leaves, but for what each step does in any case: one unit
-// of the broad phase (WorkBudget). Only a budget in counted work gives the same answers on every machine; what a clock
-// has cut short can be replayed.
-struct FrameBudget {
-  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
-  std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
-  // Not null: the step ends where that of another run did, Frame::cut, in place of `time`. After the same calls with
-  // the same states, the frame is that run's. A replayed call answers one step at most, and no executor took part.
+// A unit of a Budget's work is that of NarrowPhase; a motion that the broad phase asks for counts as kMotionWork,
+// beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of a limited
+// budget at most, sweeps half of what it leaves. Of a budget in time, what a step does in any case is foreseen from the
+// steps before, and set aside; where that alone takes longer, nothing keeps the step to its budget. A step exceeds
+// `work` by less than kMaxOvershoot, one pair of leaves, but for what each step does in any case: one unit of the broad
+// phase. Only a budget in counted work gives the same answers on every machine; what a clock has cut short can be
+// replayed.
+inline constexpr std::uint64_t kMotionWork = 16;
+inline constexpr std::uint64_t kPairWork = 16;
+inline constexpr std::uint64_t kSimplePairWork = 64;
+inline constexpr std::uint64_t kMaxOvershoot = std::uint64_t{kLeafPairTests} * kTriangleTestCost + kBlockWidth;
+
+struct StepOptions {
+  // Not null: the step ends where that of another run did, Frame::cut, in place of the budget's time. After the same
+  // calls with the same states, the frame is that run's. A replayed call answers one step at most, and no executor took
+  // part.
   const StepCut* replay = nullptr;
   // Only the last step up to the time given to step() is answered, for after a pause. The steps before it are left out:
   // their number is Frame::skipped, what only happened there is not reported, and no sweep of a continuous body leads
   // across them. What touched before and touches now stays, what touches no more ends.
   bool latest_only = false;
 };
-inline constexpr std::uint64_t kMotionWork = 16;
-inline constexpr std::uint64_t kPairWork = 16;
-inline constexpr std::uint64_t kSimplePairWork = 64;
-inline constexpr std::uint64_t kMaxOvershoot = std::uint64_t{kLeafPairTests} * kTriangleTestCost + kBlockWidth;
 
 enum class PairChange : std::uint8_t {
   begin,     // the first certain yes
@@ -182,13 +182,13 @@ struct Frame {
   // Up to the time given: not 0 if DetectorOptions::max_events ended the call, and another one with the same time goes
   // on.
   std::uint64_t steps_left = 0;
-  std::uint64_t skipped = 0;            // steps left out: FrameBudget::latest_only
+  std::uint64_t skipped = 0;            // steps left out: StepOptions::latest_only
   std::span<const PairEvent> events;    // by time, then by pair
   std::uint64_t pairs = 0;              // of bodies that may touch, whose spheres overlapped, over the steps
   std::uint64_t certain = 0;            // of these, with a certain answer
   StepCut cut{};                        // the last step's, if the budget was in time and there is no executor
   double worst_bound = 0;               // the largest separation bound among the rest: how far from certain
-  std::uint64_t work = 0;               // as FrameBudget counts it
+  std::uint64_t work = 0;               // in units of Budget::work
   std::uint64_t motions_asked = 0;      // part of it: times kMotionWork
   unsigned incomplete_from = kNoClass;  // the broad phase was interrupted: see Advance
   std::size_t left_over = 0;
@@ -206,12 +206,12 @@ struct StepLoad {
   double time = 0;
   std::uint64_t motions = 0;  // to be asked for, at least
   double pairs = 0;           // expected to overlap
-  double work = 0;            // expected, as FrameBudget counts it
+  double work = 0;            // expected, in units of Budget::work
 };
 
 // Which bodies touch, at every step, within a budget, always with a bound.
 //
-// At each step every pair of bodies whose spheres overlap, that groups, masks and the filter allow, is answered from
+// At each step every pair of bodies whose spheres overlap, that the filters allow, is answered from
 // the poses of that step: yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; where
 // many static bodies are in reach of one, the spheres that have to overlap are its parts'. The parts of one body are
 // never a pair, nor are two static bodies. Trees are their surfaces, as for NarrowPhase; the simple shapes (sphere,
@@ -277,7 +277,7 @@ class Detector {
   bool set_velocity(BodyId body, const Vec3& velocity);              // from where it is now
   bool set_local(BodyId body, std::size_t part, const Pose& local);  // articulated bodies: at any time
   bool set_importance(BodyId body, std::uint8_t importance);
-  bool set_groups(BodyId body, std::uint32_t group, std::uint32_t mask);
+  bool set_filter(BodyId body, const BodyFilter& filter);
   // It does not move until wake(): its source is asked once more, at the next step, and then no more. Pairs of it with
   // what does not move either keep their answers at no cost. Where the detector keeps the states it stops where it is,
   // and wakes at rest.
@@ -287,7 +287,7 @@ class Detector {
   // The triangles of a shape's tree have moved (FlexibleTree): answers about bodies at rest are void. O(bodies).
   bool shape_changed(ShapeId shape);
   // None: all pairs. Pairs that overlap already are asked about again; see PairFilter in broad_phase.h.
-  void set_filter(PairFilter filter);
+  void set_pair_filter(PairFilter filter);
   void set_executor(const Executor& executor) noexcept;
 
   // At the time of the last step, where the detector keeps the states; else as of when it was asked for last. What is
@@ -302,9 +302,9 @@ class Detector {
 
   // Answers the steps up to `time` that may have something, in order; what the budget has left is shared evenly among
   // them. Call it once per frame, never with a smaller time. A long time ahead takes a long time, as every step with a
-  // pair, and with `watch` every step, is looked at, within any budget: FrameBudget::latest_only answers the last one
+  // pair, and with `watch` every step, is looked at, within any budget: StepOptions::latest_only answers the last one
   // alone.
-  Frame step(double time, const FrameBudget& budget = {}) noexcept;
+  Frame step(double time, const Budget& budget = {}, const StepOptions& options = {}) noexcept;
 
   // Where the parts of an event of the last step touch, at up to four points, and how they come apart; as contacts()
   // does for two trees. Boxes are solid: what is wholly inside one leaves it. With a half-space the points are the

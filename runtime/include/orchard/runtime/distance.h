@@ -14,7 +14,7 @@ namespace orchard::runtime {
 //
 //   DistanceQuery query(a, b);
 //   query.start(pose_a, pose_b, {.relative = 0.01});
-//   while (!query.finished()) query.refine({.pair_tests = 1000});   // or refine() at once
+//   while (!query.finished()) query.refine({.work = 1000});   // or refine() at once
 //
 // Preconditions, threads, determinism, allocation (none after construction): as for NarrowPhase. Without triangles, or
 // without memory for them, finished() is true at once and the bounds are those of the roots; for poses that NarrowPhase

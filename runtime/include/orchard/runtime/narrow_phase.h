@@ -1,11 +1,11 @@
 #pragma once
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 
+#include "orchard/runtime/budget.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
 #include "orchard/runtime/prepared_tree.h"
@@ -57,13 +57,9 @@ enum class Answer : std::uint8_t {
   yes     // a triangle of one meets a triangle of the other
 };
 
-// Whichever ends first. Work is counted in tests of two spheres or two ball slabs; a test of two triangles counts as
-// kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than two rows of eight
-// tests or one pair of leaves (kLeafPairTests triangle tests).
-struct Budget {
-  std::uint64_t pair_tests = std::numeric_limits<std::uint64_t>::max();
-  std::chrono::nanoseconds time = std::chrono::nanoseconds::max();  // steady clock, read once per kClockInterval tests
-};
+// A unit of a Budget's work is a test of two spheres or two ball slabs; a test of two triangles counts as
+// kTriangleTestCost. A call with work > 0 always makes progress: it exceeds the budget by less than two rows of eight
+// tests or one pair of leaves (kLeafPairTests triangle tests). The clock is read once per kClockInterval tests.
 inline constexpr std::uint32_t kTriangleTestCost = 2;
 inline constexpr std::uint32_t kLeafPairTests = kBlockWidth * kBlockWidth;
 inline constexpr std::uint64_t kClockInterval = 32;
@@ -83,7 +79,7 @@ struct Verdict {
   double lower_bound = 0;       // certified lower bound on the distance between the surfaces, 0 if none is known
   Contact contact;
   std::uint32_t level = 0;  // completed levels below the roots
-  std::uint64_t work = 0;   // in the units of Budget::pair_tests, since start()
+  std::uint64_t work = 0;   // in units of Budget::work, since start()
 };
 
 // One pair of bodies, answered level by level (dissertation 3.2, Fig. 5.4): level 0 tests the roots (and, if both have

@@ -61,7 +61,6 @@ typedef void (*orchard_promise_listener)(void* context, const orchard_broken_pro
 typedef struct orchard_broad_phase_options {
   double time_step, start;
   uint32_t window; /* 0: as it chooses */
-  int vectors;
   double position_slack;
   int validate;                    /* debugging: compare every motion with what was promised before */
   orchard_promise_listener broken; /* null: broken promises are only counted */

@@ -36,11 +36,11 @@ typedef struct orchard_part {
 } orchard_part;
 
 typedef struct orchard_body_options {
-  uint8_t importance;      /* 0 is the highest class */
-  uint32_t group, mask;    /* two may touch if each one's mask has a bit of the other's group */
-  double continuous_speed; /* 0: not continuous */
-  double reach;            /* 0: as far as the parts reach */
-  int suggest;             /* needs orchard_detector_options.watch: without it the body is refused */
+  uint8_t importance;         /* 0 is the highest class */
+  orchard_body_filter filter; /* which pairs the body is in */
+  double continuous_speed;    /* 0: not continuous */
+  double reach;               /* 0: as far as the parts reach */
+  int suggest;                /* needs orchard_detector_options.watch: without it the body is refused */
 } orchard_body_options;
 
 /* Fills states[i] with that of bodies[i] (indices) at `time`. Static bodies have indices of the same kind. */
@@ -129,13 +129,15 @@ int orchard_detector_teleport(orchard_detector* detector, orchard_body body);
 int orchard_detector_move_static(orchard_detector* detector, orchard_body body, const orchard_pose* pose);
 int orchard_detector_set_local(orchard_detector* detector, orchard_body body, size_t part, const orchard_pose* local);
 int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance);
-int orchard_detector_set_groups(orchard_detector* detector, orchard_body body, uint32_t group, uint32_t mask);
+/* Null is the default one. */
+int orchard_detector_set_filter(orchard_detector* detector, orchard_body body, const orchard_body_filter* filter);
 /* Of detectors without a source: from the time of the last step on the body is there, and goes straight on. */
 int orchard_detector_set_state(orchard_detector* detector, orchard_body body, const orchard_body_state* state);
 int orchard_detector_set_velocity(orchard_detector* detector, orchard_body body, const double velocity[3]);
 int orchard_detector_sleep(orchard_detector* detector, orchard_body body);
 int orchard_detector_wake(orchard_detector* detector, orchard_body body);
-int orchard_detector_set_filter(orchard_detector* detector, orchard_pair_filter filter, void* context); /* or null */
+int orchard_detector_set_pair_filter(orchard_detector* detector, orchard_pair_filter filter,
+                                     void* context); /* or null */
 size_t orchard_detector_size(const orchard_detector* detector);
 /* At the last step without a source, else as of when it was asked for last; what is static is at rest. */
 orchard_body_state orchard_detector_state(const orchard_detector* detector, orchard_body body);
