@@ -52,7 +52,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
     if (result.answer == Answer::yes) return result;
   }
   std::uint64_t work = 0;
-  const Verdict verdict = detail::answer_exactly(workspace.narrow, pair, work);
+  const Verdict verdict = detail::answer_exactly(query_of(workspace.narrow), pair, work);
   result.answer = verdict.answer;
   if (verdict.answer != Answer::yes) return result;
   result.count = 1;

@@ -1,6 +1,6 @@
 #include "pair_tests.h"
 
-#include "pair/pair_access.h"
+#include "pair/pair_query.h"
 
 namespace orchard::runtime::detail {
 
@@ -130,7 +130,7 @@ std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noe
   return pair.a.shape->has_tree() ? verdict.contact.triangle_a : verdict.contact.triangle_b;
 }
 
-Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t& work, std::uint64_t most,
+Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& work, std::uint64_t most,
                        std::uint32_t guess) noexcept {
   if (!pair.a.rigid || (pair.b.shape != nullptr && !pair.b.rigid)) return unknown_verdict();
   if (pair.simple()) {
@@ -138,7 +138,7 @@ Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t&
     return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose(), pair.half)
                                    : test_simple(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), guess);
   }
-  PairAccess::bind(narrow, pair.a.shape->prepared, pair.b.shape->prepared);
+  narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
   narrow.start(pair.a.pose(), pair.b.pose());
   const bool limited = most != std::numeric_limits<std::uint64_t>::max();
   work += kPairWork;

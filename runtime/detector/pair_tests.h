@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "half_spaces.h"
+#include "pair/pair_query.h"
 #include "simple_pair.h"
 
 namespace orchard::runtime::detail {
@@ -98,7 +99,7 @@ Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept;
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept;
 
 // The whole answer, unless `work`, which it increases by what it costs, reaches `most`. `narrow` is only scratch.
-Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t& work,
+Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& work,
                        std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
                        std::uint32_t guess = kNoTriangle) noexcept;
 
@@ -108,7 +109,7 @@ inline Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
   make_solid(verdict, pair);
   return verdict;
 }
-inline Verdict verdict_of(const NarrowPhase& narrow, const PartPair& pair) noexcept {
+inline Verdict verdict_of(const PairQuery& narrow, const PartPair& pair) noexcept {
   return solid_verdict(narrow.verdict(), pair);
 }
 

@@ -30,10 +30,10 @@ void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::
   for (std::size_t i = 0; more && i < pool_.size(); ++i) pool_[i]->bind(deepest_, deepest_);
 }
 
-NarrowPhase* QueryPool::take(std::size_t most) {
+PairQuery* QueryPool::take(std::size_t most) {
   if (used_ >= most) return nullptr;
   if (used_ == pool_.size()) {
-    pool_.push_back(std::make_unique<NarrowPhase>(kRoom));
+    pool_.push_back(std::make_unique<PairQuery>(kRoom));
     if (!deepest_.tree.blocks.empty()) pool_.back()->bind(deepest_, deepest_);
   }
   return pool_[used_++].get();
@@ -46,7 +46,7 @@ std::size_t QueryPool::memory_bytes() const noexcept {
                             sizeof(Workspace::Scratch::TimedPair);
   const std::size_t sweeps = sweeps_ ? sizeof(Workspace::Scratch) + timed : 0;
   return scratches_.size() * (sizeof(Scratch) + 2 * stack + sweeps) +
-         pool_.size() * (sizeof(NarrowPhase) + stack + lists);
+         pool_.size() * (sizeof(PairQuery) + stack + lists);
 }
 
 }  // namespace orchard::runtime::detail

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "orchard/runtime/body_pair.h"
+#include "pair/pair_query.h"
 #include "shapes.h"
 
 namespace orchard::runtime::detail {
@@ -24,14 +25,14 @@ class QueryPool {
   Scratch& scratch(std::size_t job) noexcept { return *scratches_[job]; }
 
   // Null once `most` are in use, or there is no memory.
-  NarrowPhase* take(std::size_t most);
+  PairQuery* take(std::size_t most);
   void give_back_all() noexcept { used_ = 0; }
   std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::size_t kRoom = 128;  // meeting pairs of spheres a level: for bounds, not for answers
   std::vector<std::unique_ptr<Scratch>> scratches_;
-  std::vector<std::unique_ptr<NarrowPhase>> pool_;
+  std::vector<std::unique_ptr<PairQuery>> pool_;
   std::size_t used_ = 0, seen_shapes_ = 0;
   bool sweeps_ = false;
   PreparedTree deepest_;  // of all shapes: a query that has been bound to it allocates for no other

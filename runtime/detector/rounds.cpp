@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pair/coherent_pair.h"
-#include "pair/pair_access.h"
+#include "pair/pair_query.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -102,7 +102,7 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
     if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
       if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
-      record.along = PairAccess::apart_along(scratch.workspace.narrow);
+      record.along = query_of(scratch.workspace.narrow).apart_along();
     }
     scratch.work += kPairWork + verdict.work;
     if (verdict.answer == Answer::no) make_solid(verdict, pair);
@@ -124,7 +124,7 @@ void Rounds::answer_two_parts(Record& record, Step now, QueryPool::Scratch& scra
   if (spheres_part(pair)) {
     verdict = unasked(pair);
   } else {
-    ::new (&verdict) Verdict(answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess));
+    ::new (&verdict) Verdict(answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess));
   }
   if (verdict.answer == Answer::yes) verdict.lower_bound = 0;
   if (verdict.answer != Answer::maybe) record.answered = now;
@@ -145,7 +145,7 @@ Verdict Rounds::answer_again(Record& record, std::uint32_t guess, const PartPair
                              QueryPool::Scratch& scratch) noexcept {
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
                      &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
-  if (!known) return answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
+  if (!known) return answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess);
   const Pose &a = pair.a.pose(), &b = pair.b.pose();
   Verdict verdict;
   if (!CoherentPair::recall(scratch.workspace, record.trees, a, b, verdict)) {
@@ -158,7 +158,7 @@ Verdict Rounds::answer_again(Record& record, std::uint32_t guess, const PartPair
 
 // Of two parts of bodies, what is new.
 Verdict Rounds::answer_anew(Record& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept {
-  const Verdict verdict = answer_exactly(scratch.workspace.narrow, pair, scratch.work);
+  const Verdict verdict = answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work);
   record.met = verdict.answer == Answer::yes && !pair.simple();
   if (!record.met) return verdict;
   record.trees = TreePair(pair.a.shape->prepared, pair.b.shape->prepared);

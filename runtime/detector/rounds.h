@@ -47,7 +47,7 @@ class Rounds {
     bool done = false, simple = false;
     bool slow = false;     // what the last step found may be of use
     bool started = false;  // `query` has been
-    NarrowPhase* query = nullptr;
+    PairQuery* query = nullptr;
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
   };

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "pair/coherent_pair.h"
-#include "pair/pair_access.h"
+#include "pair/pair_query.h"
 #include "rounds.h"
 
 // Within a budget: by class of importance, and there in the order of who has waited longest. At the same time
@@ -69,7 +69,7 @@ void Rounds::sort_tasks(const RecordTable& records) {
 // What can be told without a search.
 void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) const noexcept {
   PartPair pair;
-  NarrowPhase& narrow = scratch.workspace.narrow;
+  PairQuery& narrow = query_of(scratch.workspace.narrow);
   const double bound = task.verdict.separation_bound;
   if (task.simple) {
     place(record, task.part_a, task.part_b, pair);
@@ -90,7 +90,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
-    PairAccess::bind(narrow, pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
     narrow.start(pair.a.pose(), pair.b.pose());
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
@@ -104,13 +104,13 @@ void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::S
   PartPair pair;
   place(record, task.part_a, task.part_b, pair);
   const double bound = task.verdict.separation_bound;
-  NarrowPhase& narrow = scratch.workspace.narrow;
+  PairQuery& narrow = query_of(scratch.workspace.narrow);
   Verdict verdict;
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
     if (verdict.answer != Answer::yes) note_search(task.record, record, verdict.work, scratch);
   } else {
-    PairAccess::bind(narrow, pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
   }
   task.work = verdict.work;
@@ -198,9 +198,9 @@ void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice,
                         std::chrono::nanoseconds time) const noexcept {
   PartPair pair;
   place(record, task.part_a, task.part_b, pair);
-  NarrowPhase& query = *task.query;
+  PairQuery& query = *task.query;
   if (!task.started) {
-    PairAccess::bind(query, pair.a.shape->prepared, pair.b.shape->prepared);
+    query.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
     query.start(pair.a.pose(), pair.b.pose());
     task.started = true;
   }

@@ -80,7 +80,7 @@ class PairSweep {
   // A box is solid, and what lies wholly in it touches it although the surfaces are apart.
   bool starts_inside() noexcept {
     if (from_.a.shape->kind != ShapeKind::box && from_.b.shape->kind != ShapeKind::box) return false;
-    const Verdict verdict = answer_exactly(workspace_.narrow, from_, work_, most_);
+    const Verdict verdict = answer_exactly(query_of(workspace_.narrow), from_, work_, most_);
     if (verdict.answer == Answer::no) return false;
     result_.answer = verdict.answer;
     result_.to = 0;
@@ -93,7 +93,8 @@ class PairSweep {
     now.a.move_to(a_.at(impact.t1)), now.b.move_to(b_.at(impact.t1));
     result_.answer = Answer::yes;
     result_.to = impact.t1;
-    result_.verdict = work_ < most_ ? answer_exactly(workspace_.narrow, now, work_, most_) : unknown_verdict();
+    result_.verdict =
+        work_ < most_ ? answer_exactly(query_of(workspace_.narrow), now, work_, most_) : unknown_verdict();
     if (result_.verdict.answer == Answer::yes) return;
     // Rounding, or the end of the budget: what the search knows of the place.
     const Vec3 way = Vec3(impact.on_b) - Vec3(impact.on_a);
@@ -136,7 +137,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
     work += kSimplePairWork;
     const double gap = half_space_distance(*now.a.shape, now.a.pose(), now.half);
     if (gap <= near) {
-      const Verdict verdict = answer_exactly(workspace.narrow, now, work, most);
+      const Verdict verdict = answer_exactly(query_of(workspace.narrow), now, work, most);
       if (verdict.answer == Answer::yes) {
         if (certain) result.from = time;
         result.answer = Answer::yes;

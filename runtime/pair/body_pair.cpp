@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "distance_search.h"
 #include "workspace_scratch.h"
 
 namespace orchard::runtime {
@@ -18,8 +19,9 @@ Workspace::Scratch* Workspace::scratch() noexcept {
 
 Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, const Budget& budget,
                 Order order) noexcept {
-  workspace.narrow.bind(pair.a(), pair.b());
-  return collide(workspace.narrow, a, b, budget, order);
+  PairQuery& query = query_of(workspace.narrow);
+  query.bind(pair.a(), pair.b());
+  return collide(query, a, b, budget, order);
 }
 
 Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept {
@@ -30,10 +32,11 @@ Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair&
                      const Budget& budget) noexcept {
   if (!(margin >= 0)) return Answer::maybe;
   if (margin == 0) {
-    workspace.narrow.bind(pair.a(), pair.b());
-    return collide(workspace.narrow, poses.a, poses.b, budget).answer;
+    PairQuery& query = query_of(workspace.narrow);
+    query.bind(pair.a(), pair.b());
+    return collide(query, poses.a, poses.b, budget).answer;
   }
-  DistanceQuery& query = workspace.distance;
+  DistanceSearch& query = search_of(workspace.distance);
   query.bind(pair.a(), pair.b());
   query.start_within(poses.a, poses.b, margin);
   query.refine(budget);
@@ -43,7 +46,7 @@ Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair&
 
 Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                   const DistanceQuery::Tolerance& tolerance) noexcept {
-  DistanceQuery& query = workspace.distance;
+  DistanceSearch& query = search_of(workspace.distance);
   query.bind(pair.a(), pair.b());
   query.start(a, b, tolerance);
   query.refine();

@@ -5,7 +5,7 @@
 
 #include "coherent_pair.h"
 #include "front_walk.h"
-#include "pair_access.h"
+#include "pair/pair_query.h"
 #include "pose_change.h"
 #include "rigid_pair.h"
 #include "tree/tree_nodes.h"
@@ -86,7 +86,7 @@ struct Coherence {
       }
     }
     if (memory.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
-    ::new (&verdict) Verdict(workspace.narrow.verdict());
+    ::new (&verdict) Verdict(query_of(workspace.narrow).verdict());
     return true;
   }
 
@@ -105,25 +105,25 @@ struct Coherence {
     const bool tried = memory.close && memory.wait > 0;
     if (tried && place_narrow()) {
       --memory.wait;
-      PairAccess::search(workspace.narrow, budget);
+      query_of(workspace.narrow).search(budget);
       return remembered();
     }
     collide(budget);
-    memory.close = PairAccess::exact_started(workspace.narrow);
+    memory.close = query_of(workspace.narrow).exact();
     memory.in_vain = static_cast<std::uint8_t>(memory.close ? std::min<int>(memory.in_vain + 1, kInVain) : 0);
     memory.wait = memory.in_vain == kInVain ? kSearchesBeforeRoots : 0;
     return remembered();
   }
 
   void collide(const Budget& budget) noexcept {
-    NarrowPhase& narrow = workspace.narrow;
-    PairAccess::bind(narrow, pair.a(), pair.b());
+    PairQuery& narrow = query_of(workspace.narrow);
+    narrow.bind_where(pair.a(), pair.b());
     answer_exactly(narrow, a, b, budget);
   }
 
   // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
   Verdict search_after_yes(const Budget& budget) noexcept {
-    NarrowPhase& narrow = workspace.narrow;
+    PairQuery& narrow = query_of(workspace.narrow);
     if (!place_narrow()) {
       collide(budget);
       return remembered();
@@ -131,7 +131,7 @@ struct Coherence {
     Budget rest = budget;
     if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
       if (pair.front_ != nullptr) pair.front_->clear();
-      PairAccess::search(narrow, rest);
+      narrow.search(rest);
     }
     memory.close = true;
     return remembered();
@@ -139,22 +139,22 @@ struct Coherence {
 
   bool place_for_triangles() noexcept {
     if (placed) return true;
-    PairAccess::bind(workspace.narrow, pair.a(), pair.b());
-    placed = PairAccess::has_last_level(workspace.narrow) && find_rigid() &&
-             PairAccess::place_for_triangles(workspace.narrow, a, b);
+    query_of(workspace.narrow).bind_where(pair.a(), pair.b());
+    placed = query_of(workspace.narrow).has_last_level() && find_rigid() &&
+             query_of(workspace.narrow).place_for_triangles(a, b);
     return placed;
   }
 
   bool place_narrow() noexcept {
     if (!place_for_triangles()) return false;
-    PairAccess::place_now(workspace.narrow);
+    query_of(workspace.narrow).place();
     return true;
   }
 
   // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
-    NarrowPhase& narrow = workspace.narrow;
+    PairQuery& narrow = query_of(workspace.narrow);
     const bool tried = memory.close && memory.wait > 0;
     if (tried ? !place_narrow() : !has_last_level()) {
       collide(budget);
@@ -172,23 +172,23 @@ struct Coherence {
   }
 
   bool has_last_level() noexcept {
-    PairAccess::bind(workspace.narrow, pair.a(), pair.b());
-    return PairAccess::has_last_level(workspace.narrow);
+    query_of(workspace.narrow).bind_where(pair.a(), pair.b());
+    return query_of(workspace.narrow).has_last_level();
   }
 
   // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
   bool ask_roots() noexcept {
-    NarrowPhase& narrow = workspace.narrow;
+    PairQuery& narrow = query_of(workspace.narrow);
     narrow.start(a, b);
     memory.close = !narrow.finished();
     memory.wait = kSearchesBeforeRoots;
-    if (memory.close) PairAccess::place_now(narrow);
+    if (memory.close) narrow.place();
     return memory.close;
   }
 
   // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
   bool witness_meets(std::size_t i) noexcept {
-    return PairAccess::test_two(workspace.narrow, place_of(memory.witnesses[i]));
+    return query_of(workspace.narrow).test_two(place_of(memory.witnesses[i]));
   }
 
   // Those that have not met for longer: bodies that go to and fro come back to them.
@@ -199,8 +199,8 @@ struct Coherence {
     return false;
   }
 
-  PairAccess::Place place_of(const TreePair::Witness& w) const noexcept {
-    if (PairAccess::exchanged(workspace.narrow)) return {w.b, w.a, w.lane_b, w.lane_a};
+  PairQuery::Place place_of(const TreePair::Witness& w) const noexcept {
+    if (query_of(workspace.narrow).exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
     return {w.a, w.b, w.lane_a, w.lane_b};
   }
 
@@ -208,41 +208,41 @@ struct Coherence {
   bool leaves_meet(std::uint64_t& left) noexcept {
     if (left == 0) return false;
     constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-    PairAccess::add_work(workspace.narrow, tests);
+    query_of(workspace.narrow).add_work(tests);
     left -= std::min(left, tests);
-    const PairAccess::Place place = place_of(memory.witnesses[0]);
-    return PairAccess::test_leaves(workspace.narrow, place.first, place.second);
+    const PairQuery::Place place = place_of(memory.witnesses[0]);
+    return query_of(workspace.narrow).test_leaves(place.first, place.second);
   }
 
   // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
   bool near_meet(Budget& left) noexcept {
     if (left.time != Budget{}.time) return false;
-    const PairAccess::Place place = place_of(memory.witnesses[0]);
-    const std::uint64_t before = workspace.narrow.work();
-    const bool meet = PairAccess::search_near(workspace.narrow, place.first, place.second, left);
-    left.work -= std::min(left.work, workspace.narrow.work() - before);
+    const PairQuery::Place place = place_of(memory.witnesses[0]);
+    const std::uint64_t before = query_of(workspace.narrow).work();
+    const bool meet = query_of(workspace.narrow).search_near(place.first, place.second, left);
+    left.work -= std::min(left.work, query_of(workspace.narrow).work() - before);
     return meet;
   }
 
   // The query's verdict.
   Verdict remembered() noexcept {
-    const Answer answer = workspace.narrow.answer();
+    const Answer answer = query_of(workspace.narrow).answer();
     if (answer == Answer::yes) {
       const std::size_t kept = std::min<std::size_t>(memory.witness_count, TreePair::kWitnesses - 1);
       std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
                          memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
       memory.witness_count = static_cast<std::uint8_t>(kept + 1);
-      const PairAccess::Place& place = PairAccess::meeting(workspace.narrow);
-      memory.witnesses[0] = PairAccess::exchanged(workspace.narrow)
+      const PairQuery::Place& place = query_of(workspace.narrow).meeting();
+      memory.witnesses[0] = query_of(workspace.narrow).exchanged()
                                 ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
                                 : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
     } else {
       memory.witness_count = 0;
     }
     const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
-    memory.clearance = answer == Answer::no && have_triangles ? workspace.narrow.lower_bound() / a.scale : 0;
+    memory.clearance = answer == Answer::no && have_triangles ? query_of(workspace.narrow).lower_bound() / a.scale : 0;
     if (memory.clearance > 0) memory.relative = find_relative();
-    return workspace.narrow.verdict();
+    return query_of(workspace.narrow).verdict();
   }
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pair_access.h"
+#include "pair/pair_query.h"
 
 namespace orchard::runtime {
 
@@ -31,7 +31,7 @@ class SharedBudget {
 
 }  // namespace
 
-void answer_exactly(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept {
+void answer_exactly(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept {
   pair.start(a, b);
   while (!pair.finished() && budget.work > 0) {
     pair.refine_exactly(budget);
@@ -39,7 +39,7 @@ void answer_exactly(NarrowPhase& pair, const Pose& a, const Pose& b, const Budge
   }
 }
 
-Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
+Verdict collide(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
   if (order == Order::exact_first) {
     answer_exactly(pair, a, b, budget);
     return pair.verdict();
@@ -56,6 +56,10 @@ Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& b
     shared.spend(pair.work() - before);
   }
   return pair.verdict();
+}
+
+Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
+  return collide(query_of(pair), a, b, budget, order);
 }
 
 }  // namespace orchard::runtime

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "outermost_points.h"
-#include "pair_access.h"
+#include "pair/pair_query.h"
 #include "solid_contacts.h"
 #include "tree/principal_axes.h"
 #include "triangle_cut.h"
@@ -137,13 +137,12 @@ void first_directions(const WayOutSearch& search, Directions& directions) noexce
 }
 
 // Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
-double least_nudge(const NarrowPhase& narrow, double size) noexcept {
+double least_nudge(const PairQuery& narrow, double size) noexcept {
   double places = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    places += std::fabs(PairAccess::first_pose(narrow).translation[i]) +
-              std::fabs(PairAccess::second_pose(narrow).translation[i]);
+    places += std::fabs(narrow.first_pose().translation[i]) + std::fabs(narrow.second_pose().translation[i]);
   }
-  return 1e-12 * size + 2e-15 * places / PairAccess::first_pose(narrow).scale;
+  return 1e-12 * size + 2e-15 * places / narrow.first_pose().scale;
 }
 
 // Where surfaces do not meet: a point of one that is inside a box, as the only point. False if there is none.
@@ -199,7 +198,7 @@ void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PoseP
 }
 
 // Without triangles, or without an answer: what the spheres say.
-Manifold by_spheres(NarrowPhase& narrow) noexcept {
+Manifold by_spheres(PairQuery& narrow) noexcept {
   while (!narrow.finished()) narrow.refine();
   Manifold result;
   result.answer = narrow.answer();
@@ -219,7 +218,7 @@ namespace detail {
 Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                             const ContactOptions& options, std::span<const SolidBox> boxes) noexcept {
   Manifold result;
-  NarrowPhase& narrow = workspace.narrow;
+  PairQuery& narrow = query_of(workspace.narrow);
   narrow.bind(pair.a(), pair.b());
   narrow.start(a, b);
   if (narrow.finished() && narrow.answer() == Answer::no) {
@@ -227,17 +226,16 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
     return result;
   }
   Workspace::Scratch* const scratch = workspace.scratch();
-  const bool placed = !narrow.refused() && PairAccess::place(narrow, a, b);
-  if (!placed || !PairAccess::has_triangles(narrow) || scratch == nullptr ||
+  const bool placed = !narrow.refused() && narrow.place(a, b);
+  if (!placed || !narrow.has_triangles() || scratch == nullptr ||
       !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
     return by_spheres(narrow);
   }
-  const PlacedPair both{PairAccess::first(narrow), PairAccess::second(narrow), PairAccess::relative(narrow),
-                        PairAccess::placement(narrow)};
+  const PlacedPair both{narrow.first(), narrow.second(), narrow.relative(), narrow.placement()};
   find_cuts(both, *scratch);
   const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
-  const Pose& world = PairAccess::first_pose(narrow);
-  const bool exchanged = PairAccess::exchanged(narrow);
+  const Pose& world = narrow.first_pose();
+  const bool exchanged = narrow.exchanged();
   std::array<SolidBox, 2> solids{};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     solids[i] = boxes[i];
@@ -258,7 +256,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   result.complete = out.ended;
   result.depth = out.way * world.scale;
   result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
-  result.error = PairAccess::exact_error(narrow);
+  result.error = narrow.exact_error();
   if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
   if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);
   return result;

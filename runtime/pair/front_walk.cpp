@@ -31,38 +31,38 @@ double size_of(const Vec3& v) noexcept { return std::sqrt(detail::dot(v, v)); }
 
 }  // namespace
 
-FrontWalk::FrontWalk(PairFront& front, NarrowPhase& narrow) noexcept
+FrontWalk::FrontWalk(PairFront& front, PairQuery& narrow) noexcept
     : front_(front),
       narrow_(narrow),
-      first_(PairAccess::first(narrow).tree),
-      second_(PairAccess::second(narrow).tree),
-      placement_(PairAccess::placement(narrow)),
-      relative_(PairAccess::relative(narrow)),
-      stack_(PairAccess::stack(narrow)) {}
+      first_(narrow.first().tree),
+      second_(narrow.second().tree),
+      placement_(narrow.placement()),
+      relative_(narrow.relative()),
+      stack_(narrow.stack()) {}
 
 void FrontWalk::run(const Budget& budget) noexcept {
-  PairAccess::BudgetTracker tracker(budget);
+  PairBudget tracker(budget);
   tracker_ = &tracker;
   Outcome outcome = settle_leaves();
   if (outcome == Outcome::apart) outcome = settle_nodes();
   tracker_ = nullptr;
-  PairAccess::add_work(narrow_, tracker.spent());
+  narrow_.add_work(tracker.spent());
   if (outcome != Outcome::apart) return;
-  const double scale = PairAccess::first_pose(narrow_).scale;
+  const double scale = narrow_.first_pose().scale;
   const double least = std::min(front_.rest_, double{least_});
-  PairAccess::say_no(narrow_, std::max(0.0, least * scale * (1 - 1e-12) - PairAccess::exact_error(narrow_)));
+  narrow_.say_no(std::max(0.0, least * scale * (1 - 1e-12) - narrow_.exact_error()));
 }
 
 bool FrontWalk::fits() const noexcept {
   return front_.first_ == first_.ball_slabs.data() && front_.second_ == second_.ball_slabs.data() &&
-         front_.fingerprints_[0] == PairAccess::first(narrow_).fingerprint &&
-         front_.fingerprints_[1] == PairAccess::second(narrow_).fingerprint;
+         front_.fingerprints_[0] == narrow_.first().fingerprint &&
+         front_.fingerprints_[1] == narrow_.second().fingerprint;
 }
 
 void FrontWalk::begin() noexcept {
   front_.first_ = first_.ball_slabs.data(), front_.second_ = second_.ball_slabs.data();
-  front_.fingerprints_[0] = PairAccess::first(narrow_).fingerprint;
-  front_.fingerprints_[1] = PairAccess::second(narrow_).fingerprint;
+  front_.fingerprints_[0] = narrow_.first().fingerprint;
+  front_.fingerprints_[1] = narrow_.second().fingerprint;
   front_.relative_ = relative_;
   front_.rest_ = std::numeric_limits<double>::infinity();
   front_.used_ = front_.free_count_ = 0;
@@ -202,7 +202,7 @@ bool FrontWalk::leaves_meet(const NodePair& pair, const Axis* last, LeafAxis& ax
   tracker_->spend(kBlockWidth);
   if (axis.gap > 0) return false;
   tracker_->spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
-  return PairAccess::test_leaves(narrow_, pair.a, pair.b);
+  return narrow_.test_leaves(pair.a, pair.b);
 }
 
 void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {

@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "budget_tracker.h"
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/pair_front.h"
-#include "pair_access.h"
+#include "pair/pair_query.h"
 #include "pair_walk.h"
 #include "tree/front_block.h"
 
@@ -17,8 +15,8 @@ namespace orchard::runtime {
 // same answer, since every two triangles that are not seen to be apart are tested by the same predicates.
 class FrontWalk {
  public:
-  // Precondition: `narrow` is placed (PairAccess), and has a last level.
-  FrontWalk(PairFront& front, NarrowPhase& narrow) noexcept;
+  // Precondition: `narrow` is placed, and has a last level.
+  FrontWalk(PairFront& front, PairQuery& narrow) noexcept;
 
   // Before run(): whether the front is of these trees, and most of it still holds; it is brought up to now. Else
   // begin().
@@ -28,7 +26,7 @@ class FrontWalk {
   void run(const Budget& budget) noexcept;
 
  private:
-  using NodePair = PairAccess::NodePair;
+  using NodePair = PairQuery::NodePair;
   using Axis = std::array<float, 3>;
   enum class Outcome : std::uint8_t { apart, meeting, interrupted };
 
@@ -55,11 +53,11 @@ class FrontWalk {
   void release(std::uint32_t slot) noexcept;
 
   PairFront& front_;
-  NarrowPhase& narrow_;
+  PairQuery& narrow_;
   const TreeView &first_, &second_;
   const detail::Placement& placement_;
   const Pose& relative_;
-  PairAccess::BudgetTracker* tracker_ = nullptr;
+  PairBudget* tracker_ = nullptr;
   NodePair* stack_;
   std::size_t stack_size_ = 0;
   void note(float gap) noexcept { least_ = gap < least_ ? gap : least_; }

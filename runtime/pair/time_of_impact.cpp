@@ -5,8 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "budget_tracker.h"
-#include "pair_access.h"
+#include "pair/pair_query.h"
 #include "tree/ball_slab_time.h"
 #include "triangle_distance.h"
 #include "vector_functions.h"
@@ -84,7 +83,7 @@ class Search {
  public:
   Search(Workspace& workspace, const TreePair& pair, const Travel& a, const Travel& b,
          const ImpactOptions& options) noexcept
-      : workspace_(workspace), narrow_(workspace.narrow), pair_(pair), a_(a), b_(b), options_(options) {}
+      : workspace_(workspace), narrow_(query_of(workspace.narrow)), pair_(pair), a_(a), b_(b), options_(options) {}
 
   Impact run() noexcept;
 
@@ -93,7 +92,7 @@ class Search {
 
   bool prepare() noexcept;
   bool place(double time) noexcept;
-  bool find_critical(PairAccess::BudgetTracker& tracker, Critical& critical) noexcept;
+  bool find_critical(PairBudget& tracker, Critical& critical) noexcept;
   void expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept;
   void compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept;
   struct Speeds {  // of two leaves: how fast anything comes closer, and how far they reach from where they turn about
@@ -103,14 +102,14 @@ class Search {
                          const Speeds& speeds, Critical& critical) noexcept;
   double without_turning() const noexcept;
   void report(const Critical& critical) noexcept;
-  void find_contact(PairAccess::BudgetTracker& tracker) noexcept;
-  bool advance(PairAccess::BudgetTracker& tracker) noexcept;
-  bool touching(PairAccess::BudgetTracker& tracker, double time) noexcept;
-  const TreeView& first() const noexcept { return PairAccess::first(narrow_).tree; }
-  const TreeView& second() const noexcept { return PairAccess::second(narrow_).tree; }
+  void find_contact(PairBudget& tracker) noexcept;
+  bool advance(PairBudget& tracker) noexcept;
+  bool touching(PairBudget& tracker, double time) noexcept;
+  const TreeView& first() const noexcept { return narrow_.first().tree; }
+  const TreeView& second() const noexcept { return narrow_.second().tree; }
 
   Workspace& workspace_;
-  NarrowPhase& narrow_;
+  PairQuery& narrow_;
   const TreePair& pair_;
   const Travel &a_, &b_;
   const ImpactOptions& options_;
@@ -137,10 +136,10 @@ bool Search::prepare() noexcept {
 
 // False where nothing can be said.
 bool Search::place(double time) noexcept {
-  if (!PairAccess::place(narrow_, a_.at(time), b_.at(time))) return false;
-  const bool exchanged = PairAccess::exchanged(narrow_);
+  if (!narrow_.place(a_.at(time), b_.at(time))) return false;
+  const bool exchanged = narrow_.exchanged();
   const Travel &first = exchanged ? b_ : a_, &second = exchanged ? a_ : b_;
-  const Pose& frame = PairAccess::first_pose(narrow_);
+  const Pose& frame = narrow_.first_pose();
   const double shrink = 1 / frame.scale;
   const auto turn_of = [&](const Travel& travel) {
     Turn turn;
@@ -159,12 +158,12 @@ bool Search::place(double time) noexcept {
   const auto speed_of = [&](const Travel& travel) { return travel.pose_at != nullptr ? travel.speed * shrink : 0.0; };
   first_turn_ = turn_of(first), second_turn_ = turn_of(second);
   first_turn_.center = minus(first.center, this->first().origin);
-  second_turn_.center = transform(PairAccess::relative(narrow_), minus(second.center, this->second().origin));
+  second_turn_.center = transform(narrow_.relative(), minus(second.center, this->second().origin));
   velocity_ = minus(velocity_of(second), velocity_of(first));
   speed_ = speed_of(first) + speed_of(second);
 
-  const PreparedTree &p = PairAccess::first(narrow_), &q = PairAccess::second(narrow_);
-  const double scale = PairAccess::relative(narrow_).scale, size = p.extent + q.extent * scale;
+  const PreparedTree &p = narrow_.first(), &q = narrow_.second();
+  const double scale = narrow_.relative().scale, size = p.extent + q.extent * scale;
   const double reach =
       reach_of(p, first_turn_.center) + scale * reach_of(q, minus(second.center, this->second().origin));
   const double fastest =
@@ -172,7 +171,7 @@ bool Search::place(double time) noexcept {
   if (!(fastest <= kMaxQuantity && reach <= kMaxQuantity && fastest * reach <= kMaxQuantity * kMaxQuantity))
     return false;
   if (!(speed_ >= 0 && first_turn_.turning >= 0 && second_turn_.turning >= 0)) return false;
-  error_ = PairAccess::exact_error(narrow_) * shrink + kRounding * size;
+  error_ = narrow_.exact_error() * shrink + kRounding * size;
   margin_ = options_.margin * shrink;
   finest_ = std::max(kMinTolerance * size, 4 * error_);
   tolerance_ = std::max(options_.tolerance * shrink, finest_);
@@ -184,11 +183,11 @@ bool Search::place(double time) noexcept {
 
 // Until when the balls in which the bodies turn, whatever way, do not meet.
 double Search::without_turning() const noexcept {
-  const double scale = PairAccess::relative(narrow_).scale;
+  const double scale = narrow_.relative().scale;
   const Vec3 way = minus(second_turn_.center, first_turn_.center);
   const double distance = length(way);
-  const auto &p = PairAccess::first(narrow_), &q = PairAccess::second(narrow_);
-  const bool exchanged = PairAccess::exchanged(narrow_);
+  const auto &p = narrow_.first(), &q = narrow_.second();
+  const bool exchanged = narrow_.exchanged();
   const Vec3 center = minus((exchanged ? a_ : b_).center, q.tree.origin);
   const double gap =
       distance * (1 - kRounding) - reach_of(p, first_turn_.center) - scale * reach_of(q, center) - margin_ - error_;
@@ -200,12 +199,11 @@ double Search::without_turning() const noexcept {
 
 // When triangles can meet first, within what is left of the time. False if the budget ends before all was looked at:
 // critical.time then holds for what was left, too.
-bool Search::find_critical(PairAccess::BudgetTracker& tracker, Critical& critical) noexcept {
+bool Search::find_critical(PairBudget& tracker, Critical& critical) noexcept {
   Scratch& scratch = *workspace_.scratch();
   Scratch::TimedPair* const stack = scratch.timed.get();
   std::size_t size = 0;
-  stack[size++] = {0, 0, 0,
-                   detail::moved(detail::ball_slab_at(second().ball_slabs[0], 0), PairAccess::placement(narrow_))};
+  stack[size++] = {0, 0, 0, detail::moved(detail::ball_slab_at(second().ball_slabs[0], 0), narrow_.placement())};
   while (size > 0) {
     if (tracker.exhausted()) {
       for (std::size_t i = 0; i < size; ++i)
@@ -229,7 +227,7 @@ bool Search::find_critical(PairAccess::BudgetTracker& tracker, Critical& critica
 // In place of a pair, those of its children that may meet in time, the earliest last.
 void Search::expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept {
   Scratch::TimedPair* const stack = workspace_.scratch()->timed.get();
-  const detail::Placement& placement = PairAccess::placement(narrow_);
+  const detail::Placement& placement = narrow_.placement();
   const std::uint32_t a = detail::ball_slab_child(first(), top.a), b = detail::ball_slab_child(second(), top.b);
   const BallSlabBlock& own = first().ball_slabs[top.a / kBlockWidth];
   const std::uint32_t own_lane = top.a % kBlockWidth;
@@ -274,7 +272,7 @@ void Search::compare_leaves(const Scratch::TimedPair& top, Critical& critical) n
   };
   const double reach_in_time = fastest * (1 + kRounding) * critical.cut + margin_;
   detail::TriangleGaps gaps;
-  detail::triangle_gaps(lanes, rows, PairAccess::placement(narrow_), direction_,
+  detail::triangle_gaps(lanes, rows, narrow_.placement(), direction_,
                         static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
   // The nearest first: each makes fewer of the others worth a look.
   std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
@@ -298,7 +296,7 @@ void Search::compare_leaves(const Scratch::TimedPair& top, Critical& critical) n
 void Search::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
                                std::uint32_t row, const Speeds& speeds, Critical& critical) noexcept {
   const detail::TrianglePoints a = detail::points_of(lanes, lane),
-                               b = detail::moved_points_of(rows, row, PairAccess::relative(narrow_));
+                               b = detail::moved_points_of(rows, row, narrow_.relative());
   const detail::NearestPoints nearest = detail::nearest_points(a, b);
   const Vec3 way = minus(nearest.on_b, nearest.on_a);
   const double size = length(way);
@@ -330,27 +328,27 @@ void Search::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, c
 
 void Search::report(const Critical& critical) noexcept {
   if (critical.triangle_first == kNoTriangle) return;
-  const Pose& frame = PairAccess::first_pose(narrow_);
+  const Pose& frame = narrow_.first_pose();
   const auto world = [&](const Vec3& p) { return transform(frame, along(p, first().origin, 1)); };
-  result_.distance = critical.distance * frame.scale * (1 + kRounding) + PairAccess::exact_error(narrow_);
+  result_.distance = critical.distance * frame.scale * (1 + kRounding) + narrow_.exact_error();
   result_.on_a = world(critical.on_first), result_.on_b = world(critical.on_second);
   result_.triangle_a = critical.triangle_first, result_.triangle_b = critical.triangle_second;
-  if (!PairAccess::exchanged(narrow_)) return;
+  if (!narrow_.exchanged()) return;
   std::swap(result_.on_a, result_.on_b);
   std::swap(result_.triangle_a, result_.triangle_b);
 }
 
 // False where the budget ends it.
-bool Search::touching(PairAccess::BudgetTracker& tracker, double time) noexcept {
+bool Search::touching(PairBudget& tracker, double time) noexcept {
   if (tracker.exhausted()) return false;
   const std::uint64_t left = options_.budget.work - tracker.spent();
   const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
-  tracker.spend(options_.margin > 0 ? workspace_.distance.work() : workspace_.narrow.work());
+  tracker.spend(options_.margin > 0 ? workspace_.distance.work() : query_of(workspace_.narrow).work());
   return answer == Answer::yes;
 }
 
 // From a time at which they nearly touch: when they do, if they do soon.
-void Search::find_contact(PairAccess::BudgetTracker& tracker) noexcept {
+void Search::find_contact(PairBudget& tracker) noexcept {
   const double begin = result_.t0, end = options_.end;
   double step = 0, miss = begin;
   for (int i = 0; i < kProbes; ++i) {
@@ -372,7 +370,7 @@ void Search::find_contact(PairAccess::BudgetTracker& tracker) noexcept {
 }
 
 // One step. False where there is none left, or the budget ended it.
-bool Search::advance(PairAccess::BudgetTracker& tracker) noexcept {
+bool Search::advance(PairBudget& tracker) noexcept {
   if (!place(result_.t0)) {
     result_.finished = result_.refused = true;
     return false;
@@ -424,7 +422,7 @@ Impact Search::run() noexcept {
     result_.finished = result_.refused = true;
     return result_;
   }
-  PairAccess::BudgetTracker tracker(options_.budget);
+  PairBudget tracker(options_.budget);
   while (!result_.finished && !tracker.exhausted() && advance(tracker)) {
   }
   if (near_ > 0 && result_.answer == Answer::maybe) {

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "node_box.h"
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
+#include "pair/placement.h"
 #include "pair/triangle_pair.h"
 
 // The inner loops of the exact level and of distances over triangles: eight against eight.

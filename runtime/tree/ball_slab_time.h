@@ -2,8 +2,8 @@
 #include <array>
 #include <cstdint>
 
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
+#include "pair/placement.h"
 
 // When two moving ball slabs can meet at the earliest: one against eight.
 namespace orchard::runtime::detail {

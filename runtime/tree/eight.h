@@ -2,8 +2,8 @@
 #include <array>
 #include <cstdint>
 
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
+#include "pair/placement.h"
 #include "vector_support.h"
 
 // Eight numbers, and eight vectors, at a time: what the inner loops over ball slabs and triangles are made of. `Kind`

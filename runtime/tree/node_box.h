@@ -2,9 +2,9 @@
 #include <array>
 #include <cstdint>
 
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
+#include "pair/placement.h"
 #include "vector_support.h"
 
 // The inner loop of the exact level and of distances: one node's ball and box against eight others'.

@@ -1,8 +1,8 @@
 #pragma once
 #include <array>
 
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
+#include "pair/placement.h"
 
 namespace orchard::runtime::detail {
 

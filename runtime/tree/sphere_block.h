@@ -2,8 +2,8 @@
 #include <array>
 #include <cstdint>
 
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
+#include "pair/placement.h"
 
 // The inner loop of the narrow phase: up to eight siblings of one tree against up to eight of the other.
 namespace orchard::runtime::detail {

@@ -1,12 +1,14 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 
 #include "orchard/runtime/narrow_phase.h"
 
 namespace orchard::runtime {
+
+class DistanceSearch;
 
 // The distance between the surfaces of two bodies, by bounds that close in on it: at every moment
 // lower() <= distance <= upper(). 0 if they touch; a solid wholly inside another has a positive distance.
@@ -28,7 +30,7 @@ class DistanceQuery {
 
   DistanceQuery(const TreeView& a, const TreeView& b) noexcept;
   // Of no bodies yet, and of others from now on: as NarrowPhase::bind().
-  DistanceQuery() noexcept : pair_(0) {}
+  DistanceQuery() noexcept;
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
@@ -39,10 +41,10 @@ class DistanceQuery {
   void start_within(const Pose& a, const Pose& b, double limit) noexcept;
   void refine(const Budget& budget = {}) noexcept;
 
-  bool finished() const noexcept { return finished_; }
-  double lower() const noexcept { return lower_; }
-  double upper() const noexcept { return upper_; }
-  std::uint64_t work() const noexcept { return work_; }  // since start(), as a budget counts it
+  bool finished() const noexcept;
+  double lower() const noexcept;
+  double upper() const noexcept;
+  std::uint64_t work() const noexcept;  // since start(), as a budget counts it
 
   // A point of each surface, in world coordinates, upper() apart but for rounding; none before the first triangles were
   // compared.
@@ -52,46 +54,18 @@ class DistanceQuery {
   };
   Points points() const noexcept;
 
+  DistanceQuery(DistanceQuery&&) noexcept;
+  DistanceQuery& operator=(DistanceQuery&&) noexcept;
+  ~DistanceQuery();
+
  private:
-  struct BallSlabPair {
-    float lower;
-    std::uint32_t a, b;
-  };
+  friend DistanceSearch& search_of(DistanceQuery& query) noexcept;
+  const DistanceSearch& search() const noexcept;
+  DistanceSearch& search() noexcept;
 
-  bool make_room() noexcept;
-  bool has_room() const noexcept { return pair_.has_triangles() && stack_; }
-  void begin(const Pose& a, const Pose& b, double limit) noexcept;
-  void leave_the_rest() noexcept;
-  bool surely_near(const BallSlabPair& pair) noexcept;
-  bool may_be_nearer(double lower) const noexcept;
-  void expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
-  void expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
-  void compare_leaves(const BallSlabPair& pair) noexcept;
-  void find_within(const BallSlabPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
-  void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
-                         bool may_meet) noexcept;
-  void find_cut() noexcept;
-  void report() noexcept;
-
-  NarrowPhase pair_;  // the bodies' order and placement
-  std::unique_ptr<BallSlabPair[]> stack_;
-  std::size_t stack_size_ = 0;
-  std::size_t stack_room_ = 0;
-  Tolerance tolerance_;
-  double limit_ = std::numeric_limits<double>::infinity();  // what is farther is left out
-  float reach_ = std::numeric_limits<float>::infinity();    // it, rounded up
-  double cut_ = std::numeric_limits<double>::infinity();    // from nearest_ and limit_, with the tolerance
-  bool below_nearest_ = false;                              // what is as far is not looked at, either
-  double enough_ = 0;                                       // so near: nothing nearer is looked for
-  // In the first tree's units, of the stored triangles.
-  double nearest_ = std::numeric_limits<double>::infinity();    // the least distance found
-  double min_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
-  std::array<double, 3> on_first_{}, on_second_{};
-  std::array<float, 3> direction_{};  // unit, from the nearest point of the first one to that of the second one
-  std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
-  double lower_ = 0, upper_ = std::numeric_limits<double>::infinity();
-  std::uint64_t work_ = 0;
-  bool finished_ = true;
+  // The DistanceSearch (a private header) lies here and not on the heap, so that its construction cannot fail.
+  static constexpr std::size_t kSize = 1856, kAlignment = 32;
+  alignas(kAlignment) std::array<std::byte, kSize> storage_;
 };
 
 }  // namespace orchard::runtime

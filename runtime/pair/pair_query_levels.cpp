@@ -2,12 +2,11 @@
 #include <bit>
 #include <cmath>
 
-#include "budget_tracker.h"
-#include "orchard/runtime/narrow_phase.h"
+#include "pair/pair_query.h"
 #include "tree/sphere_block.h"
 #include "tree/tree_nodes.h"
 
-// The levels of the narrow phase. Why the sphere tests are conservative: narrow_phase.cpp, (1) to (4).
+// The levels of the narrow phase. Why the sphere tests are conservative: pair_query.cpp, (1) to (4).
 namespace orchard::runtime {
 
 using detail::block_of;
@@ -51,7 +50,7 @@ std::uint32_t deepest_of(std::uint64_t bits, const BlockPair& block, const Block
 
 }  // namespace
 
-Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
+Answer PairQuery::refine_level(const Budget& budget) noexcept {
   if (budget.work == 0) return answer_;
   if (roots_pending_) {
     place();
@@ -62,16 +61,16 @@ Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
     settled_leaves_ = leaves_.size();
   }
   if (inner_.size() == 0) return refine_exactly(budget);
-  BudgetTracker tracker(budget);
+  PairBudget tracker(budget);
   if (refine_spheres(tracker)) finish_sphere_level();
   work_ += tracker.spent();
   return answer_;
 }
 
-Answer NarrowPhase::refine_last(const Budget& budget) noexcept {
+Answer PairQuery::refine_last(const Budget& budget) noexcept {
   if (budget.work == 0) return answer_;
   if (!has_last_level()) return refine(budget);
-  BudgetTracker tracker(budget);
+  PairBudget tracker(budget);
   if (!exact_started_) {
     start_exact();
   }
@@ -84,7 +83,7 @@ Answer NarrowPhase::refine_last(const Budget& budget) noexcept {
 }
 
 // False if interrupted; cursor_ then says where to go on.
-bool NarrowPhase::refine_spheres(BudgetTracker& tracker) noexcept {
+bool PairQuery::refine_spheres(PairBudget& tracker) noexcept {
   BlockHits hits;
   for (; cursor_.pair < inner_.size(); ++cursor_.pair, cursor_.outer = 0) {
     const auto [a, b] = inner_[cursor_.pair];
@@ -118,8 +117,7 @@ bool NarrowPhase::refine_spheres(BudgetTracker& tracker) noexcept {
   return true;
 }
 
-void NarrowPhase::collect(std::uint32_t row, std::uint32_t lane, const BlockHits& hits,
-                          bool lanes_are_second) noexcept {
+void PairQuery::collect(std::uint32_t row, std::uint32_t lane, const BlockHits& hits, bool lanes_are_second) noexcept {
   const auto pair_of = [=](std::uint64_t mask) {
     return pair_at(row, lane, static_cast<std::uint32_t>(std::countr_zero(mask)), lanes_are_second);
   };
@@ -131,7 +129,7 @@ void NarrowPhase::collect(std::uint32_t row, std::uint32_t lane, const BlockHits
   }
 }
 
-void NarrowPhase::improve(NodePair pair, double square, bool leaves) noexcept {
+void PairQuery::improve(NodePair pair, double square, bool leaves) noexcept {
   const SiblingBlock &p = block_of(first_->tree, pair.a), &q = block_of(second_->tree, pair.b);
   const std::uint32_t i = pair.a % kBlockWidth, j = pair.b % kBlockWidth;
   const double slack = placement_.slack;
@@ -148,7 +146,7 @@ void NarrowPhase::improve(NodePair pair, double square, bool leaves) noexcept {
   (leaves ? level_state_.best_leaf : level_state_.best_inner) = static_cast<float>(bound + slack);
 }
 
-void NarrowPhase::start_level() noexcept {
+void PairQuery::start_level() noexcept {
   cursor_ = {};
   level_best_ = {};
   level_state_.min_excess.fill(kNoExcess);
@@ -158,7 +156,7 @@ void NarrowPhase::start_level() noexcept {
   level_state_.best_leaf = static_cast<float>(leaf_best_.bound + double{placement_.slack});
 }
 
-void NarrowPhase::finish_sphere_level() noexcept {
+void PairQuery::finish_sphere_level() noexcept {
   ++level_;
   std::swap(inner_, next_);
   next_.clear();
@@ -175,13 +173,13 @@ void NarrowPhase::finish_sphere_level() noexcept {
 }
 
 // What a depth-first search has seen; its tests count for a lower bound as those of a level do.
-struct NarrowPhase::Probe {
+struct PairQuery::Probe {
   detail::LevelState seen;
   NodePair found{};
   double square = 0;
 };
 
-Answer NarrowPhase::probe(std::uint32_t level) noexcept {
+Answer PairQuery::probe(std::uint32_t level) noexcept {
   if (finished_ || !roots_pending_) return answer_;
   place();
   Probe probe{};
@@ -201,7 +199,7 @@ Answer NarrowPhase::probe(std::uint32_t level) noexcept {
 }
 
 // The pair's children, the deepest overlap first. True once two nodes meet that are that many levels down, or leaves.
-bool NarrowPhase::probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept {
+bool PairQuery::probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept {
   const bool lanes_are_second = !is_leaf(second_->tree, pair.b);
   const Side &row_side = lanes_are_second ? *first_ : *second_, &lane_side = lanes_are_second ? *second_ : *first_;
   const Group rows = group_of(row_side.tree, row_side.bits, lanes_are_second ? pair.a : pair.b);
@@ -235,7 +233,7 @@ bool NarrowPhase::probe_below(NodePair pair, std::uint32_t levels, Probe& probe)
 }
 
 // The bounds so far stay valid.
-void NarrowPhase::give_up_spheres() noexcept {
+void PairQuery::give_up_spheres() noexcept {
   out_of_room_ = true;
   inner_.clear();
   next_.clear();

@@ -2,7 +2,7 @@
 #include <limits>
 #include <utility>
 
-#include "orchard/runtime/narrow_phase.h"
+#include "pair/pair_query.h"
 #include "rigid_pair.h"
 #include "support_map.h"
 #include "tree/tree_nodes.h"
@@ -39,7 +39,7 @@ double sum_of_sizes(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs
 
 }  // namespace
 
-void NarrowPhase::reset_counts() noexcept {
+void PairQuery::reset_counts() noexcept {
   inner_.clear();
   settled_leaves_ = 0;
   level_ = 0;
@@ -50,12 +50,12 @@ void NarrowPhase::reset_counts() noexcept {
   apart_along_ = {};
 }
 
-void NarrowPhase::find_exact_error(const Pose& first, const Pose& second) noexcept {
+void PairQuery::find_exact_error(const Pose& first, const Pose& second) noexcept {
   exact_error_ = (first.scale * first_->error + second.scale * second_->error) +
                  1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kMinError;
 }
 
-Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
+Answer PairQuery::start(const Pose& a, const Pose& b) noexcept {
   reset_counts();
   // Nothing below holds otherwise, and the hulls' tables have no place for directions that are no directions.
   const Pose &first = arguments_exchanged_ ? b : a, &second = arguments_exchanged_ ? a : b;
@@ -106,7 +106,7 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
 }
 
 // Poses that name no place, or one beyond what floats can hold: nothing is certain then and nothing can be refined.
-Answer NarrowPhase::refuse(const Pose& a, const Pose& b) noexcept {
+Answer PairQuery::refuse(const Pose& a, const Pose& b) noexcept {
   keep(a, b);
   refused_ = finished_ = true;
   roots_pending_ = false;
@@ -115,7 +115,7 @@ Answer NarrowPhase::refuse(const Pose& a, const Pose& b) noexcept {
 }
 
 // What deeper levels need.
-void NarrowPhase::keep(const Pose& a, const Pose& b) noexcept {
+void PairQuery::keep(const Pose& a, const Pose& b) noexcept {
   if (ordered_by_pose_ && !one_tree_) order_copies(a, b);
   exchanged_ = one_tree_ ? before(b, a) : arguments_exchanged_;
   first_pose_ = exchanged_ ? b : a;
@@ -133,7 +133,7 @@ void NarrowPhase::keep(const Pose& a, const Pose& b) noexcept {
 
 // Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,
 // each keeps its own.
-void NarrowPhase::order_copies(const Pose& a, const Pose& b) noexcept {
+void PairQuery::order_copies(const Pose& a, const Pose& b) noexcept {
   if (before(b, a) == arguments_exchanged_) return;
   arguments_exchanged_ = !arguments_exchanged_;
   std::swap(first_, second_);
@@ -144,7 +144,7 @@ void NarrowPhase::order_copies(const Pose& a, const Pose& b) noexcept {
 // Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the
 // distance of the roots' centres: reaches are proportional to the direction's length, and reflecting keeps it. `u`: the
 // way at first, and the direction of a gap at last.
-double NarrowPhase::hulls_gap(const Pose& first, const Pose& second, const Vec3& way, Vec3& u) const noexcept {
+double PairQuery::hulls_gap(const Pose& first, const Pose& second, const Vec3& way, Vec3& u) const noexcept {
   const auto support_of = [](const Side& side, const Pose& pose, const Vec3& v) {
     const Vec3 direction = turned_back(pose, v);
     detail::Support support = detail::support_along(side.tree.supports, direction);

@@ -9,9 +9,9 @@
 namespace orchard::runtime {
 
 // What one call may still spend.
-class NarrowPhase::BudgetTracker {
+class PairBudget {
  public:
-  explicit BudgetTracker(const Budget& budget) noexcept : limit_(budget.work) {
+  explicit PairBudget(const Budget& budget) noexcept : limit_(budget.work) {
     if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
       next_clock_ = kClockInterval;
       deadline_ = std::chrono::steady_clock::now() + budget.time;

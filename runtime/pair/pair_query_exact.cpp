@@ -1,9 +1,8 @@
 #include <array>
 #include <bit>
 
-#include "budget_tracker.h"
 #include "least_last.h"
-#include "orchard/runtime/narrow_phase.h"
+#include "pair/pair_query.h"
 #include "tree/ball_slab_block.h"
 #include "tree/node_box.h"
 
@@ -24,7 +23,7 @@ std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
 
 }  // namespace
 
-void NarrowPhase::start_exact() noexcept {
+void PairQuery::start_exact() noexcept {
   exact_started_ = true;
   place();
   inner_.clear();
@@ -36,12 +35,12 @@ void NarrowPhase::start_exact() noexcept {
   stack_size_ = 1;
 }
 
-detail::NodeBox NarrowPhase::moved_box(std::uint32_t node) const noexcept {
+detail::NodeBox PairQuery::moved_box(std::uint32_t node) const noexcept {
   return detail::moved(detail::node_box_at(second_->tree, node), placement_);
 }
 
 // The larger node's children against the other node, in the children's frame. True if they are the second tree's.
-inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) noexcept {
+inline bool PairQuery::find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) noexcept {
   const BallSlabBlock &of_a = block_of(first_->tree, pair.a), &of_b = block_of(second_->tree, pair.b);
   const std::uint32_t lane_a = pair.a % kBlockWidth, lane_b = pair.b % kBlockWidth;
   const bool second =
@@ -58,8 +57,7 @@ inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, st
 
 // Of the children of `block` that may meet the other node of the pair as far as floats can say, leaves those out that
 // are apart in double.
-void NarrowPhase::leave_out_apart(const NodePair& pair, bool second, std::uint32_t block,
-                                  BoxGaps& gaps) const noexcept {
+void PairQuery::leave_out_apart(const NodePair& pair, bool second, std::uint32_t block, BoxGaps& gaps) const noexcept {
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t child = block * kBlockWidth + lane;
@@ -70,8 +68,8 @@ void NarrowPhase::leave_out_apart(const NodePair& pair, bool second, std::uint32
 }
 
 // In place of a pair, those of its children that may meet, the deepest last.
-inline void NarrowPhase::push_children(const NodePair& pair, bool second, std::uint32_t block,
-                                       const BoxGaps& gaps) noexcept {
+inline void PairQuery::push_children(const NodePair& pair, bool second, std::uint32_t block,
+                                     const BoxGaps& gaps) noexcept {
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
   std::uint32_t nodes[kBlockWidth];
   detail::LeastLast order;
@@ -87,7 +85,7 @@ inline void NarrowPhase::push_children(const NodePair& pair, bool second, std::u
 }
 
 // False if interrupted. Ends at the first pair of triangles that meet.
-bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
+bool PairQuery::refine_ball_slabs(PairBudget& tracker) noexcept {
   while (stack_size_ > 0) {
     if (tracker.exhausted()) return false;
     const NodePair pair = stack_[--stack_size_];
@@ -117,7 +115,7 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
 }
 
 // The pairs of what is in the blocks of two leaves, the nearest ones of those that may meet, in place of the roots.
-void NarrowPhase::start_near(const NodePair& leaves) noexcept {
+void PairQuery::start_near(const NodePair& leaves) noexcept {
   constexpr std::uint32_t most = kBlockWidth;
   const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
   BoxGaps firsts, seconds;
@@ -146,9 +144,9 @@ void NarrowPhase::start_near(const NodePair& leaves) noexcept {
   }
 }
 
-bool NarrowPhase::refine_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept {
+bool PairQuery::search_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept {
   if (budget.work == 0) return false;
-  BudgetTracker tracker(budget);
+  PairBudget tracker(budget);
   start_exact();
   start_near({a, b});
   const bool ended = refine_ball_slabs(tracker);
@@ -160,7 +158,7 @@ bool NarrowPhase::refine_near(std::uint32_t a, std::uint32_t b, const Budget& bu
   return true;
 }
 
-bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
+bool PairQuery::test_triangles(const NodePair& pair) noexcept {
   const TriangleBlock& lanes = first_->tree.triangle_blocks[child_of(first_->tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_->tree.triangle_blocks[child_of(second_->tree, pair.b) & ~kLeafBit];
   const auto used = [](const TriangleBlock& block) {
@@ -172,13 +170,13 @@ bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
   const detail::NodeBox lane_box = detail::node_box_at(first_->tree, pair.a);
   const detail::NodeBox row_box = moved_box(pair.b);
   struct Leaves {
-    NarrowPhase& self;
+    PairQuery& self;
     const NodePair& pair;
   } context = {*this, pair};
   const auto any_meets = [](void* of, std::uint32_t row, std::uint32_t left) {
     const auto& [self, nodes] = *static_cast<Leaves*>(of);
     for (; left != 0; left &= left - 1) {
-      if (self.test_two(nodes.a, static_cast<std::uint32_t>(std::countr_zero(left)), nodes.b, row)) return true;
+      if (self.triangles_meet(nodes.a, static_cast<std::uint32_t>(std::countr_zero(left)), nodes.b, row)) return true;
     }
     return false;
   };
@@ -186,7 +184,7 @@ bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
 }
 
 // Of the leaves in these ball slabs, these triangles.
-bool NarrowPhase::test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept {
+bool PairQuery::triangles_meet(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept {
   const TriangleBlock& lanes = first_->tree.triangle_blocks[child_of(first_->tree, a) & ~kLeafBit];
   const TriangleBlock& rows = second_->tree.triangle_blocks[child_of(second_->tree, b) & ~kLeafBit];
   if (!detail::triangles_intersect(detail::points_of(lanes, lane), detail::moved_points_of(rows, row, relative_),
