@@ -10,10 +10,10 @@
 #include <functional>
 #include <string>
 
-#include "machine.h"
 #include "measure.h"
 #include "rivals.h"
 #include "scenes.h"
+#include "simd/machine.h"
 #include "spatial_hash.h"
 
 namespace {

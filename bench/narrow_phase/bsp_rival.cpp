@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pair/triangle_pair.h"
+#include "math/triangle_pair.h"
 #include "rival.h"
 
 namespace orchard::bench {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "bodies.h"
-#include "machine.h"
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "rival.h"
+#include "simd/machine.h"
 
 namespace {
 

@@ -11,10 +11,10 @@
 #include <string>
 
 #include "bodies.h"
+#include "collision/coherent_pair.h"
 #include "orchard/runtime/contacts.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/time_of_impact.h"
-#include "pair/coherent_pair.h"
 #include "rival.h"
 #include "support.h"
 

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "bodies.h"
-#include "machine.h"
 #include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
+#include "simd/machine.h"
 #include "support.h"
 
 namespace {

@@ -7,10 +7,10 @@
 #include <limits>
 #include <vector>
 
-#include "machine.h"
+#include "collision/kernels/sphere_block.h"
+#include "simd/machine.h"
+#include "simd/vector_support.h"
 #include "support.h"
-#include "tree/sphere_block.h"
-#include "vector_support.h"
 
 namespace {
 

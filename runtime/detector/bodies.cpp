@@ -1,8 +1,8 @@
-#include "bodies.h"
+#include "detector/bodies.h"
 
 #include <algorithm>
 
-#include "pair/pose_change.h"
+#include "collision/pose_change.h"
 
 namespace orchard::runtime {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <atomic>
 
-#include "broad/body_pool.h"
-#include "shapes.h"
+#include "broad_phase/body_pool.h"
+#include "detector/shapes.h"
 
 namespace orchard::runtime::detail {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "detector_state.h"
-#include "pair/vector_functions.h"
+#include "detector/detector_state.h"
+#include "math/vector_functions.h"
 
 namespace orchard::runtime {
 

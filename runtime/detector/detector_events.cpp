@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "detector_state.h"
+#include "detector/detector_state.h"
 
 // From pairs of spheres to records.
 namespace orchard::runtime {

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <limits>
 
-#include "detector_state.h"
-#include "pair/solid_contacts.h"
+#include "collision/solid_contacts.h"
+#include "detector/detector_state.h"
 
 namespace orchard::runtime {
 

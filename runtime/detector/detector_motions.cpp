@@ -1,4 +1,4 @@
-#include "detector_state.h"
+#include "detector/detector_state.h"
 
 // Where bodies are, and what the broad phase may rely on.
 namespace orchard::runtime {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "detector_state.h"
+#include "detector/detector_state.h"
 
 // Pairs with static bodies that are found by parts; see PartSearch.
 namespace orchard::runtime {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "detector_state.h"
+#include "detector/detector_state.h"
 
 // Which records have to be asked about, and from answers to events: by jobs, since most of it is waiting for memory.
 namespace orchard::runtime {

@@ -1,9 +1,9 @@
 #pragma once
-#include "kept_states.h"
+#include "detector/kept_states.h"
+#include "detector/part_search.h"
+#include "detector/rounds.h"
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/motion_monitor.h"
-#include "part_search.h"
-#include "rounds.h"
 
 namespace orchard::runtime {
 

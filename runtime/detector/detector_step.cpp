@@ -2,8 +2,8 @@
 #include <span>
 #include <vector>
 
-#include "detector_state.h"
-#include "guarded.h"
+#include "detector/detector_state.h"
+#include "execution/guarded.h"
 
 // A step: the broad phase, then the pairs it reports, in the order of the dissertation's Fig. 3.2.
 namespace orchard::runtime {

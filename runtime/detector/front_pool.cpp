@@ -1,4 +1,4 @@
-#include "front_pool.h"
+#include "detector/front_pool.h"
 
 #include <algorithm>
 

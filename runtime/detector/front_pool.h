@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "pair_records.h"
+#include "detector/pair_records.h"
 
 namespace orchard::runtime::detail {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "pair/outermost_points.h"
-#include "simple_pair.h"
+#include "collision/outermost_points.h"
+#include "detector/simple_pair.h"
 
 // Shapes against half-spaces: the least height of a shape over the plane decides.
 namespace orchard::runtime::detail {

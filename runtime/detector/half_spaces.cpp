@@ -1,4 +1,4 @@
-#include "half_spaces.h"
+#include "detector/half_spaces.h"
 
 #include <algorithm>
 

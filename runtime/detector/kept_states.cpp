@@ -1,6 +1,6 @@
-#include "kept_states.h"
+#include "detector/kept_states.h"
 
-#include "detector_state.h"
+#include "detector/detector_state.h"
 
 namespace orchard::runtime {
 namespace detail {

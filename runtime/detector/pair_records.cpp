@@ -1,4 +1,4 @@
-#include "pair_records.h"
+#include "detector/pair_records.h"
 
 #include <cstring>
 

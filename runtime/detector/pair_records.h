@@ -5,8 +5,8 @@
 #include <new>
 #include <type_traits>
 
+#include "detector/pair_tests.h"
 #include "orchard/runtime/body_pair.h"
-#include "pair_tests.h"
 
 namespace orchard::runtime::detail {
 

@@ -1,6 +1,6 @@
-#include "pair_tests.h"
+#include "detector/pair_tests.h"
 
-#include "pair/pair_query.h"
+#include "collision/pair_query.h"
 
 namespace orchard::runtime::detail {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "half_spaces.h"
-#include "pair/pair_query.h"
-#include "simple_pair.h"
+#include "collision/pair_query.h"
+#include "detector/half_spaces.h"
+#include "detector/simple_pair.h"
 
 namespace orchard::runtime::detail {
 

@@ -1,4 +1,4 @@
-#include "part_search.h"
+#include "detector/part_search.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
+#include "detector/static_spheres.h"
 #include "orchard/runtime/body_pair.h"
-#include "static_spheres.h"
 
 namespace orchard::runtime::detail {
 

@@ -1,6 +1,6 @@
-#include "query_pool.h"
+#include "detector/query_pool.h"
 
-#include "pair/workspace_scratch.h"
+#include "collision/workspace_scratch.h"
 
 namespace orchard::runtime::detail {
 

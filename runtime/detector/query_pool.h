@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "collision/pair_query.h"
+#include "detector/shapes.h"
 #include "orchard/runtime/body_pair.h"
-#include "pair/pair_query.h"
-#include "shapes.h"
 
 namespace orchard::runtime::detail {
 

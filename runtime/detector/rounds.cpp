@@ -1,9 +1,9 @@
-#include "rounds.h"
+#include "detector/rounds.h"
 
 #include <algorithm>
 
-#include "pair/coherent_pair.h"
-#include "pair/pair_query.h"
+#include "collision/coherent_pair.h"
+#include "collision/pair_query.h"
 
 namespace orchard::runtime::detail {
 namespace {

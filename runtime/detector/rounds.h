@@ -1,8 +1,8 @@
 #pragma once
-#include "front_pool.h"
-#include "query_pool.h"
-#include "step_budget.h"
-#include "sweep.h"
+#include "detector/front_pool.h"
+#include "detector/query_pool.h"
+#include "detector/step_budget.h"
+#include "detector/sweep.h"
 
 namespace orchard::runtime::detail {
 

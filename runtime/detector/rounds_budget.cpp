@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 
-#include "pair/coherent_pair.h"
-#include "pair/pair_query.h"
-#include "rounds.h"
+#include "collision/coherent_pair.h"
+#include "collision/pair_query.h"
+#include "detector/rounds.h"
 
 // Within a budget: by class of importance, and there in the order of who has waited longest. At the same time
 // everybody's answer is begun with what costs next to nothing and tells most pairs: spheres, roots, what the last step

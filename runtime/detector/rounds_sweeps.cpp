@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "rounds.h"
+#include "detector/rounds.h"
 
 namespace orchard::runtime::detail {
 namespace {

@@ -1,10 +1,10 @@
-#include "shapes.h"
+#include "detector/shapes.h"
 
 #include <algorithm>
 #include <numeric>
 
+#include "collision/support_box.h"
 #include "orchard/runtime/shape_trees.h"
-#include "pair/support_box.h"
 
 namespace orchard::runtime::detail {
 namespace {

@@ -1,8 +1,8 @@
-#include "simple_pair.h"
+#include "detector/simple_pair.h"
 
 #include <algorithm>
 
-#include "pair/segment_query.h"
+#include "collision/segment_query.h"
 
 namespace orchard::runtime::detail {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "shapes.h"
+#include "detector/shapes.h"
 
 // Pairs with a simple shape: in closed form, or one walk down one tree. Correct to rounding in double, as shape_query.h
 // says. None is interrupted. A round or box-shaped body is solid.

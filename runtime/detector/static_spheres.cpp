@@ -1,9 +1,9 @@
-#include "static_spheres.h"
+#include "detector/static_spheres.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "machine.h"
+#include "simd/machine.h"
 
 namespace orchard::runtime::detail {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "bodies.h"
+#include "detector/bodies.h"
 
 namespace orchard::runtime::detail {
 

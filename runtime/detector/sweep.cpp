@@ -1,4 +1,4 @@
-#include "sweep.h"
+#include "detector/sweep.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
+#include "detector/pair_tests.h"
 #include "orchard/runtime/time_of_impact.h"
-#include "pair_tests.h"
 
 namespace orchard::runtime::detail {
 

@@ -1,4 +1,4 @@
-#include "places_along.h"
+#include "tree/places_along.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "principal_axes.h"
+#include "tree/principal_axes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "pair/vector_functions.h"
+#include "math/vector_functions.h"
 
 namespace orchard::runtime::detail {
 

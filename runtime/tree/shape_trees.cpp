@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "pair/box_facets.h"
-#include "pair/exact_sign.h"
-#include "pair/vector_functions.h"
+#include "math/exact_sign.h"
+#include "math/vector_functions.h"
+#include "tree/box_facets.h"
 
 namespace orchard::runtime {
 

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "guarded.h"
+#include "execution/guarded.h"
 
 namespace orchard::runtime {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "math/triangle_pair.h"
 #include "orchard/runtime/packed_tree.h"
-#include "pair/triangle_pair.h"
 
 // How queries read a packed tree. All of it relies on structure_fault() being nullptr.
 namespace orchard::runtime::detail {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "orchard/runtime/packed_tree.h"
-#include "places_along.h"
-#include "principal_axes.h"
+#include "tree/places_along.h"
+#include "tree/principal_axes.h"
 
 // The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
 // triangles. Where all leaves fit in one block (a box, a wall, a simple hull), triangles are few and large beside what

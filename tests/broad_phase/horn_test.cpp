@@ -1,4 +1,4 @@
-#include "broad/horn.h"
+#include "broad_phase/horn.h"
 
 #include <gtest/gtest.h>
 

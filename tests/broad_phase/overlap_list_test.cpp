@@ -2,9 +2,9 @@
 
 #include <set>
 
-#include "broad/overlap_list.h"
-#include "broad/swept_grid.h"
-#include "broad/timing_wheel.h"
+#include "broad_phase/overlap_list.h"
+#include "broad_phase/swept_grid.h"
+#include "broad_phase/timing_wheel.h"
 #include "worlds.h"
 
 // What the default broad phase keeps between steps, by itself.

@@ -1,4 +1,4 @@
-#include "broad/pair_times.h"
+#include "broad_phase/pair_times.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "../runtime/every_machine.h"
 #include "../support/effort.h"
-#include "broad/horn.h"
+#include "broad_phase/horn.h"
 #include "worlds.h"
 
 namespace orchard::runtime {

@@ -1,4 +1,4 @@
-#include "broad/sorted_spheres.h"
+#include "broad_phase/sorted_spheres.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "machine.h"
+#include "simd/machine.h"
 
 namespace orchard::runtime::test {
 

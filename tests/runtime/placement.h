@@ -1,8 +1,8 @@
 #pragma once
 #include <cstddef>
 
+#include "collision/kernels/ball_slab_block.h"
 #include "orchard/runtime/pose.h"
-#include "tree/ball_slab_block.h"
 
 namespace orchard::runtime::test {
 

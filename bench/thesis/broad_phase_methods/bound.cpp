@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "broad/horn.h"
+#include "broad_phase/horn.h"
 
 namespace orchard::broad_phase_methods {
 

@@ -160,7 +160,7 @@ struct StepsAhead {
 
 class BroadPhase;
 
-namespace detail {  // not for applications: the private header broad/method.h says what they are
+namespace detail {  // not for applications: the private header broad_phase/method.h says what they are
 class Method;
 class BodyPool;
 using MakeMethod = std::function<std::unique_ptr<Method>(BodyPool& pool, const BroadPhaseOptions& options)>;

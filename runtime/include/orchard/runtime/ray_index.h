@@ -17,24 +17,23 @@ namespace detail {
 struct RayIndexAccess;
 }
 
-// Eight boxes side by side, along the axes of a body's frame: nodes of a ray index. Every triangle below a node lies in
-// its box. Lanes that hold no node have low > high.
-struct alignas(32) BoxBlock {
-  using Lanes = std::array<float, kBlockWidth>;
-  std::array<Lanes, 3> low{}, high{};              // [coordinate]
-  std::array<std::uint32_t, kBlockWidth> child{};  // block of the children; with kLeafBit set, a block of triangles
-};
-static_assert(sizeof(BoxBlock) == 224 && alignof(BoxBlock) == 32);
+struct BoxBlock;
 
 // A second tree over a body's triangles, of boxes along the axes, for many rays against one body: cast_ray() and
 // cast_rays() give the same answers with it as without, bit for bit, for about half of the time. It holds the triangles
 // itself and refers to nothing afterwards; queries only read it, so any number of threads may ask at once.
 class RayIndex {
  public:
-  RayIndex() = default;  // no triangles: no ray hits
+  RayIndex() noexcept;  // no triangles: no ray hits
   // O(n log n) for n triangles, some 1.5 us a triangle, and about 60 bytes a triangle afterwards. Deterministic. Throws
   // std::bad_alloc only. Precondition: structure_fault(tree) is nullptr.
   explicit RayIndex(const TreeView& tree);
+
+  RayIndex(const RayIndex&);
+  RayIndex(RayIndex&&) noexcept;
+  RayIndex& operator=(const RayIndex&);
+  RayIndex& operator=(RayIndex&&) noexcept;
+  ~RayIndex();
 
   bool empty() const noexcept { return leaves_.empty(); }
   std::size_t bytes() const noexcept;  // of memory, besides the object itself

@@ -1,0 +1,183 @@
+#include <cmath>
+
+#include "broad_phase/box_index.h"
+
+// Which bodies a query may concern, by the boxes: these hold each sphere from the step of its update to the end of its
+// window.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kSpare = 1;           // quanta: more than all rounding within the lattice comes to
+constexpr double kFarOrigin = 0x1p44;  // quanta: beyond, rounding comes to too many of them
+constexpr double kBeyond = std::numeric_limits<double>::infinity();
+constexpr std::size_t kPortion = 16;    // bodies, about, that are visited together
+constexpr std::size_t kFewCells = 64;   // that are read even if there are fewer bodies
+constexpr double kCellsPerSlab = 2.25;  // of a ray, on average at most
+
+constexpr QuantumBox kEverything = {{0, 0, 0}, {kLastQuantum, kLastQuantum, kLastQuantum}};
+
+std::uint32_t quantum_below(double q) noexcept {
+  const double down = std::floor(q - kSpare);
+  return !(down > 0) ? 0 : down >= kLastQuantum ? kLastQuantum : static_cast<std::uint32_t>(down);
+}
+std::uint32_t quantum_above(double q) noexcept {
+  const double up = std::ceil(q + kSpare);
+  return !(up > 0) ? 0 : up >= kLastQuantum ? kLastQuantum : static_cast<std::uint32_t>(up);
+}
+
+// What both have in common; empty (a lower end above its upper one) if nothing.
+QuantumBox common(const QuantumBox& a, const QuantumBox& b) noexcept {
+  QuantumBox both{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    both.lower[d] = std::max(a.lower[d], b.lower[d]);
+    both.upper[d] = std::min(a.upper[d], b.upper[d]);
+  }
+  return both;
+}
+
+// The lines that have to be read; 0 for an empty box.
+double cells_in(const QuantumBox& box) noexcept {
+  double cells = 1;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const bool empty = box.lower[d] > box.upper[d];
+    cells *= empty ? 0 : (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) + 1.0;
+  }
+  return cells;
+}
+
+}  // namespace
+
+// In quanta, from `begin` to `end` along a direction of length 1.
+struct BoxIndex::GridRay {
+  std::array<double, 3> origin, way;
+  double begin, end;
+  std::size_t axis = 0;  // along which it is fastest
+
+  double at(std::size_t d, double t) const noexcept { return origin[d] + t * way[d]; }
+  void clip(const QuantumBox& box) noexcept {
+    for (std::size_t d = 0; d < 3; ++d) {
+      // What reaches an end of the lattice may reach beyond it.
+      const double lower = box.lower[d] == 0 ? -kBeyond : box.lower[d] - 2 * kSpare,
+                   upper = box.upper[d] == kLastQuantum ? kBeyond : box.upper[d] + 2 * kSpare;
+      if (way[d] == 0) {
+        if (!(lower <= origin[d] && origin[d] <= upper)) end = -1;
+        continue;
+      }
+      const double enter = (lower - origin[d]) / way[d], leave = (upper - origin[d]) / way[d];
+      begin = std::max(begin, std::min(enter, leave));
+      end = std::min(end, std::max(enter, leave));
+    }
+  }
+  bool meets(const QuantumBox& box) const noexcept {
+    GridRay part = *this;
+    part.clip(box);
+    return part.begin <= part.end;
+  }
+};
+
+void BoxIndex::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const {
+  std::array<std::uint32_t, 3> cell{};
+  const auto first = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
+  const auto last = [&](std::size_t d) { return box.upper[d] >> kQuantumBits; };
+  const auto take = [&](BodyIndex body) {
+    if (boxes_[body].meets(box)) bodies.push_back(body);
+  };
+  for (cell[2] = first(2); cell[2] <= last(2); ++cell[2]) {
+    for (cell[1] = first(1); cell[1] <= last(1); ++cell[1]) {
+      for (cell[0] = first(0); cell[0] <= last(0); ++cell[0]) grid_.visit_cell(cell, take);
+    }
+  }
+}
+
+std::size_t BoxIndex::fewest_cells() const noexcept { return std::max(kFewCells, places_.size()); }
+
+Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+  const Lattice lattice = lattice_at(now);
+  QuantumBox box{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    box.lower[d] = quantum_below(lattice.quantum(lower[d], d));
+    box.upper[d] = quantum_above(lattice.quantum(upper[d], d));
+  }
+  if (few_) {
+    list_.append_meeting(box, bodies);
+    return box.lower == kEverything.lower && box.upper == kEverything.upper ? Near::all : Near::some;
+  }
+  const QuantumBox inside = common(box, extent_);
+  const double cells = cells_in(inside);
+  if (cells > static_cast<double>(fewest_cells())) {
+    for (BodyIndex body = 0; body < places_.size(); ++body) {
+      if (places_[body] == Place::inside && boxes_[body].meets(box)) bodies.push_back(body);
+    }
+  } else if (cells > 0) {
+    append_in_cells(inside, bodies);
+  }
+  bool whole = inside.lower == extent_.lower && inside.upper == extent_.upper;
+  for (const Oversized& large : oversized_) {
+    const bool meets = large.box.meets(box);
+    if (meets) bodies.push_back(large.body);
+    whole = whole && meets;
+  }
+  return whole ? Near::all : Near::some;
+}
+
+// Slab after slab of cells across the axis along which the ray is fastest: it crosses few cells in each. False if the
+// visitor has had enough.
+bool BoxIndex::walk_slabs(const Lattice& lattice, const GridRay& ray, std::vector<BodyIndex>& portion,
+                          PortionVisitor& visitor) const {
+  const std::size_t m = ray.axis;
+  const auto slab_at = [&](double t) {
+    return static_cast<std::int64_t>(std::floor(std::clamp(ray.at(m, t), 0.0, double{kLastQuantum}) / kQuanta));
+  };
+  const std::int64_t step = ray.way[m] > 0 ? 1 : -1, last = slab_at(ray.end);
+  for (std::int64_t slab = slab_at(ray.begin);; slab += step) {
+    const double near = static_cast<double>(kQuanta * (step > 0 ? slab : slab + 1)),
+                 far = static_cast<double>(kQuanta * (step > 0 ? slab + 1 : slab));
+    const auto time_at = [&](double q) { return (q - ray.origin[m]) / ray.way[m]; };
+    const double spare = kSpare * static_cast<double>(step);
+    const double from = std::max(ray.begin, time_at(near - spare)), to = std::min(ray.end, time_at(far + spare));
+    QuantumBox box{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      box.lower[d] = quantum_below(std::min(ray.at(d, from), ray.at(d, to)));
+      box.upper[d] = quantum_above(std::max(ray.at(d, from), ray.at(d, to)));
+    }
+    box.lower[m] = static_cast<std::uint32_t>(std::min(near, far));
+    box.upper[m] = box.lower[m] + (kQuanta - 1);
+    append_in_cells(box, portion);
+    if (slab == last) break;
+    if (portion.size() < kPortion) continue;
+    if (!visitor.visit(portion, time_at(far - spare) / lattice.quanta(1))) return false;
+    portion.clear();
+  }
+  return true;
+}
+
+bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+                     PortionVisitor& visitor) const {
+  if (few_) return false;
+  const Lattice lattice = lattice_at(now);
+  GridRay ray{{}, way, 0, lattice.quanta(length)};
+  for (std::size_t d = 0; d < 3; ++d) {
+    ray.origin[d] = lattice.quantum(origin[d], d);
+    if (!(std::fabs(ray.origin[d]) <= kFarOrigin)) return false;
+    if (std::fabs(way[d]) > std::fabs(way[ray.axis])) ray.axis = d;
+  }
+  for (const Oversized& large : oversized_) {
+    if (ray.meets(large.box)) portion.push_back(large.body);
+  }
+  const bool any = extent_.lower[0] <= extent_.upper[0];
+  if (any) ray.clip(extent_);
+  if (any && ray.begin <= ray.end) {
+    const double slabs = std::fabs(ray.at(ray.axis, ray.end) - ray.at(ray.axis, ray.begin)) / kQuanta;
+    if (kCellsPerSlab * slabs <= static_cast<double>(fewest_cells())) {
+      if (!walk_slabs(lattice, ray, portion, visitor)) return true;
+    } else {
+      for (BodyIndex body = 0; body < places_.size(); ++body) {
+        if (places_[body] == Place::inside && ray.meets(boxes_[body].whole())) portion.push_back(body);
+      }
+    }
+  }
+  visitor.visit(portion, length);
+  return true;
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,372 @@
+#include "broad_phase/box_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "broad_phase/four_motions.h"
+#include "broad_phase/horn.h"
+#include "simd/machine.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kMiddle = 0x1p30 + kQuanta / 2;  // the origin's quantum: in the middle of a cell
+constexpr double kRoundingQuanta = 0x1p-8;        // covers some roundings of numbers below 2^32
+
+// Some bodies' motions by coordinate.
+template <typename Numbers>
+struct MotionColumns {
+  std::array<Numbers, 3> position, velocity;
+  Numbers radius, acceleration, drift;
+  Numbers rest;  // sums of the squares of drifts and half-spaces, of all these bodies, in any order
+};
+
+// How many bodies are worked on together, and their numbers; row(i) points to the i-th one's motion.
+struct PlainMotions {
+  static constexpr std::size_t kLanes = 4;
+  static constexpr bool kClips = true;  // boxes to the lattice; others tell that some do not lie in it
+  using Numbers = Plain<double, kLanes>;
+  using Mask = Numbers::Mask;
+  using Columns = MotionColumns<Numbers>;
+  static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
+    return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
+  }
+  static Numbers least(const Numbers& a, const Numbers& b) noexcept { return choose(b < a, b, a); }
+  static Numbers most(const Numbers& a, const Numbers& b) noexcept { return choose(a < b, b, a); }
+  static Mask within(const Numbers& first, const Numbers& a, const Numbers& b, const Numbers& last) noexcept {
+    return (first <= a) & (b <= last);
+  }
+  template <typename Row>
+  static Columns columns(const Row& row) noexcept {
+    const auto column = [&](auto&& of) { return Numbers::make([&](std::size_t i) { return of(*row(i)); }); };
+    Columns result{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      result.position[d] = column([d](const Motion& motion) { return motion.position[d]; });
+      result.velocity[d] = column([d](const Motion& motion) { return motion.velocity[d]; });
+    }
+    result.radius = column([](const Motion& motion) { return motion.radius; });
+    result.acceleration = column([](const Motion& motion) { return motion.acceleration; });
+    result.drift = column([](const Motion& motion) { return motion.drift; });
+    result.rest = column([](const Motion& of) { return of.drift * of.drift + dot(of.half_space, of.half_space); });
+    return result;
+  }
+  static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
+  static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
+    for (std::size_t i = 0; i < kLanes; ++i) to[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(a[i]));
+  }
+};
+
+#ifdef ORCHARD_VECTORS
+struct VectorMotions : VectorDoubles {
+  static constexpr std::size_t kLanes = 4;
+  static constexpr bool kClips = false;
+  using Columns = MotionColumns<Numbers>;
+  ORCHARD_INLINE static Mask within(const Numbers& first, const Numbers& a, const Numbers& b,
+                                    const Numbers& last) noexcept {
+    return (first <= a) & (b <= last);
+  }
+  template <typename Row>
+  ORCHARD_INLINE static Columns columns(const Row& row) noexcept {
+    const std::array<Numbers, 4> first = transposed(row, kPositionAndVelocity),
+                                 second = transposed(row, kVelocityAndRadius);
+    const auto squares = [&](std::size_t i) ORCHARD_INLINE_LAMBDA {
+      return at(&row(i)->drift) * at(&row(i)->drift);
+    };  // and half-space
+    return {{first[0], first[1], first[2]},
+            {first[3], second[0], second[1]},
+            second[2],
+            second[3],
+            Numbers{row(0)->drift, row(1)->drift, row(2)->drift, row(3)->drift},
+            (squares(0) + squares(1)) + (squares(2) + squares(3))};
+  }
+  ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
+    using Integers __attribute__((vector_size(4 * kLanes))) = std::int32_t;
+    const Integers integers = __builtin_convertvector(a, Integers);
+    std::memcpy(to, &integers, sizeof integers);
+  }
+};
+
+#if defined(ORCHARD_VECTORS) && defined(ORCHARD_AVX512_NAMES)
+// Eight bodies, whose comparisons are bits.
+struct EightMotions {
+  static constexpr std::size_t kLanes = 8;
+  static constexpr bool kClips = false;
+  using Numbers __attribute__((vector_size(64))) = double;
+  using Columns = MotionColumns<Numbers>;
+  using Mask = std::uint8_t;
+  ORCHARD_INLINE static Numbers least(const Numbers& a, const Numbers& b) noexcept {  // a of two that do not compare
+    return __builtin_ia32_minpd512_mask(b, a, a, kAll, kRounding);
+  }
+  ORCHARD_INLINE static Numbers most(const Numbers& a, const Numbers& b) noexcept {
+    return __builtin_ia32_maxpd512_mask(b, a, a, kAll, kRounding);
+  }
+  ORCHARD_INLINE static Mask within(const Numbers& first, const Numbers& a, const Numbers& b,
+                                    const Numbers& last) noexcept {
+    return at_most(b, last, at_most(first, a, kAll));
+  }
+  ORCHARD_INLINE static bool all(Mask mask) noexcept { return mask == kAll; }
+  template <typename Row>
+  ORCHARD_INLINE static Columns columns(const Row& row) noexcept {
+    static_assert(kVelocityAndRadius + 4 == kLanes);
+    std::array<Numbers, kLanes> rows, pairs;  // the latter of even and odd columns, of two rows
+    for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(&rows[i], row(i), sizeof rows[i]);
+    for (std::size_t i = 0; i < kLanes; i += 2) {
+      pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+      pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    const auto columns_of = [&](std::size_t odd) ORCHARD_INLINE_LAMBDA {
+      const auto outer = [](const Numbers& a, const Numbers& b)
+                             ORCHARD_INLINE_LAMBDA { return __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13); };
+      const auto inner = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA {
+        return __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15);
+      };
+      const Numbers a = outer(pairs[odd], pairs[2 + odd]), b = outer(pairs[4 + odd], pairs[6 + odd]),
+                    c = inner(pairs[odd], pairs[2 + odd]), d = inner(pairs[4 + odd], pairs[6 + odd]);
+      return std::array<Numbers, 4>{outer(a, b), outer(c, d), inner(a, b), inner(c, d)};
+    };
+    const std::array<Numbers, 4> even = columns_of(0), odd = columns_of(1);
+    using Four __attribute__((vector_size(32))) = double;
+    const auto two = [&](std::size_t i) ORCHARD_INLINE_LAMBDA {  // drifts and half-spaces
+      const auto at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
+        Four four;
+        std::memcpy(&four, &row(k)->drift, sizeof four);
+        return four;
+      };
+      return __builtin_shufflevector(at(i), at(i + 1), 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    const Numbers r01 = two(0), r23 = two(2), r45 = two(4), r67 = two(6);
+    const Numbers drifts = __builtin_shufflevector(__builtin_shufflevector(r01, r23, 0, 4, 8, 12, 0, 4, 8, 12),
+                                                   __builtin_shufflevector(r45, r67, 0, 4, 8, 12, 0, 4, 8, 12), 0, 1, 2,
+                                                   3, 12, 13, 14, 15);
+    return {{even[0], odd[0], even[1]},
+            {odd[1], even[2], odd[2]},
+            even[3],
+            odd[3],
+            drifts,
+            (r01 * r01 + r23 * r23) + (r45 * r45 + r67 * r67)};
+  }
+  ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
+    using Integers __attribute__((vector_size(4 * kLanes))) = std::int32_t;
+    const Integers integers = __builtin_convertvector(a, Integers);
+    std::memcpy(to, &integers, sizeof integers);
+  }
+
+ private:
+  static constexpr Mask kAll = 0xff;
+  static constexpr int kRounding = 4;  // as ever
+  ORCHARD_INLINE static Mask at_most(const Numbers& a, const Numbers& b, Mask of) noexcept {
+    constexpr int kLessOrEqual = 18;  // false for NaN, which raises nothing
+    return static_cast<Mask>(__builtin_ia32_cmppd512_mask(a, b, kLessOrEqual, of, kRounding));
+  }
+};
+#endif
+#endif
+
+}  // namespace
+
+void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantumBox> to) const noexcept {
+  std::size_t i = 0;
+#ifdef ORCHARD_VECTORS
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  using Two __attribute__((vector_size(16))) = std::uint64_t;
+  const auto at = [&](const std::array<std::uint32_t, kBlock>& from) {
+    Four result;
+    std::memcpy(&result, &from[i], sizeof result);
+    return result;
+  };
+  const auto low_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
+  const auto high_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
+  const auto put = [&](std::size_t k, const Two& first, std::uint64_t last) {
+    static_assert(sizeof(QuantumBox) == sizeof first + sizeof last);
+    auto* const box = reinterpret_cast<unsigned char*>(&to[places[i + k]]);
+    std::memcpy(box, &first, sizeof first);
+    std::memcpy(box + sizeof first, &last, sizeof last);
+  };
+  for (; i + 4 <= places.size(); i += 4) {
+    const Four x = at(lower[0]), y = at(lower[1]), z = at(lower[2]), end_x = at(upper[0]), end_y = at(upper[1]),
+               end_z = at(upper[2]);
+    const Two begins = reinterpret_cast<Two>(low_halves(x, y)), more_begins = reinterpret_cast<Two>(high_halves(x, y)),
+              rest = reinterpret_cast<Two>(low_halves(z, end_x)),
+              more_rest = reinterpret_cast<Two>(high_halves(z, end_x)),
+              ends = reinterpret_cast<Two>(low_halves(end_y, end_z)),
+              more_ends = reinterpret_cast<Two>(high_halves(end_y, end_z));
+    put(0, __builtin_shufflevector(begins, rest, 0, 2), ends[0]);
+    put(1, __builtin_shufflevector(begins, rest, 1, 3), ends[1]);
+    put(2, __builtin_shufflevector(more_begins, more_rest, 0, 2), more_ends[0]);
+    put(3, __builtin_shufflevector(more_begins, more_rest, 1, 3), more_ends[1]);
+  }
+#endif
+  for (; i < places.size(); ++i) to[places[i]] = get(i);
+}
+
+void BoxBlock::store(std::span<const std::uint32_t> places, std::span<NarrowBox> to) const noexcept {
+  std::size_t i = 0;
+#ifdef ORCHARD_VECTORS
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  const auto at = [&](const std::array<std::uint32_t, kBlock>& from) {
+    Four result;
+    std::memcpy(&result, &from[i], sizeof result);
+    return result;
+  };
+  const auto put = [&](std::size_t k, const Four& box) {
+    static_assert(sizeof(NarrowBox) == sizeof box);
+    std::memcpy(&to[places[i + k]], &box, sizeof box);
+  };
+  for (; i + 4 <= places.size(); i += 4) {
+    const Four x = at(lower[0]), y = at(lower[1]), z = at(lower[2]);
+    const Four lengths = (at(upper[0]) - x) | (at(upper[1]) - y) << 8 | (at(upper[2]) - z) << 16;
+    const Four first = __builtin_shufflevector(x, y, 0, 4, 1, 5), second = __builtin_shufflevector(x, y, 2, 6, 3, 7),
+               rest = __builtin_shufflevector(z, lengths, 0, 4, 1, 5),
+               more_rest = __builtin_shufflevector(z, lengths, 2, 6, 3, 7);
+    put(0, __builtin_shufflevector(first, rest, 0, 1, 4, 5));
+    put(1, __builtin_shufflevector(first, rest, 2, 3, 6, 7));
+    put(2, __builtin_shufflevector(second, more_rest, 0, 1, 4, 5));
+    put(3, __builtin_shufflevector(second, more_rest, 2, 3, 6, 7));
+  }
+#endif
+  for (; i < places.size(); ++i) to[places[i]] = NarrowBox(get(i));
+}
+
+Lattice::Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
+    : first_(origin), velocity_(velocity), per_length_(kQuanta / cell_size), slack_(slack) {
+  move_to(0);
+}
+
+void Lattice::move_to(double seconds) noexcept {
+  origin_ = first_ + seconds * velocity_;
+  double size = 0;
+  for (const double x : origin_) size = std::max(size, std::fabs(x));
+  margin_ =
+      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack_ + kMinLength) * per_length_;
+}
+
+double Lattice::quantum(double coordinate, std::size_t axis) const noexcept {
+  return kMiddle + (coordinate - origin_[axis]) * per_length_;
+}
+
+// What tells whether all motions are valid, put together from those of each few: NaN stays in the sum.
+template <typename Kind>
+struct Lattice::Validity {
+  using Numbers = typename Kind::Numbers;
+  typename Kind::Mask inside = Kind::within(zero(), zero(), zero(), zero());
+  Numbers squares = zero();  // of velocities, accelerations and so on
+  Numbers least = zero();    // of what must not be negative
+
+  ORCHARD_INLINE static Numbers zero() noexcept { return spread<Numbers>(0.0); }
+  ORCHARD_INLINE bool all() const noexcept {
+    const Numbers largest = spread<Numbers>(kMaxNumber * kMaxNumber);
+    return Kind::all(inside & Kind::within(zero(), least, squares, largest));
+  }
+};
+
+// What is told of them together. Quanta are below 2^31: comparisons may take them for signed numbers, which is faster.
+ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
+  std::uint32_t more_cells = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    auto least = static_cast<std::int32_t>(kLastQuantum);
+    std::int32_t most = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t lower = boxes.lower[d][i], upper = boxes.upper[d][i];
+      least = std::min(least, static_cast<std::int32_t>(lower));
+      most = std::max(most, static_cast<std::int32_t>(upper));
+      more_cells |= (upper >> kQuantumBits) - (lower >> kQuantumBits);
+    }
+    boxes.around.lower[d] = static_cast<std::uint32_t>(least);
+    boxes.around.upper[d] = static_cast<std::uint32_t>(most);
+  }
+  boxes.more_cells = more_cells;
+}
+
+// The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
+// that does not lie within the lattice is everything: rounding would no longer be under control.
+template <typename Kind, typename Row>
+ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, BoxBlock& boxes, std::size_t first,
+                                       Validity<Kind>& valid) const noexcept {
+  using Numbers = typename Kind::Numbers;
+  const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return spread<Numbers>(x); };
+  const typename Kind::Columns of = Kind::columns(row);
+  const Numbers time = load<Numbers>(*reinterpret_cast<const std::array<double, Kind::kLanes>*>(durations));
+  const Numbers per_length = all(per_length_), zero = all(0), last = all(kLastQuantum);
+  const Numbers per_speed = time * per_length, half = time * all(0.5);
+  const Numbers wide = per_speed * (of.drift + half * of.acceleration);
+  const Numbers radius = of.radius * per_length + all(margin_);
+  std::array<Numbers, 3> lower, upper;
+  typename Kind::Mask inside = valid.inside;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const Numbers begin = all(kMiddle) + (of.position[d] - all(origin_[d])) * per_length;
+    const Numbers way = (of.velocity[d] - all(velocity_[d])) * per_speed;
+    lower[d] = begin + Kind::least(zero, way - wide) - radius;
+    upper[d] = begin + Kind::most(zero, way + wide) + radius;
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    const auto within = Kind::within(zero, lower[d], upper[d], last);
+    inside = d == 0 ? within : inside & within;
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    if constexpr (Kind::kClips)
+      lower[d] = Kind::choose(inside, lower[d], zero), upper[d] = Kind::choose(inside, upper[d], last);
+    Kind::truncate(lower[d], &boxes.lower[d][first]);
+    Kind::truncate(upper[d], &boxes.upper[d][first]);
+  }
+  const auto square = [](const Numbers& x) ORCHARD_INLINE_LAMBDA { return x * x; };
+  valid.inside = valid.inside & inside;
+  valid.least = Kind::least(Kind::least(valid.least, of.radius), Kind::least(of.acceleration, of.drift));
+  valid.squares = valid.squares + ((of.rest + square(of.acceleration)) +
+                                   (square(of.velocity[0]) + square(of.velocity[1])) + square(of.velocity[2]));
+}
+
+// The last ones with copies of the very last one, or with some before it once more.
+template <typename Kind>
+ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
+                                      BoxBlock& boxes, bool extent) const noexcept {
+  constexpr std::size_t kLanes = Kind::kLanes;
+  Validity<Kind> valid;
+  const std::size_t count = std::min(motions.size(), kBlock);
+  const auto make = [&](std::size_t first) ORCHARD_INLINE_LAMBDA {
+    const Motion* const from = &motions[first];
+    make_some<Kind>([=](std::size_t i) ORCHARD_INLINE_LAMBDA { return from + i; }, &durations[first], boxes, first,
+                    valid);
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) make(i);
+  if (i < count && count >= kLanes) make(count - kLanes);
+  if (count > 0 && count < kLanes) {
+    std::array<double, kLanes> some;
+    for (std::size_t k = 0; k < kLanes; ++k) some[k] = durations[std::min(k, count - 1)];
+    const auto row = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return &motions[std::min(k, count - 1)]; };
+    make_some<Kind>(row, some.data(), boxes, 0, valid);
+  }
+  if constexpr (!Kind::kClips) {
+    if (!Kind::all(valid.inside)) return make_all<PlainMotions>(motions, durations, boxes, extent);  // which clips
+  }
+  if (extent) count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
+  return valid.all();
+}
+
+bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                    bool extent) const noexcept {
+  const Machine chosen = machine();
+  if (chosen == Machine::portable) return make_all<PlainMotions>(motions, durations, boxes, extent);
+  bool good = false;
+  const auto make = [&]<typename Kind>()
+                        ORCHARD_INLINE_LAMBDA { good = make_all<Kind>(motions, durations, boxes, extent); };
+#if defined(ORCHARD_VECTORS) && defined(ORCHARD_MACHINES)
+#ifdef ORCHARD_AVX512_NAMES
+  if (chosen == Machine::avx512) {
+    work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { make.template operator()<EightMotions>(); });
+    return good;
+  }
+#endif
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { make.template operator()<VectorMotions>(); });
+#elif defined(ORCHARD_VECTORS) && defined(ORCHARD_AVX512_NAMES)
+  make.template operator()<EightMotions>();
+#elif defined(ORCHARD_VECTORS)
+  make.template operator()<VectorMotions>();
+#else
+  make.template operator()<PlainMotions>();
+#endif
+  return good;
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,253 @@
+#include "orchard/runtime/broad_phase.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "broad_phase/broad_phase_state.h"
+
+namespace orchard::runtime {
+
+using detail::kNeverStep;
+using detail::Step;
+
+MotionSource values_of(const std::vector<Motion>& values) {
+  return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+    Motion none;  // refused
+    none.radius = -1;
+    for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
+  };
+}
+
+bool is_valid(const BroadPhaseOptions& options) noexcept {
+  constexpr double kMinStep = 1e-20, kMaxStep = 1e20;
+  const double step = options.time_step;
+  const double slack = options.position_slack;
+  return 0 <= slack && slack <= kMaxNumber && kMinStep <= step && step <= kMaxStep &&
+         std::fabs(options.start) <= kMaxSteps * step;  // none is NaN
+}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
+    : BroadPhase(std::move(source), options, detail::make_events) {}
+
+BroadPhase BroadPhase::reading(const MotionArrays& arrays, const BroadPhaseOptions& options) {
+  return {nullptr, options, detail::make_events, &arrays};
+}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make,
+                       const MotionArrays* arrays) {
+  const bool valid = is_valid(wanted);
+  const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
+  state_ = std::make_unique<State>(
+      State{detail::BodyPool(std::move(source), arrays, detail::Clock{options.start, options.time_step}), nullptr});
+  max_time_ = valid ? kMaxSteps * options.time_step : -1;
+  state_->method = make(state_->pool, options);
+  if (options.validate) state_->pool.check_promises(options.broken, options.position_slack);
+  note_next_step();
+  seen_time_ = -std::numeric_limits<double>::infinity();
+}
+
+BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make) {
+  return {std::move(source), options, make};
+}
+
+BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
+BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
+BroadPhase::~BroadPhase() = default;
+
+// The last one not after what everything has been reported up to; -1: none yet.
+Step BroadPhase::step_reported() const noexcept {
+  return std::isinf(seen_time_) ? -1 : std::max<Step>(-1, state_->pool.clock.step_at(seen_time_));
+}
+
+// While we slept, the caller's time went on: the change counts from the first step after it.
+void BroadPhase::wake_for_change() {
+  if (state_->woken) return;
+  state_->woken = true;
+  state_->next = std::min(state_->next, step_reported() + 1);
+  note_next_step();
+}
+
+void BroadPhase::note_next_step() {
+  const detail::Clock& clock = state_->pool.clock;
+  const bool any = state_->next != kNeverStep;
+  next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
+  wake_time_ = any ? clock.earliest(state_->next) : next_time_;
+  if (state_->pool.promises() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
+}
+
+void BroadPhase::validate_up_to(Step step) {
+  if (step <= state_->validated) return;
+  state_->validated = step;
+  state_->pool.ask_all(step);
+}
+
+bool BroadPhase::may_change() const noexcept { return valid() && !state_->busy; }
+
+Advance BroadPhase::process(double t_now, const Budget* budget, std::uint64_t replay) {
+  if (!(std::fabs(t_now) <= max_time_) || state_->busy) {
+    Advance refused{next_time_, {}};
+    refused.time_refused = true;
+    return refused;
+  }
+  // A step that is left half-way cannot be taken up again: what is reported after it would be wrong.
+  const auto fail = [this] {
+    max_time_ = -1;
+    next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
+  };
+  detail::UndoUnlessDone fails(fail);
+  const Busy busy(*state_);
+  const Advance report = process_steps(t_now, budget, replay);
+  fails.done();
+  return report;
+}
+
+Advance BroadPhase::process_steps(double t_now, const Budget* budget, std::uint64_t replay) {
+  State& state = *state_;
+  state.woken = false;
+  std::vector<BodyIndex>& bodies_refused = state.pool.refused();
+  bodies_refused.clear();
+  const auto refused = [&]() -> std::span<const BodyIndex> {
+    std::sort(bodies_refused.begin(), bodies_refused.end());
+    bodies_refused.erase(std::unique(bodies_refused.begin(), bodies_refused.end()), bodies_refused.end());
+    return bodies_refused;
+  };
+  const detail::Clock& clock = state.pool.clock;
+  std::uint64_t work = 0;
+  const bool validating = state.pool.promises() != nullptr;
+  while (state.next != kNeverStep && t_now >= clock.earliest(state.next)) {
+    const Step now = state.next;
+    if (validating) validate_up_to(now);
+    detail::BudgetTracker tracker = budget ? detail::BudgetTracker(*budget, replay) : detail::BudgetTracker();
+    const detail::StepReport report = state.method->step(now, tracker);
+    state.next = report.next;
+    work = tracker.done();
+    note_next_step();
+    if (!report.pairs.empty() || report.incomplete_from != kNoClass) {
+      seen_time_ = clock.time(now);
+      return {seen_time_, report.pairs, report.incomplete_from, report.left_over, refused(), false, work};
+    }
+  }
+  seen_time_ = std::max(seen_time_, t_now);
+  if (validating) validate_up_to(step_reported());
+  return {next_time_, {}, kNoClass, 0, refused(), false, work};
+}
+
+BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
+  const detail::BodyPool& pool = state_->pool;
+  return valid() && index < pool.slots() && pool.alive(index) ? pool.id_of(index) : kNoBody;
+}
+
+BodyId BroadPhase::take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
+  detail::BodyPool& pool = state_->pool;
+  const BodyIndex body = pool.add(importance, filter, place);
+  if (body == kNoIndex) return kNoBody;
+  const auto undo = [&] { pool.undo_add(body); };
+  detail::UndoUnlessDone undone(undo);
+  state_->method->changed(body);
+  undone.done();
+  wake_for_change();
+  return pool.id_of(body);
+}
+
+BodyId BroadPhase::add(std::uint8_t importance, const BodyFilter& filter) {
+  return may_change() && state_->pool.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
+}
+
+BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, const BodyFilter& filter) {
+  return may_change() && is_valid(place) ? take_in(importance, filter, &place) : kNoBody;
+}
+
+bool BroadPhase::remove(BodyId body) {
+  if (!may_change() || !contains(body)) return false;
+  state_->pool.make_room_to_remove(body.index);
+  state_->method->removed(body.index);
+  state_->pool.remove(body.index);
+  return true;
+}
+
+bool BroadPhase::cancel(BodyId body) {
+  if (!may_change() || !contains(body)) return false;
+  state_->method->changed(body.index);
+  state_->pool.forget_promise(body.index);
+  wake_for_change();
+  return true;
+}
+
+bool BroadPhase::move_static(BodyId body, const Motion& place) {
+  if (!may_change() || !contains(body) || !state_->pool.is_static(body.index) || !is_valid(place)) return false;
+  cancel(body);
+  state_->pool.move_static(body.index, place);
+  return true;
+}
+
+bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
+  if (!may_change() || !contains(body)) return false;
+  detail::BodyPool& pool = state_->pool;
+  const std::uint8_t before = pool.importance(body.index);
+  const auto undo = [&] { pool.set_importance(body.index, before); };
+  pool.set_importance(body.index, importance);
+  detail::UndoUnlessDone undone(undo);
+  state_->method->reclassified(body.index);
+  undone.done();
+  return true;
+}
+
+// A window update finds all near pairs anew, and those found before become void.
+bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
+  if (!may_change() || !contains(body)) return false;
+  detail::BodyPool& pool = state_->pool;
+  if (pool.filter(body.index) == filter) return true;
+  pool.make_room_for_filters();
+  state_->method->changed(body.index);
+  wake_for_change();
+  pool.set_filter(body.index, filter);
+  return true;
+}
+
+BodyFilter BroadPhase::filter_of(BodyId body) const noexcept {
+  return contains(body) ? state_->pool.filter(body.index) : BodyFilter{};
+}
+
+void BroadPhase::set_pair_filter(PairFilter filter) {
+  if (!may_change()) return;
+  detail::BodyPool& pool = state_->pool;
+  for (BodyIndex body = 0; body < pool.slots(); ++body) {
+    if (pool.alive(body)) state_->method->changed(body);
+  }
+  wake_for_change();
+  pool.set_pair_filter(std::move(filter));
+}
+
+// What was due at the steps in between is void once each body has been asked for again.
+std::uint64_t BroadPhase::skip_to(double t) {
+  if (!may_change() || !(std::fabs(t) <= max_time_)) return 0;
+  const Step from = step_reported() + 1, to = state_->pool.clock.step_at(t);
+  if (to <= from || state_->next >= to) return 0;
+  detail::BodyPool& pool = state_->pool;
+  for (BodyIndex body = 0; body < pool.slots(); ++body) {
+    if (pool.alive(body)) state_->method->changed(body);
+  }
+  state_->method->skip();
+  state_->next = pool.size() > 0 ? to : kNeverStep;
+  state_->woken = true;  // what changes from now on takes part at that step, too
+  note_next_step();
+  return static_cast<std::uint64_t>(to - from);
+}
+
+std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {
+  for (StepsAhead& step : steps) step = {};
+  if (!(std::fabs(time) <= max_time_) || state_->busy) return 0;
+  return state_->method->foresee(state_->pool.clock.step_at(time), steps);
+}
+
+std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }
+std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->pool.asked(); }
+std::uint64_t BroadPhase::promises_broken() const noexcept {
+  const detail::PromiseCheck* const promises = state_->pool.promises();
+  return promises == nullptr ? 0 : promises->broken();
+}
+std::size_t BroadPhase::memory_bytes() const noexcept {
+  return sizeof(State) + state_->pool.memory_bytes() + state_->method->memory_bytes();
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,27 @@
+#pragma once
+#include "broad_phase/method.h"
+
+namespace orchard::runtime {
+
+struct BroadPhase::State {
+  detail::BodyPool pool;
+  std::unique_ptr<detail::Method> method;
+  detail::Step next = detail::kNeverStep;  // the next step with anything to do
+  detail::Step validated = -1;             // up to which step all bodies have been asked for, for their promises
+  bool woken = false;                      // for a change, since the last step
+  bool busy = false;                       // a source, a filter or a listener may be running
+};
+
+// While one lives, the application's functions may run: see MotionSource.
+class BroadPhase::Busy {
+ public:
+  explicit Busy(State& state) noexcept : state_(state) { state_.busy = true; }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+  ~Busy() { state_.busy = false; }
+
+ private:
+  State& state_;
+};
+
+}  // namespace orchard::runtime

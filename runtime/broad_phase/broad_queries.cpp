@@ -1,0 +1,262 @@
+#include "orchard/runtime/broad_queries.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "broad_phase/broad_phase_state.h"
+
+namespace orchard::runtime {
+namespace {
+
+using detail::Near;
+
+constexpr std::size_t kAskedAtOnce = 64;
+constexpr double kFirstReach = 0.5;  // of a cell, for the nearest body: half of the cube that is searched first
+constexpr double kRounding = 1e-12;  // of the coordinates: more than the tests' own
+
+bool fits(double x) noexcept { return std::fabs(x) <= kMaxNumber; }  // not NaN
+bool fits(const Vec3& v) noexcept { return fits(v[0]) && fits(v[1]) && fits(v[2]); }
+double max_coordinate(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+bool admits(const QueryFilter& query, const BodyFilter& body) noexcept {
+  return (query.mask & body.category) != 0 && (query.category & body.mask) != 0;
+}
+
+// From the point to the nearest one of the box.
+double distance_to_box(const Vec3& lower, const Vec3& upper, const Vec3& point) noexcept {
+  Vec3 off;
+  for (std::size_t d = 0; d < 3; ++d) off[d] = point[d] - std::clamp(point[d], lower[d], upper[d]);
+  return length(off);
+}
+
+}  // namespace
+
+// A direction of 0 makes a point of length 0, whose way does not matter.
+struct BodyQueries::Line {
+  Vec3 origin, way;
+  double unit, length;  // of what `along` counts, and as many of it
+
+  Line(const Vec3& from, const Vec3& direction, double longest) noexcept : origin(from), way{1, 0, 0} {
+    const double size = max_coordinate(direction);  // squares of very small ones vanish
+    const Vec3 scaled = size > 0 ? (1 / size) * direction : Vec3{};
+    const double norm = runtime::length(scaled);
+    if (size > 0) way = (1 / norm) * scaled;
+    unit = size * norm;
+    length = size > 0 ? longest * unit : 0;
+  }
+
+  // Where it enters the sphere, as a length; infinity: nowhere.
+  double enters(const Vec3& center, double radius) const noexcept {
+    const Vec3 to_center = center - origin;
+    if (dot(to_center, to_center) <= radius * radius) return 0;
+    const double middle = dot(to_center, way), never = std::numeric_limits<double>::infinity();
+    const Vec3 off = to_center - middle * way;
+    const double room = radius * radius - dot(off, off);
+    if (!(room >= 0) || middle < 0) return never;
+    const double at = std::max(0.0, middle - std::sqrt(room));
+    return at <= length ? at : never;
+  }
+  double along(double at) const noexcept { return unit > 0 ? at / unit : 0; }
+};
+
+struct BodyQueries::FirstHit final : detail::PortionVisitor {
+  FirstHit(BodyQueries& with, const Line& on, const QueryFilter& which) : queries(with), line(on), filter(which) {}
+  BodyQueries& queries;
+  const Line& line;
+  const QueryFilter& filter;
+  BodyHit best{kNoIndex, std::numeric_limits<double>::infinity()};
+
+  bool visit(std::span<const BodyIndex> bodies, double until) override {
+    queries.use_motions(bodies, filter, [this](BodyIndex body, const Motion& motion) {
+      const double at = line.enters(motion.position, motion.radius);
+      if (at < best.along || (at == best.along && body < best.body)) best = {body, at};
+    });
+    return !(best.along < until);
+  }
+  bool found() const noexcept { return best.along < std::numeric_limits<double>::infinity(); }
+};
+
+struct BodyQueries::AllHits final : detail::PortionVisitor {
+  AllHits(BodyQueries& with, const Line& on, const QueryFilter& which) : queries(with), line(on), filter(which) {}
+  BodyQueries& queries;
+  const Line& line;
+  const QueryFilter& filter;
+
+  bool visit(std::span<const BodyIndex> bodies, double) override {
+    queries.use_motions(bodies, filter, [this](BodyIndex body, const Motion& motion) {
+      const double at = line.enters(motion.position, motion.radius);
+      if (at < std::numeric_limits<double>::infinity()) queries.hits_.push_back({body, line.along(at)});
+    });
+    return true;
+  }
+};
+
+// That queries are about.
+std::int64_t BodyQueries::step() const noexcept { return std::max<detail::Step>(0, world_->step_reported()); }
+
+double BodyQueries::time() const noexcept { return world_->state_->pool.clock.time(step()); }
+
+bool BodyQueries::begin(bool valid) {
+  refused_ = !valid || !world_->may_change();
+  if (world_->state_->busy) return false;  // this may be the object whose query is under way
+  candidates_.clear(), found_.clear(), hits_.clear(), near_.clear();
+  if (refused_) return false;
+  detail::grow(seen_, world_->state_->pool.slots());
+  if (++query_ == 0) {  // all numbers have been used
+    std::fill(seen_.begin(), seen_.end(), 0);
+    query_ = 1;
+  }
+  return true;
+}
+
+// Those that are there, count, and have not come up in this query.
+std::span<const BodyIndex> BodyQueries::new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter) {
+  const detail::BodyPool& pool = world_->state_->pool;
+  asked_.clear();
+  for (const BodyIndex body : bodies) {
+    if (seen_[body] == query_ || !pool.alive(body)) continue;
+    seen_[body] = query_;
+    if (admits(filter, pool.filter(body))) asked_.push_back(body);
+  }
+  return asked_;
+}
+
+// use(body, motion) for each that is new, with its motion at time().
+template <typename Use>
+void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilter& filter, const Use& use) {
+  std::span<const BodyIndex> rest = new_ones(bodies, filter);
+  const detail::Step now = step();
+  motions_.resize(kAskedAtOnce);
+  while (!rest.empty()) {
+    const std::size_t count = std::min(kAskedAtOnce, rest.size());
+    {
+      const BroadPhase::Busy busy(*world_->state_);
+      world_->state_->pool.ask(now, rest.first(count), std::span(motions_).first(count));
+    }
+    refused_ = false;  // what the source has asked of this object was
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_valid(motions_[i])) use(rest[i], motions_[i]);
+    }
+    rest = rest.subspan(count);
+  }
+}
+
+std::span<const BodyIndex> BodyQueries::everybody() {
+  candidates_.clear();
+  for (BodyIndex body = 0; body < world_->state_->pool.slots(); ++body) candidates_.push_back(body);
+  return candidates_;
+}
+
+template <typename Hits>
+void BodyQueries::walk(const Line& line, Hits& hits) {
+  const detail::Method& method = *world_->state_->method;
+  if (!method.along(step(), line.origin, line.way, line.length, candidates_, hits))
+    hits.visit(everybody(), line.length);
+}
+
+std::optional<BodyHit> BodyQueries::first_hit(const Ray& ray, const QueryFilter& filter) {
+  const Vec3 direction = ray.direction;
+  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0)) return {};
+  return first_along({ray.origin, direction, ray.longest}, filter);
+}
+
+std::optional<BodyHit> BodyQueries::first_on_segment(const Vec3& p, const Vec3& q, const QueryFilter& filter) {
+  if (!begin(fits(p) && fits(q))) return {};
+  return first_along({p, q - p, 1}, filter);
+}
+
+std::optional<BodyHit> BodyQueries::first_along(const Line& line, const QueryFilter& filter) {
+  FirstHit hits(*this, line, filter);
+  walk(line, hits);
+  if (!hits.found()) return {};
+  return BodyHit{hits.best.body, line.along(hits.best.along)};
+}
+
+std::span<const BodyHit> BodyQueries::all_hits(const Ray& ray, const QueryFilter& filter) {
+  const Vec3 direction = ray.direction;
+  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0)) return {};
+  return all_along({ray.origin, direction, ray.longest}, filter);
+}
+
+std::span<const BodyHit> BodyQueries::all_on_segment(const Vec3& p, const Vec3& q, const QueryFilter& filter) {
+  if (!begin(fits(p) && fits(q))) return {};
+  return all_along({p, q - p, 1}, filter);
+}
+
+std::span<const BodyHit> BodyQueries::all_along(const Line& line, const QueryFilter& filter) {
+  AllHits hits(*this, line, filter);
+  walk(line, hits);
+  std::sort(hits_.begin(), hits_.end(), [](const BodyHit& a, const BodyHit& b) {
+    return a.along != b.along ? a.along < b.along : a.body < b.body;
+  });
+  return hits_;
+}
+
+// touches(motion) decides about those whose spheres may meet the box.
+template <typename Touches>
+std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& upper, const QueryFilter& filter,
+                                                 const Touches& touches) {
+  const double spare = kRounding * std::max(max_coordinate(lower), max_coordinate(upper));
+  const Vec3 wider = {spare, spare, spare};
+  const Near near = world_->state_->method->near_box(step(), lower - wider, upper + wider, candidates_);
+  use_motions(near == Near::untold ? everybody() : candidates_, filter, [&](BodyIndex body, const Motion& motion) {
+    if (touches(motion)) found_.push_back(body);
+  });
+  std::sort(found_.begin(), found_.end());
+  return found_;
+}
+
+std::span<const BodyIndex> BodyQueries::touching_sphere(const Vec3& center, double radius, const QueryFilter& filter) {
+  if (!begin(fits(center) && fits(radius) && radius >= 0)) return {};
+  Motion sphere;
+  sphere.position = center;
+  sphere.radius = radius;
+  const Vec3 reach = {radius, radius, radius};
+  return touching(center - reach, center + reach, filter,
+                  [&](const Motion& motion) { return spheres_touch(sphere, motion); });
+}
+
+std::span<const BodyIndex> BodyQueries::touching_box(const Vec3& lower, const Vec3& upper, const QueryFilter& filter) {
+  const bool valid = lower[0] <= upper[0] && lower[1] <= upper[1] && lower[2] <= upper[2];
+  if (!begin(fits(lower) && fits(upper) && valid)) return {};
+  return touching(lower, upper, filter, [&](const Motion& motion) {
+    return distance_to_box(lower, upper, motion.position) <= motion.radius;
+  });
+}
+
+// In cubes, each twice as large as the one before, until the k-th is nearer than the cube's faces.
+std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k, const QueryFilter& filter) {
+  if (!begin(fits(point))) return {};
+  k = std::min(k, world_->size());
+  if (k == 0) return {};
+  const detail::Method& method = *world_->state_->method;
+  const auto nearer = [](const NearBody& a, const NearBody& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.body < b.body;
+  };
+  const auto note = [&](BodyIndex body, const Motion& motion) {
+    near_.push_back({body, std::max(0.0, length(motion.position - point) - motion.radius)});
+  };
+  const double spare = kRounding * max_coordinate(point);
+  double reach = kFirstReach * method.cell_size() * std::cbrt(static_cast<double>(k)) + spare;
+  for (Near covered = Near::some; covered == Near::some; reach *= 2) {
+    const Vec3 wide = {reach + 2 * spare, reach + 2 * spare, reach + 2 * spare};
+    candidates_.clear();
+    covered = reach > 0 && reach < kMaxNumber ? method.near_box(step(), point - wide, point + wide, candidates_)
+                                              : Near::untold;
+    use_motions(covered == Near::untold ? everybody() : candidates_, filter, note);
+    if (near_.size() < k) continue;
+    std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(k) - 1, near_.end(), nearer);
+    if (near_[k - 1].distance <= reach * (1 - kRounding)) break;
+  }
+  const std::size_t count = std::min(k, near_.size());
+  std::sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), nearer);
+  return std::span(near_).first(count);
+}
+
+std::size_t BodyQueries::memory_bytes() const noexcept {
+  const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
+  return bytes(seen_, candidates_, asked_, found_, motions_, hits_, near_);
+}
+
+}  // namespace orchard::runtime

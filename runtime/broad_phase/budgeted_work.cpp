@@ -1,0 +1,124 @@
+#include "broad_phase/budgeted_work.h"
+
+namespace orchard::runtime::detail {
+
+void BudgetedWork::postpone(std::span<const BodyIndex> bodies) {
+  for (const BodyIndex body : bodies) {
+    parts_.windows[body].end = kUpdateDue;
+    backlog_.wait(body, parts_.pool.importance(body));
+  }
+}
+
+void BudgetedWork::reclassified(BodyIndex body) {
+  if (backlog_.waits(body)) {
+    backlog_.rank(parts_.pool.importance(body));  // nothing throws after that
+    backlog_.leave(body);
+    backlog_.wait(body, parts_.pool.importance(body));
+  }
+  reclassified_ = true;
+}
+
+// Pairs go to the class that they now belong to.
+void BudgetedWork::sort_pairs_again() {
+  reclassified_ = false;
+  tests_.clear();
+  std::vector<BodyIndex> bodies;
+  backlog_.take_all(bodies, tests_);
+  for (const BodyIndex body : bodies) backlog_.wait(body, parts_.pool.importance(body));
+  for (const PairEvent& event : tests_) {
+    if (parts_.windows.valid(event)) backlog_.rank(parts_.pool.importance(event.pair)).due.push(event);
+  }
+}
+
+void BudgetedWork::join(std::span<const BodyIndex> due, std::span<const PairEvent> events) {
+  if (reclassified_ && !backlog_.empty()) sort_pairs_again();
+  reclassified_ = false;
+  postpone(due);
+  const auto test_later = [&](const BodyPair& pair, Round created) {
+    PairQueue& queue = backlog_.rank(parts_.pool.importance(pair)).due;
+    queue.push({pair, created});
+    queue.tidy([&](const PairEvent& old) { return parts_.windows.valid(old); });
+  };
+  for (const PairEvent& event : events) {
+    if (!parts_.windows.valid(event)) continue;
+    parts_.overlaps.drop(event.pair);  // unless it is tested at this step
+    test_later(event.pair, event.created);
+  }
+  if (backlog_.no_body_waits()) return;
+  // No bound says any more that these overlap still.
+  unsure_.clear();
+  parts_.overlaps.take_out([&](const BodyPair& pair) { return backlog_.waits(pair.a) || backlog_.waits(pair.b); },
+                           unsure_);
+  for (const BodyPair& pair : unsure_) {
+    const PairEvent event{pair, parts_.windows.round()};
+    if (parts_.windows.valid(event)) test_later(pair, parts_.windows.round());
+  }
+}
+
+unsigned BudgetedWork::work(Step now, BudgetTracker& tracker) {
+  for (unsigned rank = parts_.pool.next_class(0); rank < kNoClass; rank = parts_.pool.next_class(rank + 1)) {
+    if (!work_through(now, rank, tracker)) return rank;
+  }
+  return kNoClass;
+}
+
+// All that waits in a class; false if the budget ends before.
+bool BudgetedWork::work_through(Step now, unsigned importance, BudgetTracker& tracker) {
+  for (;;) {
+    Backlog::Rank& rank = backlog_.rank(importance);
+    while (!rank.due.empty() && !parts_.windows.valid(rank.due.front())) rank.due.pop();
+    const bool updating = rank.updating(), testing = !rank.due.empty();
+    if (!updating && !testing) {
+      rank.lead = 0;
+      return true;
+    }
+    if (tracker.spent()) return false;
+    if (!updating || !testing) rank.lead = 0;
+    // Half of what is left at a time: the other half is for the others.
+    const std::size_t left = tracker.grant(kWorkPerClock), most = updating && testing ? (left + 1) / 2 : left;
+    if (!updating || (testing && rank.lead > 0)) {
+      rank.lead -= static_cast<std::int64_t>(test_waiting(now, rank.due, false, most, tracker));
+    } else if (!rank.found.empty()) {
+      rank.lead += static_cast<std::int64_t>(test_waiting(now, rank.found, true, most, tracker));
+    } else {
+      rank.lead += static_cast<std::int64_t>(update_waiting(now, importance, most, tracker));
+    }
+  }
+}
+
+// Both return the units of work, which are about `most` at most.
+std::size_t BudgetedWork::update_waiting(Step now, unsigned importance, std::size_t most, BudgetTracker& tracker) {
+  std::array<BodyIndex, kWorkPerClock> bodies;
+  const std::size_t count = backlog_.take(importance, std::span(bodies).first(std::min(most, bodies.size())));
+  const auto updated = std::span(bodies).first(count);
+  parts_.windows.begin_round();
+  for (const BodyIndex body : updated) parts_.boxes.take_away(body);
+  const std::span<const BodyPair> near = updates_.find_near(now, updated);
+  tracker.count(count);
+  for (const BodyPair& pair : near) {
+    const unsigned theirs = parts_.pool.importance(pair);
+    Backlog::Rank& rank = backlog_.rank(theirs);
+    (theirs == importance ? rank.found : rank.due).push({pair, parts_.windows.round()});
+    if (theirs != importance) rank.due.tidy([&](const PairEvent& event) { return parts_.windows.valid(event); });
+  }
+  return count;
+}
+
+// What has been found is tested even if one of the two has been updated since.
+std::size_t BudgetedWork::test_waiting(Step now, PairQueue& queue, bool found, std::size_t most,
+                                       BudgetTracker& tracker) {
+  tests_.clear();
+  const std::size_t pairs = std::clamp<std::size_t>(most / 2, 1, NearPairs::kTestsAtOnce);
+  while (tests_.size() < pairs && !queue.empty()) {
+    const PairEvent event = queue.pop();
+    if (!parts_.pool.alive(event.pair.a) || !parts_.pool.alive(event.pair.b)) continue;
+    if (!found && !parts_.windows.valid(event)) continue;
+    parts_.overlaps.drop(event.pair);
+    tests_.push_back(event);
+  }
+  parts_.pairs.test(now, tests_);
+  tracker.count(2 * tests_.size());
+  return 2 * tests_.size();
+}
+
+}  // namespace orchard::runtime::detail

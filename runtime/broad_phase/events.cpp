@@ -1,0 +1,396 @@
+// More than 300 lines: what a step does, and when all is made anew, is one thought.
+#include "broad_phase/events.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kManyPairs = 0.5;                    // per body: so many are worth a note of each body's sphere
+constexpr std::size_t kMinBodiesAtCommonExpiry = 32;  // that are worth a step more
+constexpr Step kMinStepsBeforeCommonExpiry = 4;       // half of an update ahead of each would be half an update more
+constexpr std::size_t kAskedAhead = 8;                // bodies, to see whether the next bounds are known
+constexpr Step kNotSorted = 256;                      // steps for which nothing is sorted once that has not suited
+
+}  // namespace
+
+Events::Events(BodyPool& pool, const BroadPhaseOptions& options)
+    : pool_(pool),
+      options_(options),
+      windows_(pool_, options_.window),
+      refusals_(pool_, windows_, boxes_, overlaps_, changes_),
+      planner_(pool_, options_),
+      pairs_(pool_, options_, windows_, wheel_, overlaps_, refusals_),
+      updates_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, options_),
+      budgeted_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, updates_) {}
+
+void Events::changed(BodyIndex body) {
+  const std::size_t n = pool_.slots();
+  if (windows_.size() < n) {
+    boxes_.make_room(n);
+    changes_.make_room(n);
+    overlaps_.make_room(n);
+    windows_.make_room(n);  // last: it tells that there is room in all of them
+  }
+  changes_.note(body);
+}
+
+// Their boxes are all over memory: they are taken out together, at the next step.
+void Events::removed(BodyIndex body) {
+  if (gone_.size() >= windows_.size()) take_away_gone();
+  append(gone_, body);
+  budgeted_.leave(body);
+  changes_.forget(body);
+  overlaps_.mark(body, OverlapList::kUpdated);
+}
+
+void Events::take_away_gone() noexcept {
+  constexpr std::size_t kAhead = 16, kKept = 1024;
+  boxes_.take_away(gone_);
+  for (std::size_t i = 0; i < gone_.size(); ++i) {
+    if (i + kAhead < gone_.size()) prefetch(&windows_[gone_[i + kAhead]]);
+    const BodyIndex body = gone_[i];
+    if (windows_[body].length > 0) planner_.note_cancelled();
+    windows_[body] = {.end = kNeverStep};  // no next update, until the slot's next body
+    windows_.void_events(body);
+  }
+  gone_.clear();
+  if (gone_.capacity() > kKept) give_back(gone_);
+}
+
+void Events::note_cancelled(BodyIndex body, Step now) {
+  if (windows_.note_cancelled(body, now)) planner_.note_cancelled();
+}
+
+void Events::collect_due(Step now) {
+  constexpr std::size_t kAhead = 16;
+  // Then all bodies are new, each is noted at least once, and none has had a window.
+  if (first_ && changes_.size() == pool_.size()) return changes_.take_all(due_);
+  make_room(due_, changes_.size());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (i + kAhead < entries_.size()) {
+      const BodyIndex body = entries_[i + kAhead];
+      prefetch(&windows_[body]), prefetch(boxes_.at(body)), prefetch(changes_.at(body));
+    }
+    Window& window = windows_[entries_[i]];
+    if (window.end != now || changes_.has(entries_[i])) continue;  // updated since
+    window.end = kUpdateDue;
+    window.rely_longer();
+    due_.push_back(entries_[i]);
+  }
+  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  std::size_t count = due_.size();
+  due_.resize(count + changes_.size());
+  changes_.take(load, [&](BodyIndex body) {
+    note_cancelled(body, now);
+    due_[count++] = body;
+  });
+  due_.resize(count);
+}
+
+// After a step by sorting: all windows were of one step.
+void Events::collect_all(Step now) {
+  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
+    if (changes_.has(body)) {
+      changes_.forget(body);
+      note_cancelled(body, now);
+    } else if (windows_[body].end == now) {
+      windows_[body].rely_longer();
+    } else {
+      continue;
+    }
+    due_.push_back(body);
+  }
+  changes_.forget_all();
+}
+
+// What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
+void Events::complete_due(Step now) {
+  if (changes_.empty() && pool_.size() == pool_.slots()) return;  // nor is anybody gone
+  std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
+  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  changes_.take(load, [&](BodyIndex body) {
+    boxes_.take_away(body);
+    note_cancelled(body, now);
+    due_.push_back(body);
+  });
+}
+
+// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
+bool Events::worth_a_rebuild(std::size_t due) const noexcept {
+  const std::size_t n = pool_.size();
+  if (windows_.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
+  if (due == 0 || n == 0) return false;
+  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(boxes_.counts());
+}
+
+// False if a budget interrupted it.
+bool Events::replan(Step now, BudgetTracker& tracker) {
+  GridCounts counts = boxes_.counts();
+  if (sorting_) counts = {.bodies = pool_.size(), .pairs = sorted_.boxes_met()};
+  const Planner::Outcome outcome = planner_.replan(now, counts, tracker);
+  if (outcome == Planner::Outcome::interrupted) return false;
+  boxes_.begin_counts();
+  if (outcome == Planner::Outcome::same) return true;
+  const Vec3* const surveyed = planner_.surveyed_middle();
+  boxes_.set_lattice(surveyed != nullptr ? *surveyed : boxes_.lattice_at(now).origin(), planner_.velocity(),
+                     planner_.plan().cell_size, 2 * options_.position_slack, options_.time_step, now);
+  windows_.plan(planner_.plan().window, boxes_.moves());
+  return true;
+}
+
+void Events::all_are_due() {
+  if (due_.capacity() > 2 * pool_.size()) give_back(due_);
+  due_.resize(pool_.size());
+  if (pool_.size() == pool_.slots()) return std::iota(due_.begin(), due_.end(), BodyIndex{0});
+  std::size_t count = 0;
+  for (BodyIndex body = 0; count < due_.size(); ++body) {
+    due_[count] = body;
+    count += pool_.alive(body) ? 1 : 0;
+  }
+}
+
+void Events::place_all_anew() {
+  if (sorting_) sorted_.release();
+  sorting_ = false;
+  wheel_.clear_bodies();
+  windows_.begin_anew();
+  boxes_.make_anew(pool_.slots(), planner_.plan().lines);
+  all_are_due();
+}
+
+void Events::note_spheres() {
+  const WindowPlan& plan = planner_.plan();
+  pairs_.note_spheres(plan.window == 1 || plan.pairs_per_body >= kManyPairs, pool_.slots());
+}
+
+void Events::make_room_for_boxes() {
+  boxes_.make_room_for_boxes(pool_.slots());
+  pairs_.make_room_for_spheres(pool_.slots());
+}
+
+// Everything that is due, and what a budget left over before.
+void Events::step_in_full(Step now, bool completing) {
+  if (!budgeted_.nothing_left()) {
+    for (const BodyIndex body : due_) budgeted_.leave(body);  // changed while it waited: one update is enough
+    budgeted_.take_all(due_, waiting_);
+  }
+  bool all_anew = completing;
+  if (!completing) {
+    all_anew = sorting_ || boxes_.outgrown(pool_.slots()) || worth_a_rebuild(due_.size());
+    if (all_anew) {
+      BudgetTracker unlimited;
+      replan(now, unlimited);
+      if (worth_sorting(now)) return step_by_sorting(now);
+      place_all_anew();
+      wheel_.clear_events();  // updates of all windows void them
+    } else {
+      make_room_for_boxes();
+      boxes_.take_away(due_);
+    }
+  }
+  make_room_for_boxes();
+  if (all_anew) {
+    overlaps_.begin_anew();
+    note_spheres();
+  }
+  all_anew ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
+  std::erase_if(waiting_, [&](const PairEvent& event) { return !windows_.valid(event); });
+  pairs_.test(now, waiting_);
+  pairs_.take_overlaps_ahead();
+  if (!all_anew) return;
+  const bool lasts = planner_.plan().window >= kMinStepsBeforeCommonExpiry;
+  const bool common = pool_.size() >= kMinBodiesAtCommonExpiry && 4 * windows_.votes() > pool_.size();
+  common_expiry_ = lasts && common ? windows_.voted() : kNeverStep;
+}
+
+// A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
+// speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
+unsigned Events::step_within(Step now, BudgetTracker& tracker) {
+  const bool calm = now - interrupted_at_ > kLongestWindow;
+  const bool has_to = sorting_ || boxes_.outgrown(pool_.slots()) || windows_.rounds_run_out();
+  const bool anew = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
+  budgeted_.join(due_, waiting_);
+  due_.clear();
+  if (anew) {
+    if (!replan(now, tracker)) return pool_.next_class(0);
+    place_all_anew();
+    boxes_.empty(options_.executor);
+    budgeted_.postpone(due_);
+    due_.clear();
+    common_expiry_ = kNeverStep;
+  }
+  make_room_for_boxes();
+  return budgeted_.work(now, tracker);
+}
+
+// Static bodies have windows without end, which are worth keeping if there are many.
+bool Events::worth_sorting(Step now) const noexcept {
+  return planner_.plan().window == 1 && pool_.slots() > BoxList::kMaxBodies && now >= sorts_from_ &&
+         2 * pool_.statics() <= pool_.size();
+}
+
+void Events::begin_sorting() {
+  sorting_ = true;
+  common_expiry_ = kNeverStep;
+  wheel_.clear();
+  pairs_.forget_all();
+  pairs_.release_spheres();
+  boxes_.make_anew(pool_.slots(), 0);
+  boxes_.begin_counts();
+}
+
+void Events::step_by_sorting(Step now) {
+  if (!sorting_) begin_sorting();
+  windows_.begin_anew();
+  all_are_due();
+  sorted_.begin(due_.size(), boxes_.lattice_at(now).origin(), planner_.spacing());
+  for (std::size_t done = 0; done < due_.size(); done += kBlock) {
+    auto block = std::span(due_).subspan(done, std::min(kBlock, due_.size() - done));
+    const std::span<const Motion> motions = updates_.ask_valid(now, block);
+    for (const BodyIndex body : block) windows_.set(body, now, now + 1);
+    planner_.note(motions);
+    sorted_.add(block, motions);
+  }
+  sorted_.find();
+  if (pool_.filters_pairs()) sorted_.drop_pairs([&](const BodyPair& pair) { return !pool_.may_pair(pair); });
+  overlaps_.assign(sorted_.pairs(), pool_.slots());
+  if (!sorted_.suits()) sorts_from_ = now + kNotSorted;
+}
+
+// A step ahead of the common expiry: the present bounds have answered for this step, and hold no longer than that. If
+// the next ones are known already, half of the work is done now, in updates with windows that begin at the common
+// expiry.
+bool Events::prepare(Step now) {
+  const Step from = now + 1;
+  common_expiry_ = kNeverStep;
+  std::array<BodyIndex, kAskedAhead> sample;
+  std::size_t count = 0;
+  const std::size_t stride = std::max<std::size_t>(1, pool_.slots() / kAskedAhead);
+  for (std::size_t body = 0; body < pool_.slots() && count < kAskedAhead; body += stride) {
+    if (pool_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
+  }
+  if (!updates_.know_mostly(now, from, std::span(sample).first(count))) return false;
+
+  common_expiry_ = from;
+  prepared_ = true;
+  pairs_.work_ahead(true);
+  windows_.begin_round();
+  BudgetTracker unlimited;
+  replan(now, unlimited);
+  place_all_anew();
+  wheel_.clear_events();
+  const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.size()));
+  note_spheres();
+  updates_.update_all(now, from, std::span(due_).first(ahead));
+  due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
+  pairs_.work_ahead(false);
+  return true;
+}
+
+// Nothing is left to plan for, nor to wake up for.
+void Events::forget_all() noexcept {
+  wheel_.clear();
+  overlaps_.clear();
+  pairs_.forget_all();
+  changes_.forget_all();
+  due_.clear();
+  planner_.forget_survey();
+  prepared_ = false;
+  common_expiry_ = kNeverStep;
+}
+
+void Events::begin(Step now) {
+  windows_.begin_round();
+  entries_.clear();
+  waiting_.clear();
+  wheel_.take(now, entries_, waiting_);
+  if (prepared_) return complete_due(now);
+  due_.clear();
+  sorting_ ? collect_all(now) : collect_due(now);
+  first_ = false;
+}
+
+StepReport Events::step(Step now, BudgetTracker& tracker) {
+  take_away_gone();
+  if (pool_.size() == 0) {
+    forget_all();
+    return {kNeverStep, {}};
+  }
+  pairs_.begin_step(tracker.limited());
+  begin(now);
+  const bool completing = prepared_ && !boxes_.outgrown(pool_.slots());
+  prepared_ = false;
+  if (!tracker.limited()) {
+    step_in_full(now, completing);
+    overlaps_.update(pool_.slots());
+    return end(now, kNoClass, tracker);
+  }
+  pairs_.take_overlaps_ahead(waiting_);
+  const unsigned incomplete_from = step_within(now, tracker);
+  if (incomplete_from != kNoClass) interrupted_at_ = now;
+  pairs_.keep_doubtful();
+  overlaps_.update(pool_.slots());
+  return end(now, incomplete_from, tracker);
+}
+
+StepReport Events::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
+  StepReport report{now + 1, overlaps_.pairs()};
+  if (incomplete_from != kNoClass) {
+    report.incomplete_from = incomplete_from;
+    report.left_over = budgeted_.left_over();
+    return report;
+  }
+  if (now + 1 == common_expiry_ && !tracker.limited() && prepare(now)) return report;
+  if (!changes_.empty() || !report.pairs.empty() || sorting_) return report;
+  report.next = wheel_.next_after(now);
+  if (common_expiry_ != kNeverStep && common_expiry_ - 1 > now) report.next = std::min(report.next, common_expiry_ - 1);
+  return report;
+}
+
+std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
+  const std::size_t known = std::min<std::size_t>(steps.size(), kWheelSteps - 2);
+  if (sorting_ && known > 0) steps[0].updates += pool_.size();
+  for (std::size_t i = 0; i < known; ++i) {
+    const Step step = now + 1 + static_cast<Step>(i);
+    steps[i].updates += wheel_.bodies_due(step);
+    steps[i].meetings += wheel_.events_due(step);
+    steps[i].overlaps += overlaps_.pairs().size();
+  }
+  return known;
+}
+
+// New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one: they
+// have no box, or an old one, and may be anywhere.
+void Events::append_loose(std::vector<BodyIndex>& bodies) const {
+  changes_.append_to(bodies);
+  budgeted_.append_bodies(bodies);
+  if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
+}
+
+Near Events::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+  append_loose(bodies);
+  if (!sorting_) return boxes_.near_box(now, lower, upper, bodies);
+  return sorted_.append_near(lower, upper, bodies) ? Near::some : Near::untold;
+}
+
+bool Events::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+                   PortionVisitor& visitor) const {
+  portion.clear();
+  append_loose(portion);
+  return !sorting_ && boxes_.along(now, origin, way, length, portion, visitor);
+}
+
+std::size_t Events::memory_bytes() const noexcept {
+  return sizeof(*this) + changes_.memory_bytes() + bytes_of(gone_) + windows_.memory_bytes() + boxes_.memory_bytes() +
+         wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
+         pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
+         bytes_of(due_) + bytes_of(entries_) + bytes_of(waiting_);
+}
+
+std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options) {
+  return std::make_unique<Events>(pool, options);
+}
+
+}  // namespace orchard::runtime::detail

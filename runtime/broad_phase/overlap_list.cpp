@@ -1,0 +1,214 @@
+#include "broad_phase/overlap_list.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kFewPairs = 64;
+constexpr std::size_t kPairsWithRoom = 16;  // for each body
+
+// In the same order.
+std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
+
+// Looks pairs up that come in ascending order, in steps that double from where the last one was, and then without
+// branches: nobody can tell how far it is. Where it cannot be far the steps stay as they are, so that memory sees where
+// they lead.
+class Finder {
+ public:
+  Finder(const std::vector<BodyPair>& sorted, std::size_t lookups)
+      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()), near_(sorted.size() < kNear * lookups) {}
+  bool has(const BodyPair& pair) {
+    constexpr std::ptrdiff_t kCounted = 8;
+    const std::uint64_t key = key_of(pair);
+    const BodyPair* first = next_;
+    std::ptrdiff_t range = kCounted;  // it, or what follows its place, is among so many, or the next one
+    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range = near_ ? range : 2 * range;
+    range = std::min(range, end_ - first);
+    for (; range > kCounted; range -= range / 2) first += key_of(first[range / 2 - 1]) < key ? range / 2 : 0;
+    std::ptrdiff_t less = 0;
+    for (std::ptrdiff_t i = 0; i < range; ++i) less += key_of(first[i]) < key;
+    next_ = first + less;
+    return next_ != end_ && *next_ == pair;
+  }
+  std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
+
+ private:
+  static constexpr std::size_t kNear = 256;  // pairs from one to the next, in the mean
+  const BodyPair *begin_, *next_, *end_;
+  bool near_;
+};
+
+}  // namespace
+
+void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
+  if (pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
+  if (2 * pairs.size() < slots) return sort_by_digits(pairs);
+  if (pairs.size() > kPairsWithRoom * slots) return sort_in_place(pairs, slots);
+  room.resize(pairs.size());
+  sort_by_body(pairs, room, slots, &BodyPair::b);
+  sort_by_body(room, pairs, slots, &BodyPair::a);
+}
+
+// Those of one body stay in the order in which they come.
+void OverlapList::sort_by_body(std::span<const BodyPair> from, std::span<BodyPair> to, std::size_t slots,
+                               BodyIndex BodyPair::*body) {
+  begins_.assign(slots + 2, 0);
+  for (const BodyPair& pair : from) ++begins_[pair.*body + 2];
+  for (std::size_t i = 1; i <= slots; ++i) begins_[i + 1] += begins_[i];
+  for (const BodyPair& pair : from) to[begins_[pair.*body + 1]++] = pair;
+}
+
+// Where room for as many more would be too much: by the first body into buckets, within the vector, in each by the
+// second one.
+void OverlapList::sort_in_place(std::vector<BodyPair>& pairs, std::size_t slots) {
+  begins_.assign(slots + 1, 0);
+  for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
+  for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
+  ends_.assign(begins_.begin(), begins_.end() - 1);  // of what is in its bucket
+  for (std::size_t body = 0; body < slots; ++body) {
+    for (std::uint32_t& end = ends_[body]; end < begins_[body + 1];) {
+      BodyPair pair = pairs[end];
+      while (pair.a != body) std::swap(pair, pairs[ends_[pair.a]++]);
+      pairs[end++] = pair;
+    }
+    const auto begin = pairs.begin() + begins_[body], last = pairs.begin() + begins_[body + 1];
+    if (last - begin > 1) std::sort(begin, last);
+  }
+}
+
+// From the lowest digit on; those that all have in common are left out.
+void OverlapList::sort_by_digits(std::vector<BodyPair>& pairs) {
+  constexpr unsigned kDigitBits = 8, kDigits = 64 / kDigitBits;
+  constexpr std::uint64_t kLast = (1u << kDigitBits) - 1;
+  std::uint64_t differ = 0;
+  for (const BodyPair& pair : pairs) differ |= key_of(pair) ^ key_of(pairs.front());
+  for (unsigned digit = 0; digit < kDigits; ++digit) {
+    const unsigned at = digit * kDigitBits;
+    if ((differ >> at & kLast) == 0) continue;
+    std::array<std::uint32_t, kLast + 2> begins{};
+    for (const BodyPair& pair : pairs) ++begins[(key_of(pair) >> at & kLast) + 1];
+    for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
+    by_digit_.resize(pairs.size());
+    for (const BodyPair& pair : pairs) by_digit_[begins[key_of(pair) >> at & kLast]++] = pair;
+    std::swap(pairs, by_digit_);
+  }
+}
+
+void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
+  clear();
+  pairs_.resize(pairs.size());
+  if (pairs.size() > kPairsWithRoom * slots) {
+    std::copy(pairs.begin(), pairs.end(), pairs_.begin());
+    return sort_in_place(pairs_, slots);
+  }
+  added_.resize(pairs.size());
+  sort_by_body(pairs, added_, slots, &BodyPair::b);
+  sort_by_body(added_, pairs_, slots, &BodyPair::a);
+  added_.clear();
+}
+
+void OverlapList::clear_marks() noexcept {
+  if (first_marked_ <= last_marked_) {
+    std::fill(marks_.begin() + first_marked_, marks_.begin() + last_marked_ + 1, std::uint8_t{0});
+  }
+  first_marked_ = kNoIndex;
+  last_marked_ = 0;
+  refuses_ = false;
+}
+
+void OverlapList::forget_marked() {
+  const auto marked = [&](const BodyPair& pair) { return (marks_[pair.a] | marks_[pair.b]) != 0; };
+  const auto refused = [&](const BodyPair& pair) { return ((marks_[pair.a] | marks_[pair.b]) & kRefused) != 0; };
+  if (!anew_) std::erase_if(pairs_, marked);
+  if (refuses_) std::erase_if(anew_ ? pairs_ : added_, refused);
+}
+
+void OverlapList::begin_anew() noexcept {
+  pairs_.clear();
+  added_.clear();
+  clear_marks();
+  anew_ = true;
+}
+
+// Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
+void OverlapList::keep_changes() {
+  Finder touching(added_, dropped_.size()), in_list(pairs_, dropped_.size()), in_list_too(pairs_, added_.size());
+  const auto keep = [](std::vector<BodyPair>& pairs, std::vector<std::uint32_t>& places, const Finder& finder,
+                       const auto& counts) {
+    places.clear();
+    std::size_t kept = 0;
+    for (const BodyPair pair : pairs) {
+      if (!counts(pair)) continue;
+      pairs[kept++] = pair;
+      places.push_back(finder.place());
+    }
+    pairs.resize(kept);
+  };
+  keep(dropped_, dropped_places_, in_list,
+       [&](const BodyPair& pair) { return !touching.has(pair) && in_list.has(pair); });
+  keep(added_, added_places_, in_list_too, [&](const BodyPair& pair) { return !in_list_too.has(pair); });
+}
+
+void OverlapList::remove_dropped() {
+  const auto begin = pairs_.begin();
+  auto to = begin + dropped_places_.front(), from = to;
+  for (const std::uint32_t place : dropped_places_) {
+    to = std::move(from, begin + place, to);
+    from = begin + place + 1;
+  }
+  pairs_.erase(std::move(from, pairs_.end(), to), pairs_.end());
+}
+
+// From the end: each part of the list moves once.
+void OverlapList::insert_added() {
+  auto from = pairs_.size();
+  grow(pairs_, from + added_.size());
+  auto to = pairs_.size();
+  auto dropped = dropped_places_.size();  // before the place
+  for (auto k = added_.size(); k > 0; --k) {
+    const auto begin = pairs_.begin();
+    while (dropped > 0 && dropped_places_[dropped - 1] >= added_places_[k - 1]) --dropped;
+    const std::size_t place = added_places_[k - 1] - dropped;
+    std::move_backward(begin + static_cast<std::ptrdiff_t>(place), begin + static_cast<std::ptrdiff_t>(from),
+                       begin + static_cast<std::ptrdiff_t>(to));
+    to -= from - place + 1;
+    from = place;
+    pairs_[to] = added_[k - 1];
+  }
+}
+
+void OverlapList::update(std::size_t slots) {
+  if (first_marked_ <= last_marked_) {
+    forget_marked();
+    clear_marks();
+  }
+  if (anew_) {
+    sort(pairs_, slots, added_);  // where nothing is
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  } else if (!added_.empty() || !dropped_.empty()) {
+    sort(added_, slots, by_digit_);
+    added_.erase(std::unique(added_.begin(), added_.end()), added_.end());
+    sort(dropped_, slots, by_digit_);
+    dropped_.erase(std::unique(dropped_.begin(), dropped_.end()), dropped_.end());
+    keep_changes();
+    if (!dropped_.empty()) remove_dropped();
+    if (!added_.empty()) insert_added();
+  }
+  added_.clear();
+  dropped_.clear();
+  anew_ = false;
+}
+
+void OverlapList::clear() noexcept {
+  pairs_.clear();
+  added_.clear();
+  dropped_.clear();
+  anew_ = false;
+  clear_marks();
+}
+
+std::size_t OverlapList::memory_bytes() const noexcept {
+  return bytes_of(pairs_) + bytes_of(added_) + bytes_of(dropped_) + bytes_of(marks_) + bytes_of(begins_) +
+         bytes_of(ends_) + bytes_of(by_digit_) + bytes_of(added_places_) + bytes_of(dropped_places_);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,45 @@
+#include "broad_phase/promise_check.h"
+
+#include "broad_phase/body_pool.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+// Whoever keeps the one keeps the other, too.
+bool implies(const Motion& newer, const Motion& older) noexcept {
+  const bool any = dot(older.half_space, older.half_space) > 0;
+  const bool side = !any || older.half_space == newer.half_space;
+  return side && newer.acceleration <= older.acceleration && newer.drift <= older.drift && newer.expiry >= older.expiry;
+}
+
+}  // namespace
+
+bool PromiseCheck::kept(BodyId body, const Promise& promise, const Motion& motion, double time) {
+  if (!promise.made) return true;
+  const PromiseExcess excess = promise_excess(promise.motion, promise.time, motion, time, position_slack_);
+  if (excess.none()) return true;
+  ++broken_;
+  if (listener_) listener_({body, promise.time, time, promise.motion, motion, excess});
+  return false;
+}
+
+void PromiseCheck::given(BodyId body, const Motion& motion, double time) {
+  grow(tracks_, std::size_t{body.index} + 1);
+  Track& track = tracks_[body.index];
+  if (!is_valid(motion)) {  // refused: nothing relies on it, nor on what was given before
+    track = {};
+    return;
+  }
+  const bool all = kept(body, track.last, motion, time) && (track.same || kept(body, track.strictest, motion, time));
+  const Promise& strictest = track.strictest;
+  const bool over = !all || !strictest.made || time > strictest.motion.expiry;
+  track.last = {true, time, motion};
+  track.same = over || implies(motion, strictest.motion);
+  if (track.same) track.strictest = track.last;
+}
+
+void PromiseCheck::forget(BodyIndex body) noexcept {
+  if (body < tracks_.size()) tracks_[body] = {};
+}
+
+}  // namespace orchard::runtime::detail

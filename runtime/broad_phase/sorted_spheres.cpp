@@ -1,0 +1,279 @@
+#include "broad_phase/sorted_spheres.h"
+
+#include <bit>
+#include <cstring>
+
+#include "broad_phase/horn.h"
+#include "broad_phase/swept_grid.h"
+#include "simd/machine.h"
+#include "simd/vector_support.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kSpare = 1 + 0x1p-12;    // of a cell: more than what coordinates within the grid are rounded by
+constexpr double kOriginCell = 0x1p30;    // cells: the origin's; beyond twice as many there is no other
+constexpr double kCellsPerSpacing = 2;    // smaller cells do not have fewer bodies
+constexpr std::size_t kLargeShare = 256;  // one in so many bodies may be larger than a cell
+constexpr std::size_t kMaxTests = 64;     // for each body and pair: with more of them boxes are the better choice
+constexpr std::uint32_t kSampled = 16;    // of the bodies, every so many are looked at for the number of near ones
+constexpr std::size_t kLanes = 8;         // that may be read beyond the last sphere
+constexpr std::uint32_t kLarge = ~0u;     // in no line
+
+}  // namespace
+
+// Which of the spheres from `at` on a sphere touches, as bits.
+struct SortedSpheres::Plain {
+  static constexpr std::uint32_t kWidth = 4;
+  static std::uint32_t touching(const SortedSpheres& s, std::uint32_t at, std::uint32_t i) noexcept {
+    std::uint32_t bits = 0;
+    for (std::uint32_t k = 0; k < kWidth; ++k) {
+      const double dx = s.x_[at + k] - s.x_[i], dy = s.y_[at + k] - s.y_[i], dz = s.z_[at + k] - s.z_[i];
+      const double reach = s.radius_[at + k] + s.radius_[i];
+      bits |= static_cast<std::uint32_t>(dx * dx + dy * dy + dz * dz <= reach * reach) << k;
+    }
+    return bits;
+  }
+};
+
+#ifdef ORCHARD_VECTORS
+struct SortedSpheres::Four {
+  static constexpr std::uint32_t kWidth = 4;
+  using Numbers __attribute__((vector_size(32))) = double;
+  using Words __attribute__((vector_size(32))) = std::uint64_t;
+  ORCHARD_INLINE static Numbers at(const double* from) noexcept {
+    Numbers result;
+    std::memcpy(&result, from, sizeof result);
+    return result;
+  }
+  ORCHARD_INLINE static std::uint32_t touching(const SortedSpheres& s, std::uint32_t first, std::uint32_t i) noexcept {
+    const Numbers dx = at(&s.x_[first]) - s.x_[i], dy = at(&s.y_[first]) - s.y_[i], dz = at(&s.z_[first]) - s.z_[i];
+    const Numbers reach = at(&s.radius_[first]) + s.radius_[i];
+    const Words met = reinterpret_cast<Words>(dx * dx + dy * dy + dz * dz <= reach * reach) & Words{1, 2, 4, 8};
+    return static_cast<std::uint32_t>((met[0] | met[1]) | (met[2] | met[3]));
+  }
+};
+
+struct SortedSpheres::Eight {
+  static constexpr std::uint32_t kWidth = 8;
+  using Numbers __attribute__((vector_size(64))) = double;
+  using Bytes __attribute__((vector_size(8))) = std::uint8_t;
+  ORCHARD_INLINE static Numbers at(const double* from) noexcept {
+    Numbers result;
+    std::memcpy(&result, from, sizeof result);
+    return result;
+  }
+  ORCHARD_INLINE static std::uint32_t touching(const SortedSpheres& s, std::uint32_t first, std::uint32_t i) noexcept {
+    const Numbers dx = at(&s.x_[first]) - s.x_[i], dy = at(&s.y_[first]) - s.y_[i], dz = at(&s.z_[first]) - s.z_[i];
+    const Numbers reach = at(&s.radius_[first]) + s.radius_[i];
+    const auto met = dx * dx + dy * dy + dz * dz <= reach * reach;
+    const auto bytes = std::bit_cast<std::uint64_t>(__builtin_convertvector(met & 1, Bytes));
+    return static_cast<std::uint32_t>((bytes * 0x0102040810204080u) >> 56);
+  }
+};
+#endif
+
+void SortedSpheres::begin(std::size_t bodies, const Vec3& origin, double spacing) {
+  const std::size_t lines = std::bit_ceil(std::max<std::size_t>(2 * bodies, std::size_t{1} << kMinLineBits));
+  const unsigned bits = std::min(static_cast<unsigned>(std::countr_zero(lines)), kMaxLineBits);
+  factors_ = line_factors(bits);
+  mask_ = (1u << bits) - 1;
+  origin_ = origin;
+  spacing_ = spacing;
+  begins_.assign(std::size_t{mask_} + 4, 0);
+  spheres_.clear();
+  spheres_.reserve(bodies);
+  large_.clear();
+  pairs_.clear();
+  boxes_met_ = tests_ = 0;
+  per_length_ = cell_ > 0 ? 1 / cell_ : 0;
+}
+
+// Monotone. What lies too far away is taken for nearer: neighbours remain neighbours.
+std::uint32_t SortedSpheres::coordinate(double x, std::size_t axis) const noexcept {
+  const double cells = (x - origin_[axis]) * per_length_ + kOriginCell;
+  return static_cast<std::uint32_t>(std::clamp(cells, 1.0, 2 * kOriginCell));
+}
+
+std::uint32_t SortedSpheres::line_of(const Vec3& center) const noexcept {
+  return (coordinate(center[0], 0) + coordinate(center[1], 1) * factors_[1] + coordinate(center[2], 2) * factors_[2]) &
+         mask_;
+}
+
+void SortedSpheres::enter(Sphere& sphere) {
+  if (2 * sphere.radius * kSpare > cell_) {
+    sphere.line = kLarge;
+    large_.push_back(static_cast<std::uint32_t>(&sphere - spheres_.data()));
+    return;
+  }
+  sphere.line = line_of(sphere.center);
+  ++begins_[sphere.line + 1];
+}
+
+void SortedSpheres::add(std::span<const BodyIndex> bodies, std::span<const Motion> motions) {
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    spheres_.push_back({motions[k].position, motions[k].radius, bodies[k], 0});
+    enter(spheres_.back());
+  }
+}
+
+// So that few are larger, and all anew.
+void SortedSpheres::choose_cell() {
+  x_.clear();
+  for (const Sphere& sphere : spheres_) x_.push_back(sphere.radius);
+  const auto nth = x_.end() - 1 - static_cast<std::ptrdiff_t>(x_.size() / kLargeShare);
+  std::nth_element(x_.begin(), nth, x_.end());
+  cell_ = std::max({2 * *nth * kSpare * kSpare, spacing_ / kCellsPerSpacing, 4 * kMinLength});
+  per_length_ = 1 / cell_;
+  std::fill(begins_.begin(), begins_.end(), 0);
+  large_.clear();
+  for (Sphere& sphere : spheres_) enter(sphere);
+}
+
+void SortedSpheres::sort() {
+  const std::size_t lines = std::size_t{mask_} + 1;
+  for (std::size_t line = 0; line < lines; ++line) begins_[line + 1] += begins_[line];
+  const std::uint32_t count = begins_[lines], first = begins_[1], second = begins_[2];
+  const std::size_t room = std::size_t{count} + second + kLanes;
+  for (std::vector<double>* numbers : {&x_, &y_, &z_, &radius_}) {
+    if (numbers->size() < room) numbers->resize(room);
+  }
+  if (body_.size() < room) body_.resize(room);
+  for (const Sphere& sphere : spheres_) {
+    if (sphere.line == kLarge) continue;
+    const std::uint32_t place = begins_[sphere.line]++;
+    x_[place] = sphere.center[0], y_[place] = sphere.center[1], z_[place] = sphere.center[2];
+    radius_[place] = sphere.radius;
+    body_[place] = sphere.body;
+  }
+  for (std::size_t line = lines; line > 0; --line) begins_[line] = begins_[line - 1];
+  begins_[0] = 0;
+  begins_[lines + 1] = count + first;
+  begins_[lines + 2] = count + second;
+  for (std::uint32_t k = 0; k < second; ++k) {
+    x_[count + k] = x_[k], y_[count + k] = y_[k], z_[count + k] = z_[k];
+    radius_[count + k] = radius_[k];
+    body_[count + k] = body_[k];
+  }
+}
+
+// Where the four rows of three cells each begin that come after a cell, apart from its own row.
+std::array<std::uint32_t, 4> SortedSpheres::neighbour_rows() const noexcept {
+  return {factors_[1] - 1, factors_[2] - factors_[1] - 1, factors_[2] - 1, factors_[2] + factors_[1] - 1};
+}
+
+template <typename Lanes>
+ORCHARD_INLINE void SortedSpheres::compare(std::uint32_t i, Run run) {
+  const BodyIndex body = body_[i];
+  for (std::uint32_t at = run.begin; at < run.end; at += Lanes::kWidth) {
+    std::uint32_t bits = Lanes::touching(*this, at, i);
+    if (run.end - at < Lanes::kWidth) bits &= (1u << (run.end - at)) - 1;
+    for (; bits != 0; bits &= bits - 1) {
+      const BodyIndex other = body_[at + static_cast<std::uint32_t>(std::countr_zero(bits))];
+      pairs_.push_back({std::min(body, other), std::max(body, other)});
+    }
+  }
+}
+
+void SortedSpheres::sample(std::uint32_t i, std::span<const Run> runs) noexcept {
+  for (const Run& run : runs) {
+    for (std::uint32_t k = run.begin; k < run.end; ++k) {
+      const double reach = radius_[k] + radius_[i];
+      const double off = std::max({std::fabs(x_[k] - x_[i]), std::fabs(y_[k] - y_[i]), std::fabs(z_[k] - z_[i])});
+      boxes_met_ += off <= reach ? kSampled : 0;
+    }
+  }
+}
+
+template <typename Lanes>
+ORCHARD_INLINE void SortedSpheres::find_all() {
+  const std::array<std::uint32_t, 4> rows = neighbour_rows();
+  std::array<Run, 5> runs;
+  for (std::uint32_t line = 0; line <= mask_; ++line) {
+    const std::uint32_t begin = begins_[line], end = begins_[line + 1];
+    if (begin == end) continue;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::uint32_t first = (line + rows[k]) & mask_;
+      runs[k + 1] = {begins_[first], begins_[first + 3]};
+      tests_ += (end - begin) * std::uint64_t{runs[k + 1].end - runs[k + 1].begin};
+    }
+    tests_ += (end - begin) * std::uint64_t{begins_[line + 2] - begin};
+    for (std::uint32_t i = begin; i < end; ++i) {
+      runs[0] = {i + 1, begins_[line + 2]};
+      for (const Run& run : runs) compare<Lanes>(i, run);
+      if (i % kSampled == 0) sample(i, runs);
+    }
+  }
+}
+
+void SortedSpheres::compare_large() {
+  for (const std::uint32_t index : large_) {
+    const Sphere& large = spheres_[index];
+    for (std::uint32_t other = 0; other < spheres_.size(); ++other) {
+      const Sphere& sphere = spheres_[other];
+      if (sphere.line == kLarge && other >= index) continue;  // the other one comes to it
+      const Vec3 apart = sphere.center - large.center;
+      const double reach = sphere.radius + large.radius;
+      if (dot(apart, apart) > reach * reach) continue;
+      pairs_.push_back({std::min(large.body, sphere.body), std::max(large.body, sphere.body)});
+      ++boxes_met_;
+    }
+  }
+}
+
+std::span<const BodyPair> SortedSpheres::find() {
+  const bool too_many = large_.size() > spheres_.size() / kLargeShare;
+  if (!spheres_.empty() && (cell_ == 0 || too_many)) choose_cell();
+  sort();
+  const Machine chosen = machine();
+#if defined(ORCHARD_MACHINES)
+  if (chosen == Machine::avx512) {
+    work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { find_all<Eight>(); });
+  } else if (chosen == Machine::avx2) {
+    work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { find_all<Four>(); });
+  } else {
+    find_all<Plain>();
+  }
+#elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
+  chosen != Machine::portable ? find_all<Eight>() : find_all<Plain>();
+#elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
+  chosen != Machine::portable ? find_all<Four>() : find_all<Plain>();
+#else
+  (void)chosen;
+  find_all<Plain>();
+#endif
+  compare_large();
+  return pairs_;
+}
+
+bool SortedSpheres::suits() const noexcept { return tests_ <= kMaxTests * (spheres_.size() + pairs_.size()); }
+
+bool SortedSpheres::append_near(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+  if (spheres_.empty()) return true;
+  std::array<std::uint32_t, 3> first, last;
+  double cells = 1;
+  for (std::size_t d = 0; d < 3; ++d) {
+    first[d] = coordinate(lower[d] - cell_, d), last[d] = coordinate(upper[d] + cell_, d);
+    cells *= last[d] - first[d] + 1.0;
+  }
+  if (cells > static_cast<double>(spheres_.size())) return false;
+  for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
+      for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
+        const std::uint32_t line = (x + y * factors_[1] + z * factors_[2]) & mask_;
+        bodies.insert(bodies.end(), body_.begin() + begins_[line], body_.begin() + begins_[line + 1]);
+      }
+    }
+  }
+  for (const std::uint32_t index : large_) bodies.push_back(spheres_[index].body);
+  return true;
+}
+
+void SortedSpheres::release() { *this = {}; }
+
+std::size_t SortedSpheres::memory_bytes() const noexcept {
+  return bytes_of(spheres_) + bytes_of(begins_) + bytes_of(x_) + bytes_of(y_) + bytes_of(z_) + bytes_of(radius_) +
+         bytes_of(body_) + bytes_of(large_) + bytes_of(pairs_);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,83 @@
+#pragma once
+#include <array>
+
+#include "broad_phase/body_pool.h"
+
+namespace orchard::runtime::detail {
+
+inline constexpr Step kWheelSteps = 256;  // a power of two
+inline constexpr Step kLongestWindow = kWheelSteps - 1;
+
+// Rounds of updates are counted modulo 2^kRoundBits. Those compared are never as far apart as half of that.
+using Round = std::uint32_t;
+inline constexpr unsigned kRoundBits = 31;
+inline constexpr Round kFarthestRound = 1u << (kRoundBits - 2);
+inline bool is_later(Round a, Round b) noexcept { return static_cast<std::int32_t>((a - b) << (32 - kRoundBits)) > 0; }
+
+struct PairEvent {
+  BodyPair pair;
+  Round created : kRoundBits = 0;  // void once either body has been updated in a later round
+  Round parting : 1 = 0;           // the pair is among those that overlap
+
+  PairEvent() = default;
+  PairEvent(const BodyPair& of, Round round, bool parts = false) noexcept
+      : pair(of), created(round & ((1u << kRoundBits) - 1)), parting(parts ? 1 : 0) {}
+};
+static_assert(sizeof(PairEvent) == 12);
+
+// What is due when, for less than kWheelSteps steps ahead: bodies to update again and pairs to test, in a ring of
+// lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
+class TimingWheel {
+ public:
+  void set_due(std::span<const BodyIndex> bodies, Step step);
+  void clear_bodies() noexcept;
+  void clear_events() noexcept;
+  void clear() noexcept;  // of everything, its memory, too
+  void add(const PairEvent& event, Step step);
+
+  // Moves everything due at the step to the ends of the vectors.
+  void take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events);
+  // How much take() would give, void entries included.
+  std::size_t bodies_due(Step step) const noexcept;   // O(of that)
+  std::size_t events_due(Step step) const noexcept {  // of pairs that do not overlap yet
+    return buckets_[bucket_of(step)].meetings;
+  }
+  // The first step after `now` that may have something; kNeverStep if there is none.
+  Step next_after(Step now) const noexcept;
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr BodyIndex kRun = kNoIndex - 1;  // bodies with successive indices, as in updates of all windows
+  struct Bodies {                                  // a part of a list: short, as a step may have one body only
+    std::uint32_t next;
+    std::array<BodyIndex, 3>
+        ids;  // kNoIndex from the first one that is missing; or a run: its first one, kRun, how many
+  };
+  static constexpr std::uint32_t kEventsInPart = 5;
+  struct alignas(64) Events {  // a part of a list, one cache line; all parts but a list's first one are full
+    std::array<PairEvent, kEventsInPart> events;
+    std::uint32_t next;
+  };
+  static_assert(sizeof(Events) == 64);
+  struct Bucket {
+    std::uint32_t bodies = kNone, events = kNone;
+    std::uint32_t in_first : 4 = kEventsInPart;  // events in the first part; as if full where there is none
+    std::uint32_t meetings : 28 = 0;             // events of pairs that do not overlap yet
+  };
+
+  template <typename Use>
+  void for_each_busy(const Use& use) noexcept;  // bucket
+  void add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids);
+  void add_part(Bucket& bucket);
+  static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }
+  void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
+
+  std::array<Bucket, kWheelSteps> buckets_{};
+  std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
+  std::vector<Bodies> lines_;
+  std::vector<Events> parts_;
+  std::uint32_t free_line_ = kNone, free_part_ = kNone;
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,221 @@
+#include "broad_phase/window_plan.h"
+
+#include <cmath>
+
+namespace orchard::runtime::detail {
+namespace {
+
+// Costs relative to each other, in nanoseconds of one machine (2023, 2 GHz class). Off by a factor of two, the window
+// is off by less, and the time hardly changes: it is flat around the minimum.
+constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
+// Smaller cells: more of them per body; larger: more bodies in each. By the number of axes that set bodies apart; in
+// space from the first one, where boxes are small, to the second one.
+constexpr std::array<double, 4> kCellPerSpacing = {1, 2.6, 1.65, 1.45};
+constexpr double kMostCellPerSpacing = 1.7;
+constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
+constexpr double kMostLines = 0.5;       // for each body
+// More of them where boxes take several cells each, so that fewer lines overflow: as many as a core's cache holds well,
+// and not where pairs take much memory as it is.
+constexpr double kLinesPerCell = 0.9, kCellsAsEver = 1.2, kLinesInCache = 11000, kManyPairs = 1;
+constexpr double kMostCells = 0x1p23;  // along the world, as a sample shows it: a quarter of the lattice's
+// Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
+// evenly one in each unit of space, have another one nearer than this.
+constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
+constexpr double kClustered = 0.6;           // that distance, to what it would be were they spread evenly: they are not
+constexpr std::size_t kMinClustered = 2000;  // bodies, of which it is worth looking at
+constexpr double kWorthLonger = 0.9;         // cost: a long window makes the step at which it ends a slow one
+constexpr double kWindowGrowth = 1.4;        // between the windows tried
+
+// Of the box of a mean body, along each axis.
+Vec3 box_of(const MotionMeans& mean, double duration) noexcept {
+  const double spread = duration * (mean.drift + duration * mean.acceleration / 2);
+  Vec3 box;
+  for (std::size_t d = 0; d < 3; ++d) box[d] = 2 * mean.radius + spread + std::max(spread, mean.speed[d] * duration);
+  return box;
+}
+
+double speed_per_axis(const Vec3& v) noexcept { return (std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2])) / 3; }
+
+// For how many of a window's steps a bound holds, on average.
+double lasting(double window, double cancelled) noexcept {
+  return cancelled > 0 ? (1 - std::pow(1 - cancelled, window)) / cancelled : window;
+}
+
+}  // namespace
+
+void MotionMeans::add(const Motion& m) noexcept {
+  // Of all seen so far each is among the places with the same chance, as far as a multiplication mixes.
+  const auto seen = static_cast<std::uint64_t>(count);
+  // Few enough of them for 32 bits, whose remainder takes half as long.
+  const std::uint64_t mixed = (seen * 0x9e3779b97f4a7c15u) >> 32;
+  const std::uint64_t place =
+      seen < kPlaces ? seen : static_cast<std::uint32_t>(mixed) % static_cast<std::uint32_t>(seen + 1);
+  if (place < kPlaces) places[place] = m.position, velocities[place] = m.velocity;
+  count += 1;
+  radius += m.radius;
+  for (std::size_t d = 0; d < 3; ++d) speed[d] += std::fabs(m.velocity[d] - frame[d]);
+  drift += m.drift;
+  acceleration += m.acceleration;
+}
+
+double MotionMeans::mean_speed(const Vec3& relative_to) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < sampled(); ++i) sum += speed_per_axis(velocities[i] - relative_to);
+  return sum / static_cast<double>(std::max<std::size_t>(1, sampled()));
+}
+
+// The median along each axis: a few that fly elsewhere do not matter.
+Vec3 MotionMeans::crowd_velocity() const noexcept {
+  constexpr double kMuchSlower = 0.5;
+  const std::size_t n = sampled();
+  if (n == 0) return {};
+  Vec3 median{};
+  std::array<double, kPlaces> along;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < n; ++i) along[i] = velocities[i][axis];
+    std::nth_element(along.begin(), along.begin() + n / 2, along.begin() + n);
+    median[axis] = along[n / 2];
+  }
+  return mean_speed(median) < kMuchSlower * mean_speed({}) ? median : Vec3{};
+}
+
+void MotionMeans::refer_to(const Vec3& velocity) noexcept {
+  if (velocity == frame) return;
+  frame = velocity;
+  speed = {};
+  const double each = count / static_cast<double>(std::max<std::size_t>(1, sampled()));
+  for (std::size_t i = 0; i < sampled(); ++i) {
+    for (std::size_t d = 0; d < 3; ++d) speed[d] += each * std::fabs(velocities[i][d] - velocity[d]);
+  }
+}
+
+namespace {
+
+// The spacing of most of them, where they lie in clusters.
+double spacing_in_clusters(std::span<const Vec3> sample, std::size_t bodies, std::size_t axes) {
+  std::array<double, MotionMeans::kPlaces> nearest{};
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < sample.size(); ++k) {
+      const Vec3 apart = sample[k] - sample[i];
+      least = std::min(least, k == i ? least : dot(apart, apart));
+    }
+    nearest[i] = least;
+  }
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.begin() + static_cast<std::ptrdiff_t>(sample.size()));
+  const double share = static_cast<double>(sample.size()) / static_cast<double>(bodies);
+  return std::sqrt(*middle) / kNearest[axes - 1] * std::pow(share, 1 / static_cast<double>(axes));
+}
+
+// With spacing and thin of bodies spread evenly.
+Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
+  const std::size_t n = sample.size();
+  Spread spread;
+  if (n > 0) spread.middle = sample[0];
+  if (n < 2) return spread;
+  Vec3 lower{}, upper{};
+  std::array<double, MotionMeans::kPlaces> sorted;  // as far as is needed
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i][axis];
+    const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t low = n / 8, high = n - 1 - low;
+    std::nth_element(at(0), at(low), at(n));
+    if (low < high) std::nth_element(at(low + 1), at(high), at(n));
+    const double first = *std::min_element(at(0), at(low + 1)), last = *std::max_element(at(high), at(n));
+    lower[axis] = sorted[low];
+    upper[axis] = sorted[high];
+    spread.extent[axis] = last - first;
+    spread.middle[axis] = (first + last) / 2;
+  }
+  double inside = 0;
+  for (const Vec3& p : sample.first(n)) {
+    bool in = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) in = in && lower[axis] <= p[axis] && p[axis] <= upper[axis];
+    inside += in;
+  }
+  const double there = std::max(inside, 1.0) / static_cast<double>(n) * static_cast<double>(bodies);
+  std::array<std::size_t, 3> axes = {0, 1, 2};
+  const Vec3 extent = upper - lower;
+  std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return extent[a] < extent[b]; });
+  const double shortest = extent[axes[0]], middle = extent[axes[1]], longest = extent[axes[2]];
+  spread.spacing = std::cbrt(shortest * middle * longest / there);
+  // An axis without extent is thin, too: of products with 0 nothing follows.
+  if (spread.spacing <= shortest && shortest > 0) return spread;
+  spread.thin[axes[0]] = true;
+  spread.spacing = std::sqrt(middle * longest / there);
+  if (spread.spacing <= middle && middle > 0) return spread;
+  spread.thin[axes[1]] = true;
+  spread.spacing = longest / there;
+  return spread;
+}
+
+}  // namespace
+
+Spread spread_of(std::span<const Vec3> sample, std::size_t bodies) {
+  const auto some = sample.first(std::min(sample.size(), MotionMeans::kPlaces));
+  Spread spread = spread_evenly(some, bodies);
+  if (some.size() < MotionMeans::kPlaces || bodies < kMinClustered) return spread;
+  const auto thin = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), true));
+  const double clustered = spacing_in_clusters(some, bodies, 3 - thin);
+  if (clustered < kClustered * spread.spacing) spread.spacing = clustered;
+  return spread;
+}
+
+WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Spread& spread, double time_step,
+                       double correction, Step fixed_window, double cancelled) noexcept {
+  MotionMeans mean = means;
+  const double n = std::max(1.0, means.count);
+  for (double* sum : {&mean.radius, &mean.drift, &mean.acceleration}) *sum /= n;
+  for (double& sum : mean.speed) sum /= n;
+  double spacing = spread.spacing;
+  if (!(spacing > 0) || !std::isfinite(spacing)) spacing = std::max(4 * mean.radius, 1e-300);
+  // Where clusters are tiny in their world, cells as small as these would leave the others outside of the lattice, and
+  // those are compared with everything.
+  const double least_cell = *std::max_element(spread.extent.begin(), spread.extent.end()) / kMostCells;
+
+  const auto axes = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), false));
+
+  WindowPlan best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](Step window) {
+    const Vec3 box = box_of(mean, static_cast<double>(window - 1) * time_step);
+    const double longest = std::max({box[0], box[1], box[2], least_cell});
+    const double filled = longest / spacing;
+    const double wanted =
+        axes == 3 ? std::clamp(1.2 + filled, kCellPerSpacing[3], kMostCellPerSpacing) : kCellPerSpacing[axes];
+    const double share = std::max(wanted, filled), cell = share * spacing;
+    double cells = 1, pairs = correction / 2, in_cell = 1;  // of a body; bodies whose box begins in a cell
+    double per_line = 1;
+    for (std::size_t d = 0; d < 3; ++d) {
+      // A cell's middle is in the world's: what is thin fits in there.
+      if (!spread.thin[d] || spread.extent[d] + box[d] > cell) cells *= 1 + box[d] / cell;
+      if (spread.thin[d]) continue;
+      pairs *= 2 * box[d] / spacing;
+      in_cell *= share;
+      per_line *= std::max(kMostCellPerSpacing, filled);
+    }
+    const double occupancy = cells * in_cell / 7;
+    const double cost = (kCostOfUpdate / static_cast<double>(bodies) + kCostPerBody +
+                         kCostPerCell * cells * (1 + occupancy / 2) + kCostPerPair * pairs) /
+                        lasting(static_cast<double>(window), cancelled);
+    if (cost >= (window > best.window ? least * kWorthLonger : least)) return;
+    least = cost;
+    const double as_ever = std::min(kMostLines, kLinesPerVolume / per_line) * static_cast<double>(bodies);
+    const double more = pairs < kManyPairs ? kLinesPerCell * (cells - kCellsAsEver) * static_cast<double>(bodies) : 0;
+    const double lines = std::max(as_ever, std::min(more, kLinesInCache));
+    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
+  };
+  if (fixed_window > 0) {
+    consider(std::min(fixed_window, kLongestWindow));
+    return best;
+  }
+  double window = 1;
+  while (window < static_cast<double>(kLongestWindow)) {
+    consider(static_cast<Step>(window));
+    window = std::max(window + 1, window * kWindowGrowth);
+  }
+  return best;
+}
+
+}  // namespace orchard::runtime::detail

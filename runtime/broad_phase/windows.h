@@ -1,0 +1,115 @@
+#pragma once
+#include "broad_phase/timing_wheel.h"
+
+namespace orchard::runtime::detail {
+
+inline constexpr Step kUpdateDue = -1;  // a window's end while its body waits for a window update
+inline constexpr std::uint8_t kLastsAsEver = static_cast<std::uint8_t>(kLongestWindow - 1);
+
+struct Window {
+  Step end = 0;                         // the step of the next update
+  Round updated = 0;                    // the round of the last update: events of earlier rounds are void
+  std::uint8_t length = 0;              // steps; 0: not known; of a window without end as if it were the longest one
+  std::uint8_t lasting = kLastsAsEver;  // steps that bounds are relied on for, at most
+  std::uint16_t began = 0;              // the last bits of the step
+
+  void rely_longer() noexcept { lasting = lasting < kLastsAsEver / 4 ? lasting * 4 : kLastsAsEver; }
+};
+
+// It will never move, unless it is cancelled.
+inline bool rests(const Motion& motion) noexcept {
+  return motion.expiry == std::numeric_limits<double>::infinity() && motion.velocity == Vec3{} &&
+         motion.acceleration == 0 && motion.drift == 0;
+}
+
+// Of each body, up to when the bounds it was asked for are relied on, and the rounds in which windows are updated.
+class Windows {
+ public:
+  // fixed: 0, or the most steps that a window has.
+  Windows(const BodyPool& pool, Step fixed) : pool_(pool), fixed_(fixed) {}
+
+  void make_room(std::size_t slots) { grow(windows_, slots); }
+  std::size_t size() const noexcept { return windows_.size(); }
+  Window& operator[](BodyIndex body) noexcept { return windows_[body]; }
+  const Window& operator[](BodyIndex body) const noexcept { return windows_[body]; }
+
+  Round round() const noexcept { return round_; }
+  void begin_round() noexcept { ++round_; }
+  void begin_anew() noexcept;  // all are updated in this round
+  bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
+
+  // From now on, so many steps; windows of bodies at rest end, too, or never.
+  void plan(Step window, bool all_end) noexcept { planned_ = window, all_end_ = all_end; }
+  struct LastEnd {  // what was asked last is mostly asked again
+    Step from = -1, end = 1;
+    double expiry = 0;
+  };
+  // The first step at which the bound does not hold or which another update is due at.
+  Step end_of(Step from, const Motion& motion, LastEnd& last) const noexcept;
+  Step end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept;  // where some are short
+  bool any_short() const noexcept { return any_short_; }
+  bool may_never_end() const noexcept { return !all_end_; }
+  void set(BodyIndex body, Step from, Step end) noexcept {
+    const std::uint8_t length = end != kNeverStep       ? static_cast<std::uint8_t>(end - from)
+                                : pool_.is_static(body) ? std::uint8_t{0}
+                                                        : kLastsAsEver;
+    set(windows_[body], from, end, length, round_);
+  }
+  void set(std::span<const BodyIndex> bodies, Step from, std::span<const Step> ends) noexcept {
+    for (std::size_t i = 0; i < bodies.size(); ++i) set(bodies[i], from, ends[i]);
+  }
+  void set_alike(std::span<const BodyIndex> bodies, Step from, Step end) noexcept {  // which is not never
+    Window* const windows = windows_.data();
+    const auto length = static_cast<std::uint8_t>(end - from);
+    const Round round = round_;
+    for (const BodyIndex body : bodies) set(windows[body], from, end, length, round);
+  }
+
+  bool valid(const PairEvent& event) const noexcept {
+    const Round created = event.created;
+    return !is_later(windows_[event.pair.a].updated, created) && !is_later(windows_[event.pair.b].updated, created);
+  }
+  void void_events(BodyIndex body) noexcept {
+    windows_[body].updated = round_ + 1;
+    windows_[body].length = 0;
+  }
+  // Up to the next update of its window. One that waits for it is known by its present motion only, which holds on its
+  // own.
+  Step known_until(BodyIndex body, Step now) const noexcept {
+    const Step end = windows_[body].end;
+    return end == kUpdateDue ? now + kLongestWindow : end;
+  }
+  bool note_cancelled(BodyIndex body, Step now) noexcept {  // false if it had no bounds yet
+    const Window& window = windows_[body];
+    if (window.length == 0 || window.end < 0) return false;
+    note_lasting(body, now);
+    return true;
+  }
+
+  // The step at which the most windows end, if these are many.
+  void vote(Step end, std::size_t bodies) noexcept;
+  Step voted() const noexcept { return voted_; }
+  std::size_t votes() const noexcept { return votes_; }
+  std::size_t memory_bytes() const noexcept { return bytes_of(windows_); }
+
+ private:
+  static void set(Window& window, Step from, Step end, std::uint8_t length, Round round) noexcept {
+    window.end = end;
+    window.updated = round;
+    window.began = static_cast<std::uint16_t>(from);
+    window.length = length;
+  }
+  void note_lasting(BodyIndex body, Step now) noexcept;
+
+  const BodyPool& pool_;
+  const Step fixed_;
+  std::vector<Window> windows_;  // by body
+  bool any_short_ = false;       // of bodies whose bounds are cancelled again and again
+  Round round_ = 0, rebuilt_round_ = 0;
+  Step planned_ = 1;
+  bool all_end_ = false;
+  Step voted_ = kNeverStep;
+  std::size_t votes_ = 0;
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,302 @@
+// The C interface of the broad phase, function after function as orchard_broad_phase.h has them.
+#include <algorithm>
+#include <array>
+
+#include "c/orchard_c.h"
+#include "execution/guarded.h"
+#include "orchard/runtime/broad_queries.h"
+#include "orchard/runtime/orchard_broad_phase.h"
+
+namespace rt = orchard::runtime;
+
+struct orchard_broad_phase {
+  orchard_broad_phase(rt::MotionSource source, const rt::BroadPhaseOptions& options)
+      : world(std::move(source), options), queries(world) {}
+  rt::BroadPhase world;
+  rt::BodyQueries queries;
+};
+
+namespace {
+
+using rt::detail::guarded;
+
+rt::Vec3 vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
+rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
+orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
+orchard_body nobody() noexcept { return body_of(rt::kNoBody); }
+
+rt::Motion motion_of(const orchard_motion& from) noexcept {
+  rt::Motion motion;
+  motion.position = vector_of(from.position), motion.velocity = vector_of(from.velocity);
+  motion.radius = from.radius;
+  motion.acceleration = from.acceleration, motion.drift = from.drift;
+  motion.half_space = vector_of(from.half_space);
+  motion.expiry = from.expiry;
+  return motion;
+}
+
+orchard_motion motion_in_c(const rt::Motion& from) noexcept {
+  orchard_motion motion{};
+  std::copy_n(from.position.begin(), 3, motion.position);
+  std::copy_n(from.velocity.begin(), 3, motion.velocity);
+  motion.radius = from.radius;
+  motion.acceleration = from.acceleration, motion.drift = from.drift;
+  std::copy_n(from.half_space.begin(), 3, motion.half_space);
+  motion.expiry = from.expiry;
+  return motion;
+}
+
+rt::BodyFilter filter_of(const orchard_body_filter* from) noexcept {
+  return from == nullptr ? rt::BodyFilter{}
+                         : rt::BodyFilter{from->category, from->mask, from->group, from->ignores_static != 0};
+}
+rt::QueryFilter filter_of(const orchard_query_filter* from) noexcept {
+  return from == nullptr ? rt::QueryFilter{} : rt::QueryFilter{from->category, from->mask};
+}
+
+rt::MotionSource source_of(orchard_motion_source source, void* context) {
+  if (source == nullptr) return {};
+  return [source, context](double time, std::span<const rt::BodyIndex> bodies, std::span<rt::Motion> motions) {
+    std::array<orchard_motion, 64> answers;
+    for (std::size_t done = 0; done < bodies.size();) {
+      const std::size_t count = std::min(answers.size(), bodies.size() - done);
+      source(context, time, bodies.data() + done, count, answers.data());
+      for (std::size_t i = 0; i < count; ++i) motions[done + i] = motion_of(answers[i]);
+      done += count;
+    }
+  };
+}
+
+rt::BrokenPromiseListener listener_of(orchard_promise_listener listener, void* context) {
+  if (listener == nullptr) return {};
+  return [listener, context](const rt::BrokenPromise& broken) {
+    const rt::PromiseExcess& by = broken.by;
+    const orchard_broken_promise in_c{body_of(broken.body),
+                                      broken.promise_time,
+                                      broken.time,
+                                      motion_in_c(broken.promise),
+                                      motion_in_c(broken.given),
+                                      by.position,
+                                      by.side,
+                                      by.velocity,
+                                      by.turn,
+                                      by.radius};
+    listener(context, &in_c);
+  };
+}
+
+// Indices one after the other.
+const std::uint32_t* indices_of(std::span<const rt::BodyPair> pairs) noexcept {
+  static_assert(sizeof(rt::BodyPair) == 2 * sizeof(std::uint32_t));
+  return pairs.empty() ? nullptr : &pairs.front().a;
+}
+
+int as_int(bool done) noexcept { return done ? 1 : 0; }
+
+// 1, or 0 where there is no memory as well.
+template <typename Change>
+int changed(const Change& change) noexcept {
+  return guarded([&] { return as_int(change()); }, [] { return 0; });
+}
+
+template <typename Ask>
+int first(orchard_broad_phase* world, orchard_body_hit* hit, const Ask& ask) noexcept {
+  return guarded(
+      [&] {
+        const std::optional<rt::BodyHit> found = ask();
+        if (found && hit != nullptr) *hit = {found->body, found->along};
+        return world->queries.refused() ? -1 : as_int(found.has_value());
+      },
+      [] { return -1; });
+}
+
+// Those that ask() gives, as far as there is room.
+template <typename InC, typename Ask, typename Convert>
+std::size_t written(orchard_broad_phase* world, InC* to, std::size_t room, const Ask& ask,
+                    const Convert& convert) noexcept {
+  return guarded(
+      [&]() -> std::size_t {
+        const auto found = ask();
+        if (world->queries.refused()) return ORCHARD_REFUSED;
+        for (std::size_t i = 0; i < std::min(room, found.size()); ++i) to[i] = convert(found[i]);
+        return found.size();
+      },
+      []() -> std::size_t { return ORCHARD_REFUSED; });
+}
+
+orchard_body_hit hit_in_c(const rt::BodyHit& hit) noexcept { return {hit.body, hit.along}; }
+std::uint32_t same(rt::BodyIndex body) noexcept { return body; }
+
+}  // namespace
+
+extern "C" {
+
+orchard_motion orchard_default_motion(void) { return motion_in_c(rt::Motion{}); }
+orchard_body_filter orchard_default_filter(void) {
+  const rt::BodyFilter filter;
+  return {filter.category, filter.mask, filter.group, filter.ignores_static ? 1 : 0};
+}
+orchard_broad_phase_options orchard_default_broad_phase(void) {
+  const rt::BroadPhaseOptions options;
+  return {options.time_step,
+          options.start,
+          options.window,
+          options.position_slack,
+          0,
+          nullptr,
+          nullptr,
+          nullptr,
+          nullptr,
+          1};
+}
+
+orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void* context,
+                                             const orchard_broad_phase_options* with) {
+  return guarded(
+      [&] {
+        const orchard_broad_phase_options defaults = orchard_default_broad_phase();
+        if (with == nullptr) with = &defaults;
+        rt::BroadPhaseOptions options;
+        options.time_step = with->time_step, options.start = with->start;
+        options.window = with->window;
+        options.position_slack = with->position_slack;
+        options.validate = with->validate != 0;
+        options.broken = listener_of(with->broken, with->broken_context);
+        options.executor = {with->run, with->run_context, with->concurrency};
+        return std::make_unique<orchard_broad_phase>(source_of(source, context), options).release();
+      },
+      []() -> orchard_broad_phase* { return nullptr; });
+}
+
+void orchard_broad_phase_free(orchard_broad_phase* world) { delete world; }
+int orchard_broad_phase_valid(const orchard_broad_phase* world) { return as_int(world->world.valid()); }
+size_t orchard_broad_phase_size(const orchard_broad_phase* world) { return world->world.size(); }
+double orchard_broad_phase_next_time(const orchard_broad_phase* world) { return world->world.next_time(); }
+
+orchard_body orchard_broad_phase_add(orchard_broad_phase* world, uint8_t importance,
+                                     const orchard_body_filter* filter) {
+  return guarded([&] { return body_of(world->world.add(importance, filter_of(filter))); }, nobody);
+}
+orchard_body orchard_broad_phase_add_static(orchard_broad_phase* world, const orchard_motion* place, uint8_t importance,
+                                            const orchard_body_filter* filter) {
+  return guarded([&] { return body_of(world->world.add_static(motion_of(*place), importance, filter_of(filter))); },
+                 nobody);
+}
+
+int orchard_broad_phase_remove(orchard_broad_phase* world, orchard_body body) {
+  return changed([&] { return world->world.remove(id_of(body)); });
+}
+int orchard_broad_phase_cancel(orchard_broad_phase* world, orchard_body body) {
+  return changed([&] { return world->world.cancel(id_of(body)); });
+}
+int orchard_broad_phase_move_static(orchard_broad_phase* world, orchard_body body, const orchard_motion* place) {
+  return changed([&] { return world->world.move_static(id_of(body), motion_of(*place)); });
+}
+int orchard_broad_phase_set_importance(orchard_broad_phase* world, orchard_body body, uint8_t importance) {
+  return changed([&] { return world->world.set_importance(id_of(body), importance); });
+}
+int orchard_broad_phase_set_filter(orchard_broad_phase* world, orchard_body body, const orchard_body_filter* filter) {
+  return changed([&] { return world->world.set_filter(id_of(body), filter_of(filter)); });
+}
+int orchard_broad_phase_set_pair_filter(orchard_broad_phase* world, orchard_pair_filter filter, void* context) {
+  return changed([&] {
+    rt::PairFilter made;
+    if (filter != nullptr) {
+      made = [filter, context](rt::BodyId a, rt::BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
+    }
+    world->world.set_pair_filter(std::move(made));
+    return world->world.valid();
+  });
+}
+orchard_body orchard_broad_phase_body(const orchard_broad_phase* world, uint32_t index) {
+  return body_of(world->world.id_of(index));
+}
+
+orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now,
+                                            const orchard_work_budget* budget) {
+  orchard_advance result{};
+  const auto advance = [&] {
+    const rt::Budget within =
+        budget == nullptr ? rt::Budget{} : rt::Budget{budget->work, rt::detail::time_of(budget->nanoseconds)};
+    const rt::Advance now = world->world.advance(t_now, within, budget == nullptr ? 0 : budget->replay);
+    result.time = now.time;
+    result.pairs = indices_of(now.pairs), result.pair_count = now.pairs.size();
+    result.refused = now.refused.data(), result.refused_count = now.refused.size();
+    result.incomplete_from = now.incomplete_from, result.left_over = now.left_over;
+    result.work = now.work;
+    result.time_refused = now.time_refused;
+    return true;
+  };
+  result.out_of_memory = as_int(!guarded(advance, [] { return false; }));
+  if (result.out_of_memory != 0) result.time = world->world.next_time();
+  return result;
+}
+
+uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t) {
+  return guarded([&]() -> uint64_t { return world->world.skip_to(t); }, []() -> uint64_t { return 0; });
+}
+size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
+                                   size_t* meetings, size_t* overlaps) {
+  std::array<rt::StepsAhead, 254> steps;
+  const std::size_t known = world->world.foresee(time, std::span(steps).first(std::min(count, steps.size())));
+  for (std::size_t i = 0; i < known; ++i) {
+    if (updates != nullptr) updates[i] = steps[i].updates;
+    if (meetings != nullptr) meetings[i] = steps[i].meetings;
+    if (overlaps != nullptr) overlaps[i] = steps[i].overlaps;
+  }
+  return known;
+}
+
+uint64_t orchard_broad_phase_motions_asked(const orchard_broad_phase* world) { return world->world.motions_asked(); }
+uint64_t orchard_broad_phase_promises_broken(const orchard_broad_phase* world) {
+  return world->world.promises_broken();
+}
+size_t orchard_broad_phase_memory_bytes(const orchard_broad_phase* world) {
+  return sizeof(*world) + world->world.memory_bytes() + world->queries.memory_bytes();
+}
+
+double orchard_broad_phase_query_time(const orchard_broad_phase* world) { return world->queries.time(); }
+
+int orchard_broad_phase_first_hit(orchard_broad_phase* world, const double origin[3], const double direction[3],
+                                  double longest, const orchard_query_filter* filter, orchard_body_hit* hit) {
+  const rt::Ray ray{vector_of(origin), vector_of(direction), longest};
+  return first(world, hit, [&] { return world->queries.first_hit(ray, filter_of(filter)); });
+}
+int orchard_broad_phase_first_on_segment(orchard_broad_phase* world, const double p[3], const double q[3],
+                                         const orchard_query_filter* filter, orchard_body_hit* hit) {
+  return first(world, hit,
+               [&] { return world->queries.first_on_segment(vector_of(p), vector_of(q), filter_of(filter)); });
+}
+
+size_t orchard_broad_phase_all_hits(orchard_broad_phase* world, const double origin[3], const double direction[3],
+                                    double longest, const orchard_query_filter* filter, orchard_body_hit* hits,
+                                    size_t room) {
+  const rt::Ray ray{vector_of(origin), vector_of(direction), longest};
+  return written(
+      world, hits, room, [&] { return world->queries.all_hits(ray, filter_of(filter)); }, hit_in_c);
+}
+size_t orchard_broad_phase_all_on_segment(orchard_broad_phase* world, const double p[3], const double q[3],
+                                          const orchard_query_filter* filter, orchard_body_hit* hits, size_t room) {
+  const auto ask = [&] { return world->queries.all_on_segment(vector_of(p), vector_of(q), filter_of(filter)); };
+  return written(world, hits, room, ask, hit_in_c);
+}
+size_t orchard_broad_phase_touching_sphere(orchard_broad_phase* world, const double center[3], double radius,
+                                           const orchard_query_filter* filter, uint32_t* bodies, size_t room) {
+  const auto ask = [&] { return world->queries.touching_sphere(vector_of(center), radius, filter_of(filter)); };
+  return written(world, bodies, room, ask, same);
+}
+size_t orchard_broad_phase_touching_box(orchard_broad_phase* world, const double lower[3], const double upper[3],
+                                        const orchard_query_filter* filter, uint32_t* bodies, size_t room) {
+  const auto ask = [&] { return world->queries.touching_box(vector_of(lower), vector_of(upper), filter_of(filter)); };
+  return written(world, bodies, room, ask, same);
+}
+size_t orchard_broad_phase_nearest(orchard_broad_phase* world, const double point[3], size_t k,
+                                   const orchard_query_filter* filter, orchard_near_body* near) {
+  return written(
+      world, near, k, [&] { return world->queries.nearest(vector_of(point), k, filter_of(filter)); },
+      [](const rt::NearBody& body) {
+        return orchard_near_body{body.body, body.distance};
+      });
+}
+
+}  // extern "C"

@@ -1,0 +1,271 @@
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
+
+#include "collision/coherent_pair.h"
+#include "collision/front_walk.h"
+#include "collision/pair_query.h"
+#include "collision/pose_change.h"
+#include "math/rigid_pair.h"
+#include "math/triangle_pair.h"
+#include "math/vector_functions.h"
+#include "tree/tree_nodes.h"
+
+namespace orchard::runtime {
+
+using detail::dot;
+using detail::minus;
+using detail::Vec3;
+
+namespace {
+
+constexpr std::uint8_t kSearchesBeforeRoots = 4;
+constexpr std::uint8_t kInVain = 4;   // answers of roots that told nothing, before they are asked now and then only
+constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
+
+double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+// How far a point of the tree's triangles is at most from where it was, both places relative to the other body.
+double displacement(const PreparedTree& tree, const Pose& before, const Pose& now) noexcept {
+  const BallSlabBlock& root = tree.tree.ball_slabs[0];
+  Vec3 middle = {root.x[0], root.y[0], root.z[0]};
+  for (std::size_t i = 0; i < 3; ++i) middle[i] += tree.tree.origin[i];
+  return size_of(minus(transform(now, middle), transform(before, middle))) +
+         detail::pose_change(before, now) * double{root.radius[0]};
+}
+
+// What poses may be off by, in the first body's units: as NarrowPhase's error.
+double slack(const PreparedTree& a, const PreparedTree& b, const Pose& pose_a, const Pose& pose_b) noexcept {
+  double places = 0;
+  for (std::size_t i = 0; i < 3; ++i) places += std::fabs(pose_a.translation[i]) + std::fabs(pose_b.translation[i]);
+  return 2 * (a.error + b.error * pose_b.scale / pose_a.scale) + 4e-14 * places / pose_a.scale;
+}
+
+}  // namespace
+
+struct Coherence {
+  Workspace& workspace;
+  TreePair& pair;
+  const Pose &a, &b;
+  TreePair::Memory& memory = pair.memory_;
+
+  bool placed = false;                // the workspace's NarrowPhase is bound and placed for triangles
+  bool rigid = false;                 // both poses are, once that has been looked at
+  std::optional<Pose> relative = {};  // of b in a's frame, likewise
+
+  bool find_rigid() noexcept {  // both, side by side
+    if (rigid) return true;
+    double places = 0;
+    for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a.translation[i]) + std::fabs(b.translation[i]);
+    return rigid = std::isfinite(places) && detail::PoseLanes(a, b).rotate();
+  }
+
+  const Pose& find_relative() noexcept {
+    if (!relative) relative.emplace(compose(inverse(a), b));
+    return *relative;
+  }
+
+  static bool remembers(const TreePair& of) noexcept {
+    return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
+  }
+
+  // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
+  bool recall(Verdict& verdict) noexcept {
+    if (!remembers(pair)) return false;
+    if (!find_rigid()) {
+      pair.forget();
+      return false;
+    }
+    if (memory.clearance > 0) {
+      const double moved = displacement(pair.b(), memory.relative, find_relative()) + slack(pair.a(), pair.b(), a, b);
+      const double left = memory.clearance * kMargin - moved;
+      if (left > 0) {
+        verdict = apart(left * a.scale);
+        return true;
+      }
+    }
+    if (memory.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
+    ::new (&verdict) Verdict(query_of(workspace.narrow).verdict());
+    return true;
+  }
+
+  static Verdict apart(double lower) noexcept {
+    Verdict verdict;
+    verdict.answer = Answer::no;
+    verdict.separation_bound = std::numeric_limits<double>::infinity();
+    verdict.lower_bound = std::max(0.0, lower);
+    return verdict;
+  }
+
+  // The roots come first, unless they have not decided of late.
+  Verdict search(const Budget& budget) noexcept {
+    if (memory.witness_count > 0) return search_after_yes(budget);
+    if (pair.front_ != nullptr) return search_front(budget);
+    const bool tried = memory.close && memory.wait > 0;
+    if (tried && place_narrow()) {
+      --memory.wait;
+      query_of(workspace.narrow).search(budget);
+      return remembered();
+    }
+    collide(budget);
+    memory.close = query_of(workspace.narrow).exact();
+    memory.in_vain = static_cast<std::uint8_t>(memory.close ? std::min<int>(memory.in_vain + 1, kInVain) : 0);
+    memory.wait = memory.in_vain == kInVain ? kSearchesBeforeRoots : 0;
+    return remembered();
+  }
+
+  void collide(const Budget& budget) noexcept {
+    PairQuery& narrow = query_of(workspace.narrow);
+    narrow.bind_where(pair.a(), pair.b());
+    answer_exactly(narrow, a, b, budget);
+  }
+
+  // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
+  Verdict search_after_yes(const Budget& budget) noexcept {
+    PairQuery& narrow = query_of(workspace.narrow);
+    if (!place_narrow()) {
+      collide(budget);
+      return remembered();
+    }
+    Budget rest = budget;
+    if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
+      if (pair.front_ != nullptr) pair.front_->clear();
+      narrow.search(rest);
+    }
+    memory.close = true;
+    return remembered();
+  }
+
+  bool place_for_triangles() noexcept {
+    if (placed) return true;
+    query_of(workspace.narrow).bind_where(pair.a(), pair.b());
+    placed = query_of(workspace.narrow).has_last_level() && find_rigid() &&
+             query_of(workspace.narrow).place_for_triangles(a, b);
+    return placed;
+  }
+
+  bool place_narrow() noexcept {
+    if (!place_for_triangles()) return false;
+    query_of(workspace.narrow).place();
+    return true;
+  }
+
+  // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
+  // and then, since they may decide again.
+  Verdict search_front(const Budget& budget) noexcept {
+    PairQuery& narrow = query_of(workspace.narrow);
+    const bool tried = memory.close && memory.wait > 0;
+    if (tried ? !place_narrow() : !has_last_level()) {
+      collide(budget);
+      return remembered();
+    }
+    if (!tried && !ask_roots()) return remembered();
+    FrontWalk walk(*pair.front_, narrow);
+    if (!walk.resume()) {
+      if (tried && !ask_roots()) return remembered();
+      walk.begin();
+    }
+    --memory.wait;
+    walk.run(budget);
+    return remembered();
+  }
+
+  bool has_last_level() noexcept {
+    query_of(workspace.narrow).bind_where(pair.a(), pair.b());
+    return query_of(workspace.narrow).has_last_level();
+  }
+
+  // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
+  bool ask_roots() noexcept {
+    PairQuery& narrow = query_of(workspace.narrow);
+    narrow.start(a, b);
+    memory.close = !narrow.finished();
+    memory.wait = kSearchesBeforeRoots;
+    if (memory.close) narrow.place();
+    return memory.close;
+  }
+
+  // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
+  bool witness_meets(std::size_t i) noexcept {
+    return query_of(workspace.narrow).test_two(place_of(memory.witnesses[i]));
+  }
+
+  // Those that have not met for longer: bodies that go to and fro come back to them.
+  bool older_meet() noexcept {
+    for (std::size_t i = 1; i < memory.witness_count; ++i) {
+      if (witness_meets(i)) return true;
+    }
+    return false;
+  }
+
+  PairQuery::Place place_of(const TreePair::Witness& w) const noexcept {
+    if (query_of(workspace.narrow).exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
+    return {w.a, w.b, w.lane_a, w.lane_b};
+  }
+
+  // The same of the leaves that they are in, which takes from the tests that are left. Precondition: placed.
+  bool leaves_meet(std::uint64_t& left) noexcept {
+    if (left == 0) return false;
+    constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
+    query_of(workspace.narrow).add_work(tests);
+    left -= std::min(left, tests);
+    const PairQuery::Place place = place_of(memory.witnesses[0]);
+    return query_of(workspace.narrow).test_leaves(place.first, place.second);
+  }
+
+  // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
+  bool near_meet(Budget& left) noexcept {
+    if (left.time != Budget{}.time) return false;
+    const PairQuery::Place place = place_of(memory.witnesses[0]);
+    const std::uint64_t before = query_of(workspace.narrow).work();
+    const bool meet = query_of(workspace.narrow).search_near(place.first, place.second, left);
+    left.work -= std::min(left.work, query_of(workspace.narrow).work() - before);
+    return meet;
+  }
+
+  // The query's verdict.
+  Verdict remembered() noexcept {
+    const Answer answer = query_of(workspace.narrow).answer();
+    if (answer == Answer::yes) {
+      const std::size_t kept = std::min<std::size_t>(memory.witness_count, TreePair::kWitnesses - 1);
+      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
+                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+      memory.witness_count = static_cast<std::uint8_t>(kept + 1);
+      const PairQuery::Place& place = query_of(workspace.narrow).meeting();
+      memory.witnesses[0] = query_of(workspace.narrow).exchanged()
+                                ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
+                                : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
+    } else {
+      memory.witness_count = 0;
+    }
+    const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
+    memory.clearance = answer == Answer::no && have_triangles ? query_of(workspace.narrow).lower_bound() / a.scale : 0;
+    if (memory.clearance > 0) memory.relative = find_relative();
+    return query_of(workspace.narrow).verdict();
+  }
+};
+
+bool CoherentPair::recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                          Verdict& verdict) noexcept {
+  return Coherence{workspace, pair, a, b}.recall(verdict);
+}
+
+bool CoherentPair::remembers(const TreePair& pair) noexcept { return Coherence::remembers(pair); }
+
+Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                             const Budget& budget) noexcept {
+  return Coherence{workspace, pair, a, b}.search(budget);
+}
+
+void CoherentPair::remember(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
+  Coherence{workspace, pair, a, b}.remembered();
+}
+
+Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
+  Coherence coherence{workspace, pair, a, b};
+  Verdict known;
+  return coherence.recall(known) ? known : coherence.search({});
+}
+
+}  // namespace orchard::runtime

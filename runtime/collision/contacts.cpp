@@ -1,0 +1,291 @@
+#include "orchard/runtime/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/outermost_points.h"
+#include "collision/pair_query.h"
+#include "collision/solid_contacts.h"
+#include "collision/triangle_cut.h"
+#include "collision/way_out.h"
+#include "collision/workspace_scratch.h"
+#include "math/vector_functions.h"
+#include "tree/principal_axes.h"
+
+namespace orchard::runtime {
+
+using detail::along;
+using detail::cross;
+using detail::dot;
+using detail::kSameLine;
+using detail::minus;
+using detail::PlacedPair;
+using detail::SolidBox;
+using detail::Vec3;
+using detail::WayOut;
+using detail::WayOutSearch;
+
+namespace {
+
+using Cut = Workspace::Scratch::Cut;
+
+double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+Vec3 unit(const Vec3& v) noexcept {
+  const double size = length(v);
+  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{0, 0, 0};
+}
+
+Vec3 opposite(const Vec3& v) noexcept { return {-v[0], -v[1], -v[2]}; }
+
+// All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
+std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
+  std::size_t found = 0;
+  detail::walk_candidates(
+      pair, scratch.walk,
+      [&](const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row) {
+        const detail::TrianglePoints a = detail::points_of(lanes, lane),
+                                     b = detail::moved_points_of(rows, row, pair.relative);
+        Vec3 witness{};
+        if (!detail::triangles_intersect(a, b, &witness)) return false;
+        ++found;
+        if (found > Workspace::Scratch::kCuts) return false;
+        const detail::Segment3 common = detail::common_segment(a, b, witness);
+        scratch.cuts[found - 1] = {a, b, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
+        return false;
+      });
+  scratch.cut_count = std::min(found, Workspace::Scratch::kCuts);
+  return found;
+}
+
+// From the triangles that meet: what the second surface faces, on the whole, to leave the first one. Nothing where
+// normals cancel out but for their rounding.
+Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
+  constexpr double kLeastFacing = 1e-6;  // of all weights
+  Vec3 sum{};
+  double weights = 0;
+  for (const Cut& cut : cuts) {
+    const auto normal = [](const detail::TrianglePoints& t) {
+      return unit(cross(minus(t[1], t[0]), minus(t[2], t[0])));
+    };
+    const double weight = length(minus(cut.q, cut.p)) + least;
+    sum = along(along(sum, normal(cut.first), weight), normal(cut.second), -weight);
+    weights += weight;
+  }
+  return length(sum) > kLeastFacing * weights ? unit(sum) : Vec3{};
+}
+
+// Across the plane that the curves of contact lie in, nearly: the direction in which they extend least.
+Vec3 flattest(std::span<const Cut> cuts) noexcept {
+  Vec3 mean{};
+  double sum = 0;
+  for (const Cut& cut : cuts) {
+    const double weight = length(minus(cut.q, cut.p));
+    mean = along(along(mean, cut.p, weight / 2), cut.q, weight / 2);
+    sum += weight;
+  }
+  if (!(sum > 0)) return {};
+  mean = along({0, 0, 0}, mean, 1 / sum);
+  std::array<double, 6> m{};
+  for (const Cut& cut : cuts) {
+    const double weight = length(minus(cut.q, cut.p)) / sum;
+    for (const Vec3& p : {cut.p, cut.q}) {
+      const Vec3 d = minus(p, mean);
+      m[0] += weight * d[0] * d[0], m[1] += weight * d[1] * d[1], m[2] += weight * d[2] * d[2];
+      m[3] += weight * d[0] * d[1], m[4] += weight * d[0] * d[2], m[5] += weight * d[1] * d[2];
+    }
+  }
+  const double largest = std::max({m[0], m[1], m[2]});
+  if (!(largest > 0)) return {};
+  for (double& entry : m) entry /= largest;
+  const std::array<Vec3, 3> axes = detail::axes_of(m);
+  const auto spread = [&m](const Vec3& u) {
+    return m[0] * u[0] * u[0] + m[1] * u[1] * u[1] + m[2] * u[2] * u[2] +
+           2 * (m[3] * u[0] * u[1] + m[4] * u[0] * u[2] + m[5] * u[1] * u[2]);
+  };
+  return spread(axes[1]) > kSameLine ? unit(axes[2]) : Vec3{};
+}
+
+struct Directions {
+  std::array<Vec3, 15> some{};
+  std::size_t count = 0;
+  void add(const Vec3& direction) noexcept { some[count++] = direction; }
+  std::span<const Vec3> all() const noexcept { return {some.data(), count}; }
+};
+
+// The directions to begin with, the most promising last.
+void first_directions(const WayOutSearch& search, Directions& directions) noexcept {
+  const std::span<const Cut> cuts = search.cuts;
+  const Vec3 by_normals = facing(cuts, 1e-9 * search.size), by_plane = flattest(cuts);
+  if (length(by_normals) > 0) directions.add(by_normals);
+  if (length(by_plane) > 0) {
+    const bool same_side = dot(by_plane, by_normals) >= 0;
+    directions.add(same_side ? by_plane : opposite(by_plane));
+  }
+  // Where normals cancel out, as those of open surfaces may, either side may be the way out.
+  if (directions.count < 2 || std::fabs(dot(by_plane, by_normals)) < 0.3) {
+    directions.add(directions.count > 0 ? opposite(directions.some[directions.count - 1]) : Vec3{0, 0, 1});
+  }
+  if (!cuts.empty()) return;
+  for (const SolidBox& solid : search.solids) {  // out through a box's faces
+    for (std::size_t i = 0; i < 6; ++i) {
+      Vec3 face{};
+      face[i / 2] = i % 2 == 0 ? 1 : -1;
+      directions.add(solid.is_first ? face : rotate(search.pair.relative, face));
+    }
+  }
+}
+
+// Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
+double least_nudge(const PairQuery& narrow, double size) noexcept {
+  double places = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    places += std::fabs(narrow.first_pose().translation[i]) + std::fabs(narrow.second_pose().translation[i]);
+  }
+  return 1e-12 * size + 2e-15 * places / narrow.first_pose().scale;
+}
+
+// Where surfaces do not meet: a point of one that is inside a box, as the only point. False if there is none.
+bool add_piece_inside(const WayOutSearch& search, const Pose& world, Manifold& manifold) noexcept {
+  const PreparedTree &first = search.pair.first, &second = search.pair.second;
+  for (const SolidBox& solid : search.solids) {
+    const runtime::Vec3* const piece = detail::piece_inside(search, solid);
+    if (piece == nullptr) continue;
+    const Vec3 local =
+        solid.is_first
+            ? Vec3(along(transform(search.pair.relative, minus(*piece, second.tree.origin)), first.tree.origin, 1))
+            : Vec3(*piece);
+    manifold.count = 1;
+    manifold.points[0].place = transform(world, local);
+    return true;
+  }
+  return false;
+}
+
+// Up to four of the curves' points that span them, seen along the normal.
+void add_points(std::span<const Cut> cuts, const PlacedPair& pair, const Vec3& normal, const Pose& world,
+                bool exchanged, Manifold& manifold) noexcept {
+  const auto end = [&cuts](std::size_t i) { return i % 2 == 0 ? cuts[i / 2].p : cuts[i / 2].q; };
+  std::array<std::size_t, kMaxContactPoints> chosen{};
+  manifold.count = detail::outermost_points(
+      [&, way = detail::Way(normal)](auto&& visit) {
+        for (std::size_t i = 0; i < 2 * cuts.size(); ++i) {
+          const Vec3 p = minus(end(i), cuts[0].p);
+          visit({dot(way.e, p), dot(way.f, p)}, i);
+        }
+      },
+      chosen);
+  for (std::uint32_t i = 0; i < manifold.count; ++i) {
+    const Cut& cut = cuts[chosen[i] / 2];
+    manifold.points[i] = {transform(world, along(end(chosen[i]), pair.first.tree.origin, 1)),
+                          exchanged ? cut.triangle_second : cut.triangle_first,
+                          exchanged ? cut.triangle_first : cut.triangle_second};
+  }
+}
+
+// Where the way ends close beside triangles, as those of faces that slide along each other, they may touch by rounding
+// once the body is placed in the world. The answer about the body as it is moved by the depth decides.
+void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PosePair& poses, double step,
+                         Manifold& manifold) noexcept {
+  constexpr int kMaxSteps = 64;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    Pose moved = poses.b;
+    moved.translation = along(poses.b.translation, manifold.normal, manifold.depth);
+    if (collide(workspace, pair, poses.a, moved).answer != Answer::yes) return;
+    manifold.depth += step;
+    step *= 2;
+  }
+}
+
+// Without triangles, or without an answer: what the spheres say.
+Manifold by_spheres(PairQuery& narrow) noexcept {
+  while (!narrow.finished()) narrow.refine();
+  Manifold result;
+  result.answer = narrow.answer();
+  if (result.answer == Answer::no || narrow.refused()) return result;
+  const Contact contact = narrow.contact();
+  result.count = 1;
+  result.points[0] = {contact.center, contact.triangle_a, contact.triangle_b};
+  result.normal = contact.normal;
+  result.error = contact.radius;
+  return result;
+}
+
+}  // namespace
+
+namespace detail {
+
+Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                            const ContactOptions& options, std::span<const SolidBox> boxes) noexcept {
+  Manifold result;
+  PairQuery& narrow = query_of(workspace.narrow);
+  narrow.bind(pair.a(), pair.b());
+  narrow.start(a, b);
+  if (narrow.finished() && narrow.answer() == Answer::no) {
+    result.answer = Answer::no;
+    return result;
+  }
+  Workspace::Scratch* const scratch = workspace.scratch();
+  const bool placed = !narrow.refused() && narrow.place(a, b);
+  if (!placed || !narrow.has_triangles() || scratch == nullptr ||
+      !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
+    return by_spheres(narrow);
+  }
+  const PlacedPair both{narrow.first(), narrow.second(), narrow.relative(), narrow.placement()};
+  find_cuts(both, *scratch);
+  const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
+  const Pose& world = narrow.first_pose();
+  const bool exchanged = narrow.exchanged();
+  std::array<SolidBox, 2> solids{};
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    solids[i] = boxes[i];
+    if (exchanged) solids[i].is_first = !solids[i].is_first;
+  }
+  const double size = both.first.extent + both.second.extent * both.relative.scale;
+  const WayOutSearch search{
+      both, scratch->walk, cuts, std::span(solids.data(), boxes.size()), size, least_nudge(narrow, size)};
+  if (cuts.empty() && !add_piece_inside(search, world, result)) {
+    result.answer = Answer::no;
+    return result;
+  }
+  result.answer = Answer::yes;
+  Directions directions;
+  first_directions(search, directions);
+  WayOut out{directions.some[0], 0, directions.some[0], true};
+  if (options.depth) out = least_way_out(search, directions.all(), options.refinements);
+  result.complete = out.ended;
+  result.depth = out.way * world.scale;
+  result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
+  result.error = narrow.exact_error();
+  if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
+  if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);
+  return result;
+}
+
+}  // namespace detail
+
+Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                  const ContactOptions& options) noexcept {
+  return detail::contacts_of_solids(workspace, pair, a, b, options, {});
+}
+
+SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                               double relative_tolerance) noexcept {
+  SignedDistance result;
+  const Distance apart = distance(workspace, pair, a, b, {.relative = relative_tolerance, .absolute = 0});
+  if (apart.lower > 0 || apart.points.triangle_a == kNoTriangle) {
+    result = {apart.lower, apart.upper, apart.points.on_a, apart.points.on_b, {}};
+    result.normal = unit(minus(result.on_b, result.on_a));
+    return result;
+  }
+  const Manifold manifold = contacts(workspace, pair, a, b);
+  if (manifold.answer != Answer::yes) {  // nearer than rounding can tell
+    return {0, apart.upper, apart.points.on_a, apart.points.on_b, unit(minus(apart.points.on_b, apart.points.on_a))};
+  }
+  result.lower = result.upper = -manifold.depth;
+  result.on_a = result.on_b = manifold.points[0].place;
+  result.normal = manifold.normal;
+  return result;
+}
+
+}  // namespace orchard::runtime

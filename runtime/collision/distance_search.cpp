@@ -1,0 +1,327 @@
+#include "collision/distance_search.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <new>
+
+#include "collision/kernels/ball_slab_block.h"
+#include "collision/kernels/least_last.h"
+#include "collision/kernels/node_box.h"
+#include "collision/triangle_distance.h"
+
+// Depth first through the two trees of triangles, the nearest pair of ball slabs first, leaving out what is not nearer
+// than the best so far. Lower bounds are floats with their rounding taken off; distances of triangles are doubles.
+namespace orchard::runtime {
+
+namespace {
+
+constexpr double kRounding = 1e-12;     // of distances in double, relative to them
+constexpr float kSumRounding = 1e-6f;   // of a few float sums
+constexpr double kSmallMargin = 0.125;  // of two leaves' radii: then most of their triangles are farther apart
+
+float float_above(double value) noexcept {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+
+std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
+}
+
+// Compares as the float does; of 32 bits.
+std::uint64_t ordered(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
+}
+
+float radius_of(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.ball_slabs[node / kBlockWidth].radius[node % kBlockWidth];
+}
+
+}  // namespace
+
+DistanceSearch::DistanceSearch(const TreeView& a, const TreeView& b) noexcept : pair_(a, b, 1) { make_room(); }
+
+bool DistanceSearch::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
+  const bool bound = pair_.bind(a, b);
+  finished_ = true;
+  lower_ = 0;
+  upper_ = std::numeric_limits<double>::infinity();
+  return make_room() && bound;
+}
+
+bool DistanceSearch::make_room() noexcept {
+  const std::size_t deepest = std::size_t{kBlockWidth} * (pair_.first_->tree.triangle_tree_depth +
+                                                          pair_.second_->tree.triangle_tree_depth + 1) +
+                              1;
+  if (!pair_.has_triangles() || deepest <= stack_room_) return true;
+  stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
+  stack_room_ = stack_ ? deepest : 0;
+  return stack_ != nullptr;
+}
+
+void DistanceSearch::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
+  tolerance_ = tolerance;
+  begin(a, b, std::numeric_limits<double>::infinity());
+}
+
+void DistanceSearch::start_within(const Pose& a, const Pose& b, double limit) noexcept {
+  tolerance_ = {0, 0};
+  begin(a, b, limit);
+}
+
+void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept {
+  pair_.start(a, b);
+  lower_ = pair_.lower_bound();
+  work_ = 0;
+  stack_size_ = 0;
+  nearest_ = min_lower_ = std::numeric_limits<double>::infinity();
+  direction_ = {};
+  triangle_first_ = triangle_second_ = kNoTriangle;
+  upper_ = std::numeric_limits<double>::infinity();
+  limit_ = std::numeric_limits<double>::infinity();
+  enough_ = 0;
+  finished_ = !has_room() || pair_.refused() || lower_ > limit;  // or the roots are enough
+  if (finished_) return;
+  pair_.keep(a, b);  // which start() does not where the roots decide
+  finished_ = !pair_.in_range();
+  if (finished_) return;
+  pair_.place();
+  if (limit < std::numeric_limits<double>::infinity()) {
+    // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
+    const double error = pair_.exact_error_, scale = pair_.first_pose_.scale;
+    limit_ = (limit + 2 * error) / scale * (1 + 4 * kRounding);
+    reach_ = float_above(limit_);
+    enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kRounding));
+  }
+  find_cut();
+  stack_[stack_size_++] = {0, 0, 0};
+}
+
+// What is farther need not be looked at.
+void DistanceSearch::find_cut() noexcept {
+  const double absolute = tolerance_.absolute > 0 ? tolerance_.absolute / pair_.first_pose_.scale : 0;
+  cut_ = std::min(limit_, (nearest_ - absolute) / (1 + tolerance_.relative));
+  below_nearest_ = nearest_ <= limit_;
+}
+
+bool DistanceSearch::may_be_nearer(double lower) const noexcept {
+  return below_nearest_ ? lower < cut_ : lower <= cut_;
+}
+
+void DistanceSearch::refine(const Budget& budget) noexcept {
+  if (finished_ || budget.work == 0) return;
+  PairBudget tracker(budget);
+  const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
+  while (stack_size_ > 0 && nearest_ > enough_ && !tracker.exhausted()) {
+    const BallSlabPair pair = stack_[--stack_size_];
+    if (!may_be_nearer(double{pair.lower})) {
+      min_lower_ = std::min(min_lower_, double{pair.lower});
+      continue;
+    }
+    if (limit_ < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
+    const std::uint32_t a = child_of(first, pair.a), b = child_of(second, pair.b);
+    if (a & b & kLeafBit) {
+      compare_leaves(pair);
+      tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
+      continue;
+    }
+    const float radius = radius_of(first, pair.a), other = radius_of(second, pair.b) * pair_.placement_.scale;
+    const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < other);
+    expand(pair, open_second ? b : a, open_second);
+    tracker.spend(kBlockWidth);
+  }
+  if (nearest_ <= enough_) leave_the_rest();
+  finished_ = stack_size_ == 0;
+  work_ += tracker.spent();
+  report();
+}
+
+// Near enough: what has not been looked at still counts for the lower bound.
+void DistanceSearch::leave_the_rest() noexcept {
+  for (std::size_t i = 0; i < stack_size_; ++i) min_lower_ = std::min(min_lower_, double{stack_[i].lower});
+  stack_size_ = 0;
+}
+
+// Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
+bool DistanceSearch::surely_near(const BallSlabPair& pair) noexcept {
+  const double radii = double{radius_of(pair_.first_->tree, pair.a)} +
+                       double{radius_of(pair_.second_->tree, pair.b)} * double{pair_.placement_.scale};
+  if (radii > enough_) return false;
+  const detail::NodeBox p = detail::node_box_at(pair_.first_->tree, pair.a);
+  const detail::NodeBox q = pair_.moved_box(pair.b);
+  const double x = double{q.center[0]} - double{p.center[0]}, y = double{q.center[1]} - double{p.center[1]},
+               z = double{q.center[2]} - double{p.center[2]};
+  const double farthest =
+      std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{pair_.placement_.margin};
+  if (farthest > enough_) return false;
+  nearest_ = std::min(nearest_, farthest);
+  min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
+  return true;
+}
+
+// In place of a pair, those of its children that may be nearer than the best, the nearest last.
+void DistanceSearch::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
+  const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
+  const detail::Placement& placement = pair_.placement_;
+  if (limit_ < double{kCoordinateLimit}) return expand_within(pair, block, second);
+  const float margin = placement.box_margin;
+  detail::BoxGaps gaps;
+  if (second) {
+    detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
+                     placement.scale, margin, gaps);
+  } else {
+    detail::box_gaps(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
+  }
+  const std::size_t begin = stack_size_;
+  for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    // Overlapping boxes keep their depth for the order: the deepest first.
+    const float gap = gaps.gap[lane], lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
+    if (!may_be_nearer(std::max(0.0, double{lower}))) {
+      min_lower_ = std::min(min_lower_, std::max(0.0, double{lower}));
+      continue;
+    }
+    std::size_t at = stack_size_++;
+    for (; at > begin && stack_[at - 1].lower < lower; --at) stack_[at] = stack_[at - 1];
+    const std::uint32_t node = block * kBlockWidth + lane;
+    stack_[at] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+  }
+}
+
+// The same where there is a limit: those that may be within it, the nearest last.
+void DistanceSearch::expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
+  const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
+  const detail::Placement& placement = pair_.placement_;
+  const float margin = placement.box_margin + reach_;
+  detail::BoxGaps gaps;
+  if (second) {
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
+                          placement.scale, margin, gaps);
+  } else {
+    detail::meeting_boxes(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
+  }
+  if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
+  BallSlabPair found[kBlockWidth];
+  detail::LeastLast order;
+  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    const float sum = gaps.gap[lane] + reach_, gap = sum - std::fabs(sum) * kSumRounding;
+    const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
+    const std::uint32_t node = block * kBlockWidth + lane;
+    found[order.count] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+    order.add(lower);
+  }
+  for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = found[i];
+  stack_size_ += order.count;
+}
+
+// The nearest ones first: each found makes fewer of the others worth a test.
+void DistanceSearch::compare_leaves(const BallSlabPair& pair) noexcept {
+  const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
+  const TriangleBlock& lanes = first.triangle_blocks[child_of(first, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second.triangle_blocks[child_of(second, pair.b) & ~kLeafBit];
+  const float radii = radius_of(first, pair.a) + radius_of(second, pair.b) * pair_.placement_.scale;
+  if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
+  detail::TriangleGaps gaps;
+  const float reach = float_above(std::min(cut_, 1e30));
+  detail::triangle_gaps(lanes, rows, pair_.placement_, direction_, reach, gaps);
+  const float least = std::max(0.0f, pair.lower);
+  float left_out = gaps.beyond;
+  std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;  // triangles to be looked at
+  std::size_t count = 0;
+  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
+    for (std::uint32_t near = gaps.near[row]; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      left[count++] = ordered(gaps.lower[row][lane]) << 32 | (kBlockWidth * row + lane);
+    }
+  }
+  for (; count > 0; --count) {  // few are: no need to sort them all
+    auto nearest = std::min_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(count));
+    const auto row = static_cast<std::uint32_t>(*nearest) / kBlockWidth,
+               lane = static_cast<std::uint32_t>(*nearest) % kBlockWidth;
+    const float lower = gaps.lower[row][lane];
+    // The rest of the pair is no nearer than this one and than its boxes.
+    if (nearest_ <= enough_ || !may_be_nearer(double{std::max(lower, least)})) {
+      left_out = std::min(left_out, lower);
+      break;
+    }
+    *nearest = left[count - 1];
+    compare_triangles(lanes, lane, rows, row, lower <= 0);
+  }
+  if (left_out < std::numeric_limits<float>::infinity()) {
+    min_lower_ = std::min(min_lower_, double{std::max(left_out, least)});
+  }
+}
+
+// Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
+void DistanceSearch::find_within(const BallSlabPair& pair, const TriangleBlock& lanes,
+                                 const TriangleBlock& rows) noexcept {
+  detail::Placement near = pair_.placement_;
+  near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
+  const detail::NodeBox lane_box = detail::node_box_at(pair_.first_->tree, pair.a);
+  const detail::NodeBox row_box = pair_.moved_box(pair.b);
+  min_lower_ = std::min(min_lower_, limit_);
+  struct Leaves {
+    DistanceSearch& self;
+    const TriangleBlock &lanes, &rows;
+  } context = {*this, lanes, rows};
+  const auto near_enough = [](void* of, std::uint32_t row, std::uint32_t left) {
+    const auto& [self, lane_block, row_block] = *static_cast<Leaves*>(of);
+    for (; left != 0; left &= left - 1) {
+      self.compare_triangles(lane_block, static_cast<std::uint32_t>(std::countr_zero(left)), row_block, row, true);
+      if (self.nearest_ <= self.enough_) return true;
+    }
+    return false;
+  };
+  if (detail::visit_candidates({lanes, rows, lane_box, row_box}, near, near_enough, &context)) {
+    min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
+  }
+}
+
+void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
+                                       std::uint32_t row, bool may_meet) noexcept {
+  const detail::TrianglePoints a = detail::points_of(lanes, lane),
+                               b = detail::moved_points_of(rows, row, pair_.relative_);
+  detail::Vec3 common{};
+  const bool meet = may_meet && detail::triangles_intersect(a, b, &common);
+  const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
+  const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));
+  min_lower_ = std::min(min_lower_, std::max(0.0, nearest.distance * (1 - kRounding) - error));
+  if (nearest.distance >= nearest_) return;
+  nearest_ = nearest.distance;
+  find_cut();
+  on_first_ = nearest.on_a, on_second_ = nearest.on_b;
+  triangle_first_ = lanes.triangle[lane], triangle_second_ = rows.triangle[row];
+  if (nearest_ == 0) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    direction_[i] = static_cast<float>((on_second_[i] - on_first_[i]) / nearest_);
+  }
+}
+
+// Bounds never get worse, whatever rounding does.
+void DistanceSearch::report() noexcept {
+  double least = std::min(min_lower_, nearest_);
+  for (std::size_t i = 0; i < stack_size_; ++i) least = std::min(least, double{stack_[i].lower});
+  const double scale = pair_.first_pose_.scale, error = pair_.exact_error_;
+  if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kRounding) - error);
+  upper_ = std::min(upper_, nearest_ * scale * (1 + kRounding) + error);
+  lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose ball slabs do not hold their triangles
+}
+
+DistanceSearch::Points DistanceSearch::points() const noexcept {
+  Points result;
+  if (triangle_first_ == kNoTriangle) return result;
+  const auto world = [this](std::array<double, 3> point) {
+    for (std::size_t i = 0; i < 3; ++i) point[i] += pair_.first_->tree.origin[i];
+    return transform(pair_.first_pose_, point);
+  };
+  result = {world(on_first_), world(on_second_), triangle_first_, triangle_second_};
+  if (pair_.exchanged_) {
+    std::swap(result.on_a, result.on_b);
+    std::swap(result.triangle_a, result.triangle_b);
+  }
+  return result;
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include "collision/pair_query.h"
+#include "orchard/runtime/distance.h"
+
+namespace orchard::runtime {
+
+// A DistanceQuery as the other queries of a pair see it: its public members are DistanceQuery's, and say the same.
+class DistanceSearch {
+ public:
+  using Tolerance = DistanceQuery::Tolerance;
+
+  DistanceSearch(const TreeView& a, const TreeView& b) noexcept;
+  DistanceSearch() noexcept : pair_(0) {}
+  bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
+
+  void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
+  void start(const Pose& a, const Pose& b) noexcept { start(a, b, Tolerance{}); }
+  void start_within(const Pose& a, const Pose& b, double limit) noexcept;
+  void refine(const Budget& budget = {}) noexcept;
+
+  bool finished() const noexcept { return finished_; }
+  double lower() const noexcept { return lower_; }
+  double upper() const noexcept { return upper_; }
+  std::uint64_t work() const noexcept { return work_; }
+  using Points = DistanceQuery::Points;
+  Points points() const noexcept;
+
+ private:
+  struct BallSlabPair {
+    float lower;
+    std::uint32_t a, b;
+  };
+
+  bool make_room() noexcept;
+  bool has_room() const noexcept { return pair_.has_triangles() && stack_; }
+  void begin(const Pose& a, const Pose& b, double limit) noexcept;
+  void leave_the_rest() noexcept;
+  bool surely_near(const BallSlabPair& pair) noexcept;
+  bool may_be_nearer(double lower) const noexcept;
+  void expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
+  void expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
+  void compare_leaves(const BallSlabPair& pair) noexcept;
+  void find_within(const BallSlabPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
+  void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
+                         bool may_meet) noexcept;
+  void find_cut() noexcept;
+  void report() noexcept;
+
+  PairQuery pair_;  // the bodies' order and placement
+  std::unique_ptr<BallSlabPair[]> stack_;
+  std::size_t stack_size_ = 0;
+  std::size_t stack_room_ = 0;
+  Tolerance tolerance_;
+  double limit_ = std::numeric_limits<double>::infinity();  // what is farther is left out
+  float reach_ = std::numeric_limits<float>::infinity();    // it, rounded up
+  double cut_ = std::numeric_limits<double>::infinity();    // from nearest_ and limit_, with the tolerance
+  bool below_nearest_ = false;                              // what is as far is not looked at, either
+  double enough_ = 0;                                       // so near: nothing nearer is looked for
+  // In the first tree's units, of the stored triangles.
+  double nearest_ = std::numeric_limits<double>::infinity();    // the least distance found
+  double min_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
+  std::array<double, 3> on_first_{}, on_second_{};
+  std::array<float, 3> direction_{};  // unit, from the nearest point of the first one to that of the second one
+  std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
+  double lower_ = 0, upper_ = std::numeric_limits<double>::infinity();
+  std::uint64_t work_ = 0;
+  bool finished_ = true;
+};
+
+// The search that a DistanceQuery, or a workspace's, is a cover of.
+DistanceSearch& search_of(DistanceQuery& query) noexcept;
+
+}  // namespace orchard::runtime

@@ -1,0 +1,87 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "collision/kernels/placement.h"
+#include "orchard/runtime/packed_tree.h"
+#include "simd/vector_support.h"
+
+// Eight numbers, and eight vectors, at a time: what the inner loops over ball slabs and triangles are made of. `Kind`
+// is PlainFloats or VectorFloats; or OneFloat, for one of the eight.
+namespace orchard::runtime::detail {
+
+// What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.
+#ifdef ORCHARD_VECTORS
+using Widest = VectorFloats;
+using Base = FourFloats;
+#else
+using Widest = PlainFloats;
+using Base = PlainFloats;
+#endif
+
+inline constexpr float kMinDistance = 1e-18f;  // keeps a quotient finite; far below every margin
+
+template <typename Kind>
+struct Eight {
+  using Floats = typename Kind::Floats;
+  using Mask = typename Kind::Mask;
+  struct Vectors {
+    Floats x, y, z;
+  };
+
+  static constexpr std::size_t kCount = sizeof(Floats) / sizeof(float);
+  static constexpr std::uint32_t kAll = (1u << kCount) - 1;
+
+  // All of eight, or the one of them that is asked for.
+  ORCHARD_INLINE static Floats at(const std::array<float, kBlockWidth>& from, std::uint32_t lane) noexcept {
+    if constexpr (kCount == 1) {
+      return from[lane];
+    } else {
+      return load<Floats>(from);
+    }
+  }
+  ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
+  // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
+  // number, both give the second one.
+  ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
+  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(b < a, a, b); }
+  ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
+  ORCHARD_INLINE static Floats dot(const Vectors& a, const Vectors& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  ORCHARD_INLINE static Vectors minus(const Vectors& a, const Vectors& b) noexcept {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  ORCHARD_INLINE static Vectors cross(const Vectors& a, const Vectors& b) noexcept {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return size(a.x) + size(a.y) + size(a.z); }
+  ORCHARD_INLINE static Vectors times(const Vectors& v, const Floats& s) noexcept {
+    return {v.x * s, v.y * s, v.z * s};
+  }
+  ORCHARD_INLINE static Vectors turn(const std::array<float, 9>& r, const Vectors& v) noexcept {
+    return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z, all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
+            all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
+  }
+  ORCHARD_INLINE static Vectors move(const Placement& p, const Vectors& v) noexcept {
+    const Vectors turned = turn(p.rotation, v);
+    return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
+  }
+  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k, std::uint32_t lane = 0) noexcept {
+    return {at(block.corner[k][0], lane), at(block.corner[k][1], lane), at(block.corner[k][2], lane)};
+  }
+};
+
+// Of all eight.
+template <typename Kind>
+ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
+  if constexpr (requires { Kind::least(v); }) return Kind::least(v);
+  std::array<float, kBlockWidth> lanes;
+  store(v, lanes);
+  for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {
+    for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
+  }
+  return lanes[0];
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,253 @@
+#include "collision/kernels/ray_block.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "collision/kernels/eight.h"
+#include "simd/machine.h"
+
+// Rounding, u = 2^-24. Let D be the size of the tree's coordinates and of s. Ball slabs: the distance of a centre from
+// the line is the length of a cross product of differences below 2 D and of a unit vector, and a height over the middle
+// plane is such a dot product: off by less than 16 u D, which FloatRay::margin covers besides the line's own error.
+// Half the length of what a ball cuts off the line is the root of a difference of squares, and kGrazing of the greater
+// of them covers its rounding. Triangles: corners relative to a point of the line nearby are off by at most the margin,
+// and longer than L nowhere. A product of three such vectors, one of them of length 1, is off by less than 4 L margin +
+// 16 u L^2. Sheared onto a plane, by slopes of at most 1, their two components are at most 2 L and off by less than two
+// margins and 4 u L, so a product of two of them by less than 4 * 2 L * (2 margin + 4 u L) + 3 u * 8 L^2 < 16 L margin
+// + 64 u L^2.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr float kGrazing = 0x1p-20f;
+constexpr float kProductError = 0x1p-20f;
+constexpr float kShearedError = 0x1p-18f;
+constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
+
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin,
+                                             float end, RayEntries& entries) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
+  const Vectors n = {load<Floats>(ball_slabs.nx), load<Floats>(ball_slabs.ny), load<Floats>(ball_slabs.nz)};
+  const Vectors to = E::minus({load<Floats>(ball_slabs.x), load<Floats>(ball_slabs.y), load<Floats>(ball_slabs.z)},
+                              {E::all(ray.origin[0]), E::all(ray.origin[1]), E::all(ray.origin[2])});
+  const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(ball_slabs.radius);
+  const Floats r = radius + margin, h = load<Floats>(ball_slabs.height) + margin;
+  const Vectors across = E::cross(to, d);
+  const Floats square = r * r, apart = E::dot(across, across), inside = square - apart;
+  const Floats middle = E::dot(to, d);
+  const Floats half = Kind::root(E::larger(inside, zero) + square * E::all(kGrazing)) + margin;
+  // Between the planes: |s (n . d) - n . to| <= h.
+  const Floats slope = E::dot(n, d), height = E::dot(n, to);
+  const Floats steep = E::larger(E::size(slope), E::all(kMinSlope));
+  const Floats rise = Kind::choose(slope < zero, -height, height);
+  const Floats low = (rise - h) / steep, high = (rise + h) / steep;
+  // An infinite `low` makes no number of the first: larger() gives the second one then.
+  const Floats enter = E::larger(E::larger(low - E::size(low) * E::all(kGrazing), middle - half), E::all(begin));
+  const Floats leave = E::smaller(middle + half, high + E::size(high) * E::all(kGrazing));
+  store(enter, entries);
+  // Written so that what is not a number, from infinite quotients, counts as met.
+  const auto missed = (inside < zero) | (leave < enter) | (E::all(end) < enter);
+  return Kind::bits(zero <= radius) & ~Kind::bits(missed);
+}
+
+ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
+  return used;
+}
+
+// From the products of each two neighbouring corners, off by less than `room`: on which side of the edges the line is.
+template <typename Kind>
+ORCHARD_INLINE RayLeaf told_apart(const TriangleBlock& block, const typename Kind::Floats& p,
+                                  const typename Kind::Floats& q, const typename Kind::Floats& r,
+                                  const typename Kind::Floats& room) noexcept {
+  using E = Eight<Kind>;
+  const auto least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
+  const std::uint32_t some = E::kAll & ~Kind::bits((least < -room) & (room < most));
+  if (some == 0) return {&block, 0, 0};
+  return {&block, some & used_lanes(block), Kind::bits((room < least) | (most < -room))};
+}
+
+template <typename Kind>
+ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
+  // From a point of the line near the first triangle, so that products are as small as the leaf.
+  float at = 0;
+  for (std::size_t i = 0; i < 3; ++i) at += (block.corner[0][i][0] - ray.origin[i]) * ray.direction[i];
+  const Vectors from = {E::all(ray.origin[0] + at * ray.direction[0]), E::all(ray.origin[1] + at * ray.direction[1]),
+                        E::all(ray.origin[2] + at * ray.direction[2])};
+  const Vectors a = E::minus(E::corner(block, 0), from), b = E::minus(E::corner(block, 1), from),
+                c = E::minus(E::corner(block, 2), from);
+  const Floats longest = E::larger(E::larger(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
+  const Floats room = longest * (E::all(4 * ray.margin) + longest * E::all(kProductError)) + E::all(kMinRoom);
+  const Floats p = E::dot(d, E::cross(a, b)), q = E::dot(d, E::cross(b, c)), r = E::dot(d, E::cross(c, a));
+  return told_apart<Kind>(block, p, q, r, room);
+}
+
+// Leaves the smaller one where it is and returns the other, without a branch.
+ORCHARD_INLINE std::uint64_t put_in_order(std::uint64_t& least, std::uint64_t other) noexcept {
+  const std::uint64_t change = (least ^ other) & (0 - std::uint64_t{other < least});
+  least ^= change;
+  return other ^ change;
+}
+
+// `Nodes` says which nodes of a block are met, and where, and which triangles of a leaf.
+template <typename Nodes>
+ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
+  const float end = walk.end;
+  std::uint64_t* const bottom = walk.stack.data();
+  std::uint64_t* top = bottom + walk.size;
+  RayEntries entries;
+  while (top > bottom) {
+    std::uint64_t next = *--top;
+    if (RayWalk::enter_of(next) > end) continue;
+    std::uint32_t child = RayWalk::child_of(next);
+    while ((child & kLeafBit) == 0) {
+      const auto& block = nodes.blocks[child];
+      std::uint32_t left = nodes.met(block, end, entries);
+      if (left == 0) break;
+      const auto at = [&](std::uint32_t bits) ORCHARD_INLINE_LAMBDA {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits)) % kBlockWidth;
+        return RayWalk::entry(entries[lane], block.child[lane]);
+      };
+      // The nearest one goes on, the others wait. No branch tells one from two, which nobody predicts.
+      next = at(left);
+      left &= left - 1;
+      const std::uint64_t none = 0 - std::uint64_t{left == 0};
+      *top = put_in_order(next, at(left) | none);
+      top += left != 0;
+      for (left &= left - 1; left != 0; left &= left - 1) *top++ = put_in_order(next, at(left));
+      child = RayWalk::child_of(next);
+    }
+    if ((child & kLeafBit) == 0) continue;
+    const RayLeaf leaf = nodes.triangles(leaves[child & ~kLeafBit], next);
+    if (leaf.some == 0) continue;
+    walk.size = static_cast<std::size_t>(top - bottom);
+    return leaf;
+  }
+  walk.size = 0;
+  return {};
+}
+
+template <typename Kind>
+struct BallSlabs {
+  const FloatRay& ray;
+  float begin;
+  std::span<const BallSlabBlock> blocks;
+  ORCHARD_INLINE std::uint32_t met(const BallSlabBlock& block, float end, RayEntries& entries) const noexcept {
+    return find_ball_slabs<Kind>(ray, block, begin, end, entries);
+  }
+  ORCHARD_INLINE RayLeaf triangles(const TriangleBlock& block, std::uint64_t) const noexcept {
+    return find_triangles<Kind>(ray, block);
+  }
+};
+
+// The ray against boxes: where it crosses their planes. The near ones are looked at from `margin` further on, the far
+// ones from `margin` further back, which covers all rounding: what is in doubt is as much as the planes' own places.
+// Triangles are sheared along the ray onto a plane across the axis that it is steepest to.
+template <typename Kind>
+struct Boxes {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  const BoxTree& tree;
+  const BoxRay& own;
+  const FloatRay& ray;
+  std::span<const BoxBlock> blocks;
+  Floats near_from[3], far_from[3], inverse[3], begin;
+
+  ORCHARD_INLINE Boxes(const BoxTree& of, const BoxRay& box_ray, const RayWalk& walk) noexcept
+      : tree(of), own(box_ray), ray(walk.ray), blocks(of.boxes), begin(E::all(walk.begin)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      near_from[i] = E::all(own.near_from[i]), far_from[i] = E::all(own.far_from[i]);
+      inverse[i] = E::all(own.inverse[i]);
+    }
+  }
+
+  ORCHARD_INLINE static Floats load_at(const std::byte* planes) noexcept {
+    Floats result;
+    std::memcpy(&result, planes, sizeof result);
+    return result;
+  }
+
+  ORCHARD_INLINE std::uint32_t met(const BoxBlock& block, float end, RayEntries& entries) const noexcept {
+    const auto* const bytes = reinterpret_cast<const std::byte*>(&block);
+    const auto at = [&](std::size_t side, const Floats& from, std::size_t i)
+                        ORCHARD_INLINE_LAMBDA { return (load_at(bytes + side) - from) * inverse[i]; };
+    const Floats enter =
+        E::larger(E::larger(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
+                  E::larger(at(own.near_side[2], near_from[2], 2), begin));
+    const Floats leave =
+        E::smaller(E::smaller(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
+                   E::smaller(at(own.far_side[2], far_from[2], 2), E::all(end)));
+    store(enter, entries);
+    return Kind::bits(enter <= leave);
+  }
+
+  // From where the ray enters the leaf's box, or from no more than the margin beside it: no corner is farther than the
+  // box's diagonal and some margins.
+  ORCHARD_INLINE RayLeaf triangles(const TriangleBlock& block, std::uint64_t leaf) const noexcept {
+    const float reach = tree.sizes[RayWalk::child_of(leaf) & ~kLeafBit] + 8 * ray.margin;
+    const Floats room = E::all(reach * (16 * ray.margin + reach * kShearedError) + kMinRoom);
+    Floats x[3], y[3];
+    const float enter = RayWalk::enter_of(leaf);
+    const auto from = [&](std::size_t i)
+                          ORCHARD_INLINE_LAMBDA { return E::all(ray.origin[i] + enter * ray.direction[i]); };
+    const auto [u, v, w] = own.axis;
+    const Floats from_x = from(u), from_y = from(v), from_z = from(w);
+    const Floats shear_x = E::all(own.shear[0]), shear_y = E::all(own.shear[1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Floats z = load<Floats>(block.corner[k][w]) - from_z;
+      x[k] = (load<Floats>(block.corner[k][u]) - from_x) - shear_x * z;
+      y[k] = (load<Floats>(block.corner[k][v]) - from_y) - shear_y * z;
+    }
+    const Floats p = x[0] * y[1] - y[0] * x[1], q = x[1] * y[2] - y[1] * x[2], r = x[2] * y[0] - y[2] * x[0];
+    return told_apart<Kind>(block, p, q, r, room);
+  }
+};
+
+template <typename Kind>
+ORCHARD_INLINE RayLeaf find_leaf_of_tree(const TreeView& tree, RayWalk& walk) noexcept {
+  return find_leaf(BallSlabs<Kind>{walk.ray, walk.begin, tree.ball_slabs}, tree.triangle_blocks, walk);
+}
+
+template <typename Kind>
+ORCHARD_INLINE RayLeaf find_leaf_of_boxes(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept {
+  return find_leaf(Boxes<Kind>(tree, ray, walk), tree.leaves, walk);
+}
+
+}  // namespace
+
+RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept {
+  return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>>::call(tree, walk);
+}
+
+RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept {
+  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(tree, ray, walk);
+}
+
+std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
+                                    RayEntries& entries) noexcept {
+  return find_ball_slabs<PlainFloats>(ray, ball_slabs, begin, end, entries);
+}
+
+RayLeaf ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  return find_triangles<PlainFloats>(ray, block);
+}
+
+std::uint32_t ray_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
+                             RayEntries& entries) noexcept {
+  return PerMachine<find_ball_slabs<Widest>, find_ball_slabs<Base>>::call(ray, ball_slabs, begin, end, entries);
+}
+
+RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  return PerMachine<find_triangles<Widest>, find_triangles<Base>>::call(ray, block);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,173 @@
+#pragma once
+#include "collision/kernels/ball_slab_pair.h"
+#include "collision/kernels/eight.h"
+#include "collision/kernels/node_box.h"
+
+// What the inner loops over triangles (ball_slab_block.cpp, ball_slab_block_plain.cpp) are made of.
+//
+// Rounding. Ball slabs: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
+// so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
+// are more than the margin apart are apart. A projection a . (p - q) of points placed to within sigma is computed to
+// within |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, with |a|_1 the sum of |components|.
+// Such projections are of the third degree, or of the fourth: coordinates of 1e13 would overflow and those of 1e-13
+// underflow. So triangles are first multiplied by a power of two (Placement::unit) that makes every coordinate at most
+// 1 and changes no digit. What then underflows, or is dropped by a flush-to-zero mode, is at most 2^-126 an operation:
+// below 2^-120 a projection, which kMinRoom covers.
+namespace orchard::runtime::detail {
+
+inline constexpr float kMinRoom = 0x1p-110f;  // to add to the room along an axis, in units of Placement::whole
+
+template <typename Kind>
+struct Extent {
+  typename Kind::Floats low, high;
+};
+
+template <typename Kind>
+ORCHARD_INLINE Extent<Kind> extent(const typename Kind::Floats& a, const typename Kind::Floats& b,
+                                   const typename Kind::Floats& c) noexcept {
+  using E = Eight<Kind>;
+  return {E::smaller(E::smaller(a, b), c), E::larger(E::larger(a, b), c)};
+}
+
+template <typename Kind>
+struct Box {
+  typename Eight<Kind>::Vectors low, high;
+};
+
+// Around eight triangles each, grown by `margin`.
+template <typename Kind>
+ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3],
+                                const typename Kind::Floats& margin) noexcept {
+  const Extent<Kind> x = extent<Kind>(corner[0].x, corner[1].x, corner[2].x),
+                     y = extent<Kind>(corner[0].y, corner[1].y, corner[2].y),
+                     z = extent<Kind>(corner[0].z, corner[1].z, corner[2].z);
+  return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
+}
+
+// Triangles that do not reach between two planes, as a mask.
+template <typename Kind>
+ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3], float nx, float ny, float nz,
+                                  float height, const typename Kind::Floats& margin) noexcept {
+  using E = Eight<Kind>;
+  const typename E::Vectors n = {E::all(nx), E::all(ny), E::all(nz)};
+  const Extent<Kind> e = extent<Kind>(E::dot(n, from[0]), E::dot(n, from[1]), E::dot(n, from[2]));
+  const auto limit = E::all(height) + margin;
+  return (limit < e.low) | (e.high < -limit);
+}
+
+// Triangles that do not reach into a box, as far as its planes tell, as a mask.
+template <typename Kind>
+ORCHARD_INLINE auto beyond_box(const typename Eight<Kind>::Vectors (&corner)[3], const NodeBox& b,
+                               const typename Kind::Floats& margin) noexcept {
+  using E = Eight<Kind>;
+  const typename E::Vectors center = {E::all(b.center[0]), E::all(b.center[1]), E::all(b.center[2])};
+  const typename E::Vectors from[3] = {E::minus(corner[0], center), E::minus(corner[1], center),
+                                       E::minus(corner[2], center)};
+  const std::array<float, 3> l = third_normal(b);
+  return beyond_planes<Kind>(from, b.n[0], b.n[1], b.n[2], b.height, margin) |
+         beyond_planes<Kind>(from, b.m[0], b.m[1], b.m[2], b.width, margin) |
+         beyond_planes<Kind>(from, l[0], l[1], l[2], b.length, margin);
+}
+
+// The eight lanes' triangles, and their planes.
+template <typename Kind>
+struct Lanes {
+  using Vectors = typename Eight<Kind>::Vectors;
+  Vectors corner[3], edge[3], normal;
+  typename Kind::Floats limit;  // own corners' heights over the plane
+};
+
+// Those of the lanes in `left` that neither the plane of the triangle p, with its own corners' heights `limit`, nor
+// their own keeps apart from it, nor any product of two edges.
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& lanes,
+                                       const typename Eight<Kind>::Vectors (&p)[3],
+                                       const typename Eight<Kind>::Vectors& normal, const typename Kind::Floats& limit,
+                                       const typename Kind::Floats& margin) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors from[3] = {E::minus(lanes.corner[0], p[0]), E::minus(lanes.corner[1], p[0]),
+                           E::minus(lanes.corner[2], p[0])};
+  const Extent<Kind> over_row = extent<Kind>(E::dot(normal, from[0]), E::dot(normal, from[1]), E::dot(normal, from[2]));
+  left &= ~Kind::bits((limit < over_row.low) | (over_row.high < -limit));
+  if (left == 0) return 0;
+  const Extent<Kind> over_lane =
+      extent<Kind>(-E::dot(lanes.normal, from[0]), E::dot(lanes.normal, E::minus(p[1], lanes.corner[0])),
+                   E::dot(lanes.normal, E::minus(p[2], lanes.corner[0])));
+  left &= ~Kind::bits((lanes.limit < over_lane.low) | (over_lane.high < -lanes.limit));
+  if (left == 0) return 0;
+  const Vectors edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
+  const Floats zero = E::all(0.0f), least = E::all(kMinRoom);
+  for (std::size_t i = 0; i < 3 && left != 0; ++i) {
+    for (std::size_t j = 0; j < 3 && (E::kCount > 1 || left != 0); ++j) {
+      const Vectors axis = E::cross(edges[i], lanes.edge[j]);
+      const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
+      const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));
+      const Extent<Kind> of_lane = extent<Kind>(E::dot(axis, from[0]), E::dot(axis, from[1]), E::dot(axis, from[2]));
+      const Floats room = E::one_norm(axis) * margin + least;
+      left &= ~Kind::bits((of_row.high + room < of_lane.low) | (of_lane.high + room < of_row.low));
+    }
+  }
+  return left;
+}
+
+// Own corners' heights over the plane through the first one, at most: 0 but for rounding.
+template <typename Kind>
+ORCHARD_INLINE typename Kind::Floats own_height(const typename Eight<Kind>::Vectors& normal,
+                                                const typename Eight<Kind>::Vectors (&edge)[2],
+                                                const typename Kind::Floats& margin) noexcept {
+  using E = Eight<Kind>;
+  return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) +
+         (E::one_norm(normal) * margin + E::all(kMinRoom));
+}
+
+template <typename Kind>
+ORCHARD_INLINE typename Eight<Kind>::Vectors normalised(const typename Eight<Kind>::Vectors& v) noexcept {
+  using E = Eight<Kind>;
+  const typename E::Floats size = Kind::root(E::dot(v, v)) + E::all(kMinDistance);
+  return {v.x / size, v.y / size, v.z / size};
+}
+
+template <typename Kind>
+ORCHARD_INLINE typename Eight<Kind>::Vectors normal_of(const typename Eight<Kind>::Vectors (&t)[3]) noexcept {
+  using E = Eight<Kind>;
+  return normalised<Kind>(E::cross(E::minus(t[1], t[0]), E::minus(t[2], t[0])));
+}
+
+template <typename Kind>
+ORCHARD_INLINE typename Eight<Kind>::Vectors middle_of(const typename Eight<Kind>::Vectors (&t)[3]) noexcept {
+  const typename Kind::Floats third = Eight<Kind>::all(1.0f / 3);
+  return {(t[0].x + t[1].x + t[2].x) * third, (t[0].y + t[1].y + t[2].y) * third, (t[0].z + t[1].z + t[2].z) * third};
+}
+
+template <typename Kind>
+ORCHARD_INLINE Extent<Kind> extent_along(const typename Eight<Kind>::Vectors& axis,
+                                         const typename Eight<Kind>::Vectors (&t)[3]) noexcept {
+  using E = Eight<Kind>;
+  return extent<Kind>(E::dot(axis, t[0]), E::dot(axis, t[1]), E::dot(axis, t[2]));
+}
+
+// Between triangles, along the axes of a box.
+template <typename Kind>
+ORCHARD_INLINE typename Kind::Floats gap_between(const Box<Kind>& a, const typename Eight<Kind>::Vectors& low,
+                                                 const typename Eight<Kind>::Vectors& high) noexcept {
+  using E = Eight<Kind>;
+  return E::larger(
+      E::larger(E::larger(a.low.x - high.x, low.x - a.high.x), E::larger(a.low.y - high.y, low.y - a.high.y)),
+      E::larger(a.low.z - high.z, low.z - a.high.z));
+}
+
+// And along any axis: of the triangles `lane` from the triangle p.
+template <typename Kind>
+ORCHARD_INLINE typename Kind::Floats gap_along(const typename Eight<Kind>::Vectors& axis,
+                                               const typename Eight<Kind>::Vectors (&lane)[3],
+                                               const typename Eight<Kind>::Vectors (&p)[3]) noexcept {
+  using E = Eight<Kind>;
+  const auto project = [&](const auto& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
+  const Extent<Kind> l = extent<Kind>(project(lane[0]), project(lane[1]), project(lane[2]));
+  const Extent<Kind> r = extent<Kind>(E::all(0.0f), project(p[1]), project(p[2]));
+  return E::larger(l.low - r.high, r.low - l.high);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "collision/ray_walk.h"
+#include "collision/segment_meets.h"
+#include "math/exact_sign.h"
+#include "orchard/runtime/ray_index.h"
+#include "orchard/runtime/shape_query.h"
+
+namespace orchard::runtime {
+
+using namespace detail;
+
+struct detail::RayIndexAccess {
+  static Frame frame(const RayIndex& of, const Pose& pose) noexcept { return {of.origin_, of.bounding_radius_, pose}; }
+  static Ball ball(const RayIndex& of) noexcept { return {of.middle_, of.radius_}; }
+  static BoxTree tree(const RayIndex& of) noexcept { return {of.boxes_, of.leaves_, of.sizes_}; }
+};
+
+namespace {
+
+// Up to where a ray goes.
+struct RayEnd {
+  const Direction& direction;
+  double longest;
+
+  // Whether a ray that meets the triangle's plane, or the triangle, after `at` steps gets as far: as it is told how
+  // far that is, or exactly.
+  bool reaches(const RayStart& ray, const TrianglePoints& t, double at) const noexcept {
+    constexpr double kExact = 1 - 0x1p-48, kPlace = 0x1p-38;  // kPlace: of the whole way, what a place may be off by
+    if (at <= ray.end * kExact || direction.along(at) <= longest) return true;
+    if (at > ray.end + kPlace * (ray.steps_to(ray.to) + one_norm(ray.from) * ray.slowness)) return false;
+    const Vec3 last = settled(along(ray.from, ray.step, ray.end));
+    const int begins = orientation(t[0], t[1], t[2], ray.from), ends = orientation(t[0], t[1], t[2], last);
+    Vec3 common{};
+    return begins == 0 && ends == 0 ? segment_meets(ray.from, last, t, common) : begins * ends <= 0;
+  }
+};
+
+// The nearest triangle so far.
+struct Nearest {
+  double steps = std::numeric_limits<double>::infinity();
+  Vec3 point{};
+  std::uint32_t triangle = kNoTriangle;
+
+  // Whether the triangle is nearer; of equally near ones the first in the tree's own order. `sure`: that the line runs
+  // through it.
+  bool offer(const RayStart& ray, const RayEnd& limit, const TrianglePoints& t, std::uint32_t number,
+             bool sure) noexcept {
+    Vec3 common{};
+    if (!(sure ? segment_passes(ray.from, ray.to, t, common) : segment_meets(ray.from, ray.to, t, common)))
+      return false;
+    const double at = more_of(ray.steps_to(common), 0);
+    if (at > steps || (at == steps && number > triangle) || !limit.reaches(ray, t, at)) return false;
+    steps = at, point = common, triangle = number;
+    return true;
+  }
+};
+
+// The triangles of a tree, as Caster goes through them.
+struct TreeTriangles {
+  const TreeView& tree;
+
+  Frame frame(const Pose& pose) const noexcept { return {tree, pose}; }
+  Ball ball() const noexcept { return ball_around(tree); }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    walk_ray(tree, line, visit);
+  }
+  template <typename Visit>
+  void near(const Segment& segment, double rounding, Visit&& visit) const noexcept {
+    walk(
+        tree, segment, rounding, [] { return 0.0; }, visit);
+  }
+};
+
+struct IndexTriangles {
+  const RayIndex& index;
+
+  Frame frame(const Pose& pose) const noexcept { return RayIndexAccess::frame(index, pose); }
+  Ball ball() const noexcept { return RayIndexAccess::ball(index); }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    const BoxTree tree = RayIndexAccess::tree(index);
+    const BoxRay ray(line.ray);
+    RayWalk walk(line.ray, line.begin, line.end, 0);
+    for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
+      walk.end = visit(leaf, walk.end);
+    }
+  }
+  template <typename Visit>
+  void near(const Segment&, double, Visit&& visit) const noexcept {
+    for (const TriangleBlock& block : RayIndexAccess::tree(index).leaves) visit(block);
+  }
+};
+
+// The first triangle along rays in one body's frame.
+template <typename Triangles>
+class Caster {
+ public:
+  Caster(const Triangles& triangles, const Pose& pose) noexcept
+      : triangles_(triangles), frame_(triangles.frame(pose)), ball_(triangles.ball()) {}
+
+  std::optional<RayHit> cast(const Ray& ray) const noexcept {
+    const Direction direction(ray.direction, frame_.pose.scale);
+    const double steps = direction.steps(ray.longest);
+    return cast(ray, direction, start_of(frame_, ball_, ray.origin, direction.way, steps));
+  }
+
+  // What is before the walk for several rays at once.
+  void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const noexcept {
+    RayStarts starts;
+    std::size_t first = 0;
+    for (; first + RayStarts::kCount <= rays.size(); first += RayStarts::kCount) {
+      for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
+        const Ray& ray = rays[first + i];
+        const Direction direction(ray.direction, frame_.pose.scale);
+        for (std::size_t k = 0; k < 3; ++k) {
+          starts.origin[k][i] = ray.origin[k], starts.way[k][i] = direction.way[k];
+        }
+        starts.steps[i] = direction.steps(ray.longest), starts.power[i] = direction.power;
+      }
+      find_starts(frame_, ball_, starts);
+      for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
+        const Direction direction(frame_.pose.scale, starts.power[i]);
+        hits[first + i] = cast(rays[first + i], direction, starts.at_lane(i));
+      }
+    }
+    for (; first < rays.size(); ++first) hits[first] = cast(rays[first]);
+  }
+
+ private:
+  std::optional<RayHit> cast(const Ray& ray, const Direction& direction, const RayStart& start) const noexcept {
+    if (std::isnan(ray.longest) || !within_reach(start.from) || !std::isfinite(start.speed)) {
+      return RayHit{0, ray.origin, kNoTriangle};
+    }
+    if (ray.longest < 0 || start.line.misses) return std::nullopt;
+    const RayEnd limit{direction, ray.longest};
+    const Nearest nearest = start.line.in_float ? nearest_along(start, limit) : nearest_of_all(start, limit);
+    if (nearest.triangle == kNoTriangle) return std::nullopt;
+    return RayHit{less_of(direction.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
+  }
+
+  Nearest nearest_along(const RayStart& ray, const RayEnd& limit) const noexcept {
+    Nearest nearest;
+    triangles_.along(ray.line, [&](const RayLeaf& leaf, float end) {
+      for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+        const bool sure = (leaf.sure >> lane & 1) != 0;
+        if (!nearest.offer(ray, limit, points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
+        const double rounding = kRounding * (one_norm(ray.from) + frame_.bounding_radius);
+        const double s = nearest.steps * ray.speed;
+        const float behind = static_cast<float>(s + rounding - ray.line.at) + ray.line.ray.margin;
+        end = behind < end ? behind : end;
+      }
+      return end;
+    });
+    return nearest;
+  }
+
+  Nearest nearest_of_all(const RayStart& ray, const RayEnd& limit) const noexcept {  // where floats do not reach
+    Nearest nearest;
+    const Segment whole(ray.from, ray.to);
+    triangles_.near(whole, frame_.rounding(whole), [&](const TriangleBlock& block) {
+      return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
+        nearest.offer(ray, limit, t, triangle, false);
+        return true;
+      });
+    });
+    return nearest;
+  }
+
+  Triangles triangles_;
+  Frame frame_;
+  Ball ball_;
+};
+
+template <typename Triangles>
+std::optional<RayHit> cast_one(const Triangles& triangles, const Pose& pose, const Ray& ray) noexcept {
+  if (!is_rigid(pose)) return RayHit{0, ray.origin, kNoTriangle};
+  return Caster<Triangles>(triangles, pose).cast(ray);
+}
+
+template <typename Triangles>
+void cast_all(const Triangles& triangles, const Pose& pose, std::span<const Ray> rays,
+              std::span<std::optional<RayHit>> hits) noexcept {
+  if (!is_rigid(pose)) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = RayHit{0, rays[i].origin, kNoTriangle};
+    return;
+  }
+  Caster<Triangles>(triangles, pose).cast(rays, hits);
+}
+
+}  // namespace
+
+std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
+                               const std::array<double, 3>& direction, double longest) noexcept {
+  if (tree.ball_slabs.empty()) return std::nullopt;
+  return cast_one(TreeTriangles{tree}, pose, {origin, direction, longest});
+}
+
+void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
+               std::span<std::optional<RayHit>> hits) noexcept {
+  if (tree.ball_slabs.empty()) {
+    std::fill_n(hits.begin(), rays.size(), std::nullopt);
+    return;
+  }
+  cast_all(TreeTriangles{tree}, pose, rays, hits);
+}
+
+std::optional<RayHit> cast_ray(const RayIndex& index, const Pose& pose, const std::array<double, 3>& origin,
+                               const std::array<double, 3>& direction, double longest) noexcept {
+  if (index.empty()) return std::nullopt;
+  return cast_one(IndexTriangles{index}, pose, {origin, direction, longest});
+}
+
+void cast_rays(const RayIndex& index, const Pose& pose, std::span<const Ray> rays,
+               std::span<std::optional<RayHit>> hits) noexcept {
+  if (index.empty()) {
+    std::fill_n(hits.begin(), rays.size(), std::nullopt);
+    return;
+  }
+  cast_all(IndexTriangles{index}, pose, rays, hits);
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,154 @@
+#pragma once
+#include <bit>
+#include <cstdint>
+
+#include "collision/kernels/ray_block.h"
+#include "collision/tree_walk.h"
+#include "simd/vector_support.h"
+
+// Rays in a body's frame, and how they go through its triangles.
+namespace orchard::runtime::detail {
+
+inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
+
+// A ray's direction by a vector of about one unit, so that those of every length are as good as unit vectors.
+struct Direction {
+  Direction(const Vec3& direction, double pose_scale) noexcept : scale(pose_scale) {
+    const double largest = largest_size(direction);
+    power = largest > 0 && std::isfinite(largest) ? exponent_of(largest) : 0;
+    for (std::size_t i = 0; i < 3; ++i) way[i] = scaled(direction[i], -power);
+  }
+  Direction(double pose_scale, int power_of_two) noexcept : scale(pose_scale), power(power_of_two) {}
+  // A factor of the direction in steps of the body's frame, and back.
+  double steps(double along) const noexcept {
+    if (!(along > 0) || !std::isfinite(along)) return along;
+    const int p = exponent_of(along), q = exponent_of(scale);
+    const double part = scaled(along, -p);
+    return scaled(scale == 1 ? part : part / scaled(scale, -q), p - q + power);
+  }
+  double along(double steps) const noexcept { return scaled(steps * scale, -power); }
+
+  Vec3 way{};
+  double scale;
+  int power = 0;
+};
+
+// A ball around all triangles of a body, in its frame.
+struct Ball {
+  Vec3 middle{};
+  double radius = 0;
+};
+inline Ball ball_around(const TreeView& tree) noexcept {
+  const BallSlabBlock& root = tree.ball_slabs[0];
+  return {{root.x[0], root.y[0], root.z[0]}, double{root.radius[0]}};
+}
+
+// From a point to outside of everything.
+inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3& point) noexcept {
+  return length(minus(point, ball.middle)) + 2 * ball.radius + kRounding * bounding_radius;
+}
+
+// A ray for the float tests, or the verdict that there is none: past the whole tree.
+struct Line {
+  FloatRay ray;
+  double at = 0;             // of s = 0, along the ray from its origin
+  float begin = 0, end = 0;  // in s, which is above 0
+  bool misses = false, in_float = true;
+};
+
+// From `from` along the unit vector `way`, for `length_of_ray`, through what is in `ball`; its s = 0 is before it.
+inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double length_of_ray) noexcept {
+  constexpr double unit = 0x1p-24;
+  Line line;
+  const Vec3 to_middle = minus(ball.middle, from);
+  const double ahead = dot(to_middle, way), middle = one_norm(ball.middle);
+  const double error = kRounding * (2 * one_norm(to_middle) + 2 * middle + ball.radius);
+  const double size = middle + 2 * ball.radius + error;
+  const double margin = more_of(48 * unit * size + 2 * error, 1e-15), reach = ball.radius + margin;
+  const Vec3 aside = along(to_middle, way, -ahead);
+  const double before = reach + 3 * margin;
+  line.at = ahead - before;
+  for (std::size_t i = 0; i < 3; ++i) {
+    line.ray.origin[i] = static_cast<float>(ball.middle[i] - aside[i] - before * way[i]);
+    line.ray.direction[i] = static_cast<float>(way[i]);
+  }
+  line.ray.margin = static_cast<float>(margin * (1 + 4 * unit));
+  line.begin = static_cast<float>(more_of(-line.at, 2 * margin) - margin);
+  line.end = static_cast<float>(less_of(length_of_ray - line.at, 2 * before) + margin);
+  line.in_float = size <= kFloatReach;
+  const bool beside = dot(aside, aside) > reach * reach * (1 + kRounding), none = line.end < line.begin;
+  line.misses = line.in_float & (beside | none);
+  return line;
+}
+
+// A ray in the body's frame: the segment from `from` to `to`, which ends beyond everything, so that where the ray ends
+// does not bend it. It has `end` steps at most.
+struct RayStart {
+  Vec3 from{}, to{}, step{};
+  double speed = 0, slowness = 0;  // the step's length, and 1 over it or 0
+  double end = 0;
+  Line line;
+
+  double steps_to(const Vec3& place) const noexcept { return dot(minus(place, from), step) * slowness * slowness; }
+};
+
+// For `steps` along `way`, both as Direction has them. Without branches, so that a loop over several rays becomes one
+// over vectors of them.
+ORCHARD_INLINE RayStart start_of(const Frame& frame, const Ball& ball, const Vec3& origin, const Vec3& way,
+                                 double steps) noexcept {
+  RayStart start;
+  start.from = frame.enter(origin);
+  start.step = rotate(frame.back, way);
+  start.speed = length(start.step);
+  const bool moves = start.speed > 0;
+  start.slowness = (moves ? 1.0 : 0.0) / (moves ? start.speed : 1.0);
+  // So many steps that short coordinates stay exact: a ray in a triangle's plane is to end in it.
+  const double reach = power_above(reach_beyond(ball, frame.bounding_radius, start.from) * start.slowness);
+  start.end = moves ? less_of(steps, reach) : 0.0;
+  start.to = settled(along(start.from, start.step, moves ? reach : 0.0));
+  Vec3 unit = along({0, 0, 0}, start.step, start.slowness);
+  unit[0] = moves ? unit[0] : 1.0;
+  start.line = line_of(ball, start.from, unit, start.end * start.speed);
+  return start;
+}
+
+// Several at once, number by number.
+struct RayStarts {
+  static constexpr std::size_t kCount = 8;
+  using Row = std::array<double, kCount>;
+  using FloatRow = std::array<float, kCount>;
+
+  std::array<Row, 3> origin, way;  // what is given
+  Row steps;
+  std::array<int, kCount> power;
+  std::array<Row, 3> from, to, step;  // and what is made of it
+  Row speed, slowness, end, at;
+  std::array<FloatRow, 3> line_origin, direction;
+  FloatRow margin, line_begin, line_end, misses, in_float;
+
+  RayStart at_lane(std::size_t i) const noexcept {
+    RayStart start;
+    for (std::size_t k = 0; k < 3; ++k) {
+      start.from[k] = from[k][i], start.to[k] = to[k][i], start.step[k] = step[k][i];
+      start.line.ray.origin[k] = line_origin[k][i], start.line.ray.direction[k] = direction[k][i];
+    }
+    start.speed = speed[i], start.slowness = slowness[i], start.end = end[i];
+    start.line.at = at[i], start.line.ray.margin = margin[i];
+    start.line.begin = line_begin[i], start.line.end = line_end[i];
+    start.line.misses = misses[i] != 0, start.line.in_float = in_float[i] != 0;
+    return start;
+  }
+};
+void find_starts(const Frame& frame, const Ball& ball, RayStarts& starts) noexcept;
+
+// Calls visit(leaf, end) for the leaves on the ray of which triangles may be met, the nearest ball slab of a block
+// first. visit() returns up to which s the ray goes on from there, or something below 0.
+template <typename Visit>
+void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
+  RayWalk walk(line.ray, line.begin, line.end, tree.ball_slabs[0].child[0]);
+  for (RayLeaf leaf = next_leaf(tree, walk); leaf.block != nullptr; leaf = next_leaf(tree, walk)) {
+    walk.end = visit(leaf, walk.end);
+  }
+}
+
+}  // namespace orchard::runtime::detail

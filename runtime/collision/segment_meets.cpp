@@ -1,0 +1,115 @@
+#include "collision/segment_meets.h"
+
+#include <cmath>
+
+#include "math/vector_functions.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+// The plain evaluation below. Differences of the coordinates are right to u = 2^-53 of themselves. Where a, b, c are
+// the largest components of three such vectors, a component of the product of the first two is at most 2 a b and off by
+// less than 8 u a b, so a triple product is off by less than 3 (8 u + 4 * 2 u) a b c = 48 u a b c, if nothing
+// underflows or overflows on the way. That is so where a b and a b c are within kLeast and 1 / kLeast: what underflows
+// is below 2^-1074 of a term that then is less than 2^-53 u of a b.
+constexpr double kPlainError = 64 * 0x1p-53;
+constexpr double kLeast = 0x1p-900;
+
+bool within_range(double ab, double abc) noexcept { return less_of(ab, abc) > kLeast && more_of(ab, abc) < 1 / kLeast; }
+
+// Heights whose sum is larger than this part of a b c tell a place on the segment to 2^-40 of its length.
+constexpr double kTells = kPlainError * 0x1p40;
+
+// Of a segment's ends over a triangle's plane, times twice its area; `clear` where their signs are certain, `tell`
+// where they say where it passes.
+struct Heights {
+  double from, to;
+  bool clear, tell;
+  Heights(const Vec3& begin, const Vec3& end, const TrianglePoints& t) noexcept {
+    const Vec3 edge = minus(t[1], t[0]), other = minus(t[2], t[0]), normal = cross(edge, other);
+    const Vec3 back = minus(begin, t[0]), ahead = minus(end, t[0]);
+    from = dot(normal, back), to = dot(normal, ahead);
+    const double ab = largest_size(edge) * largest_size(other),
+                 abc = ab * more_of(largest_size(back), largest_size(ahead));
+    const bool certain = less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc, ordinary = within_range(ab, abc);
+    clear = certain & ordinary;
+    tell = clear & (std::fabs(from) + std::fabs(to) > kTells * abc);
+  }
+  bool differ() const noexcept { return (from > 0) != (to > 0); }
+};
+
+Vec3 crossing(const Vec3& from, const Vec3& way, double height_from, double height_to) noexcept {
+  const double hp = std::fabs(height_from), hq = std::fabs(height_to);
+  return along(from, way, hp + hq > 0 ? less_of(hp / (hp + hq), 1) : 0);
+}
+
+Vec3 crossing_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t) noexcept {
+  return crossing(from, minus(to, from), volume(t[0], t[1], t[2], from), volume(t[0], t[1], t[2], to));
+}
+
+// The first point of a segment that it has in common with a triangle in whose plane it runs, or which is flat: its
+// begin, or where it meets the boundary. Where it runs along an edge, that is at a corner. Exact but for rounding.
+Vec3 first_common(const Vec3& from, const Vec3& to, const TrianglePoints& t, const Vec3& any) noexcept {
+  if (triangles_intersect({from, from, from}, t, nullptr)) return from;
+  const TrianglePoints segment = {from, to, to};
+  const Vec3 way = minus(to, from);
+  Vec3 first = any;
+  const auto offer = [&](const Vec3& point) {
+    if (dot(minus(point, from), way) < dot(minus(first, from), way)) first = point;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 &a = t[i], &b = t[(i + 1) % 3];
+    Vec3 common{};
+    if (triangles_intersect(segment, {a, b, b}, &common)) offer(common);
+    if (triangles_intersect(segment, {a, a, a}, nullptr)) offer(a);
+  }
+  return first;
+}
+
+// The same by exact signs, and on common planes as triangles_intersect() does it.
+bool meets_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
+  const int p = orientation(t[0], t[1], t[2], from), q = orientation(t[0], t[1], t[2], to);
+  if (p * q > 0) return false;
+  if (p == 0 && q == 0) {
+    if (!triangles_intersect({from, to, to}, t, &common)) return false;
+    common = first_common(from, to, t, common);
+    return true;
+  }
+  const int a = orientation(from, to, t[0], t[1]), b = orientation(from, to, t[1], t[2]);
+  if (a * b < 0) return false;
+  const int c = orientation(from, to, t[2], t[0]);
+  if (a * c < 0 || b * c < 0) return false;
+  common = crossing_exactly(from, to, t);
+  return true;
+}
+
+}  // namespace
+
+bool segment_passes(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
+  const Heights heights(from, to, t);
+  if (!heights.clear) return meets_exactly(from, to, t, common);
+  if (!heights.differ()) return false;
+  common = heights.tell ? crossing(from, minus(to, from), heights.from, heights.to) : crossing_exactly(from, to, t);
+  return true;
+}
+
+bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
+  // Most are plain: no sign is in doubt.
+  const Heights heights(from, to, t);
+  if (heights.clear && !heights.differ()) return false;
+  const Vec3 way = minus(to, from), a = minus(t[0], from), b = minus(t[1], from), c = minus(t[2], from);
+  const double p = dot(way, cross(a, b)), q = dot(way, cross(b, c)), r = dot(way, cross(c, a));
+  const double far = more_of(more_of(largest_size(a), largest_size(b)), largest_size(c)),
+               size = far * far * largest_size(way);
+  const double least = less_of(less_of(p, q), r), most = more_of(more_of(p, q), r), error = kPlainError * size;
+  if (heights.clear && within_range(far * far, size)) {
+    if ((least < -error) & (most > error)) return false;
+    if ((least > error) | (most < -error)) {
+      common = heights.tell ? crossing(from, way, heights.from, heights.to) : crossing_exactly(from, to, t);
+      return true;
+    }
+  }
+  return meets_exactly(from, to, t, common);
+}
+
+}  // namespace orchard::runtime::detail

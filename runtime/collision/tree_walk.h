@@ -1,0 +1,242 @@
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "collision/kernels/ball_slab_block.h"
+#include "collision/kernels/eight.h"
+#include "collision/kernels/node_box.h"
+#include "collision/kernels/point_block.h"
+#include "collision/kernels/segment_block.h"
+#include "math/vector_functions.h"
+#include "orchard/runtime/shape_query.h"
+#include "tree/tree_nodes.h"
+
+// How queries about one tree go through its triangles, outward from a point or segment; along a ray: ray_walk.h.
+namespace orchard::runtime::detail {
+
+// Ball slabs are left out only beyond this much more than need be, for the rounding of a few operations.
+inline constexpr double kRounding = 1e-12;
+// Below this a coordinate is no more than rounding, and without it no product of three underflows: exact_sign.h.
+inline constexpr double kMinCoordinate = 0x1p-305;
+// Farther from the origin than that, floats cannot hold squares of distances: one ball slab at a time in double.
+inline constexpr double kFloatReach = 2e18;
+inline constexpr std::size_t kWalkRoom = std::size_t{kBlockWidth} * (kTriangleTreeDepthLimit + 1) + 1;
+
+struct Segment {
+  Vec3 p, d;  // from p to p + d
+  double square;
+  Segment(const Vec3& from, const Vec3& to) noexcept : p(from), d(minus(to, from)), square(dot(d, d)) {}
+};
+
+// Lower bound on the distance of a ball slab from a segment.
+inline double ball_slab_distance(const BallSlabBlock& block, std::uint32_t lane, const Segment& s) noexcept {
+  const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
+  const Vec3 to = minus(c, s.p);
+  const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
+  const double by_ball = length(minus(to, along({0, 0, 0}, s.d, t))) - double{block.radius[lane]};
+  const double begin = -dot(n, to), end = begin + dot(n, s.d);
+  const double nearer = begin * end <= 0 ? 0 : std::min(std::fabs(begin), std::fabs(end));
+  // The normal's length is 1 to within 5e-7.
+  const double by_planes = (nearer - double{block.height[lane]}) * (1 - 1e-6);
+  return std::max(by_ball, by_planes);
+}
+
+// In double, one ball slab at a time. Calls visit(triangle block) for the leaves whose ball slabs are within limit() of
+// the segment, the nearest child first, until it returns false.
+template <typename Limit, typename Visit>
+void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&& limit, Visit&& visit) noexcept {
+  struct Entry {
+    double distance;
+    std::uint32_t child;
+  };
+  std::array<Entry, kWalkRoom> stack;
+  std::size_t size = 0;
+  const auto push_children = [&](std::uint32_t index) {
+    const BallSlabBlock& block = tree.ball_slabs[index];
+    const std::size_t begin = size;
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      const double distance = ball_slab_distance(block, lane, segment);
+      if (distance > limit() * (1 + kRounding) + rounding) continue;
+      std::size_t at = size++;
+      for (; at > begin && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
+      stack[at] = {distance, block.child[lane]};
+    }
+  };
+  push_children(0);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.distance > limit() * (1 + kRounding) + rounding) continue;
+    if ((entry.child & kLeafBit) == 0) {
+      push_children(entry.child);
+    } else if (!visit(tree.triangle_blocks[entry.child & ~kLeafBit])) {
+      return;
+    }
+  }
+}
+
+template <typename Visit>
+bool each_triangle(const TriangleBlock& block, Visit&& visit) noexcept {
+  for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
+    if (!visit(points_of(block, lane), block.triangle[lane])) return false;
+  }
+  return true;
+}
+
+inline Vec3 settled(Vec3 v) noexcept {
+  for (double& x : v) x = std::fabs(x) < kMinCoordinate ? 0 : x;
+  return v;
+}
+
+inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a number
+  return std::fabs(v[0]) <= kFarthest && std::fabs(v[1]) <= kFarthest && std::fabs(v[2]) <= kFarthest;
+}
+
+struct Frame {  // the body's, with its coordinates relative to the tree's origin
+  Frame(const std::array<double, 3>& tree_origin, double tree_radius, const Pose& body) noexcept
+      : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse(body)) {}
+  Frame(const std::array<double, 3>& tree_origin, double tree_radius, const Pose& body, const Pose& inverse_of_body)
+      : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse_of_body) {}
+  Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
+  Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), origin)); }
+  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, origin, 1)); }
+  double rounding(const Segment& s) const noexcept { return kRounding * (length(s.p) + length(s.d) + bounding_radius); }
+  std::array<double, 3> origin;
+  double bounding_radius;
+  const Pose& pose;
+  Pose back;
+};
+
+// A point or segment in float, as a box, too, and what they need to be asked about in float.
+struct FloatShape {
+  bool point = false;
+  std::array<float, 3> from{}, to{};
+  NodeBox box{};
+  Placement placement{};
+};
+
+inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
+  constexpr double unit = 0x1p-24;
+  const BallSlabBlock& root = tree.ball_slabs[0];
+  const Vec3 middle = along(s.p, s.d, 0.5);
+  const double half = length(s.d) / 2;
+  const double size = length(middle) + half + length({root.x[0], root.y[0], root.z[0]}) + double{root.radius[0]};
+  FloatShape shape;
+  shape.point = !(half > 0);
+  Vec3 normal = {1, 0, 0};
+  if (half > 0) {  // across the segment
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (std::fabs(s.d[i]) < std::fabs(s.d[least])) least = i;
+    }
+    Vec3 axis{};
+    axis[least] = 1;
+    normal = cross(along({0, 0, 0}, s.d, 0.5 / half), axis);
+    normal = along({0, 0, 0}, normal, 1 / length(normal));
+  }
+  const auto f = [](double x) { return static_cast<float>(x); };
+  const Vec3 second = half > 0 ? along({0, 0, 0}, cross(s.d, normal), 0.5 / half) : Vec3{0, 1, 0};
+  const float thin = f(half * 1e-6), reach = f(half * (1 + 1e-6));
+  const auto four = [f](const Vec3& v) -> std::array<float, 4> { return {f(v[0]), f(v[1]), f(v[2]), 0}; };
+  shape.box = {four(middle), four(normal), four(second), reach, thin, thin, reach};
+  const Vec3 end = along(s.p, s.d, 1);
+  for (std::size_t i = 0; i < 3; ++i) shape.from[i] = f(s.p[i]), shape.to[i] = f(end[i]);
+  Placement& p = shape.placement;
+  p.rotation = p.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  p.translation = {};
+  p.scale = 1;
+  p.margin = f(std::max(128 * unit * size, 1e-15) * (1 + 4 * unit));
+  p.box_margin = f(std::max(256 * unit * size, 1e-15) * (1 + 4 * unit));
+  const int exponent = 1 + exponent_of(std::max(size, 1e-18));
+  p.unit = f(scaled(1, -exponent)), p.whole = f(scaled(1, exponent));
+  return shape;
+}
+
+// Which of eight distances are no more than `limit`, as bits, and the least of the others.
+struct Within {
+  std::uint32_t lanes;
+  float beyond;
+};
+ORCHARD_INLINE Within within(const Eight<Base>::Floats& distance, double limit) noexcept {
+  using E = Eight<Base>;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  auto most = static_cast<float>(limit);
+  if (double{most} > limit) most = std::nextafter(most, -kInfinity);  // no float is between them
+  const auto outside = E::all(most) < distance;
+  return {~Base::bits(outside), least_of<Base>(Base::choose(outside, distance, E::all(kInfinity)))};
+}
+
+inline std::uint32_t lanes_in_use(const TriangleBlock& block) noexcept {
+  std::uint32_t count = 0;
+  for (const std::uint32_t triangle : block.triangle) count += triangle != kNoTriangle;
+  return (1u << count) - 1;
+}
+
+// Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
+// the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false. Returns how
+// far from the segment all others are, at least, if it has not returned false.
+template <typename Limit, typename Visit>
+float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Visit&& visit) noexcept {
+  struct Entry {
+    float gap;
+    std::uint32_t child;
+  };
+  std::array<Entry, kWalkRoom> stack;
+  std::size_t size = 0;
+  BoxGaps gaps;
+  std::array<float, kBlockWidth> row;
+  float beyond = std::numeric_limits<float>::infinity();
+  const auto leave_out = [&](float gap) { beyond = std::min(beyond, gap); };
+  stack[size++] = {0, tree.ball_slabs[0].child[0]};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (double{entry.gap} > limit()) {
+      leave_out(entry.gap);
+      continue;
+    }
+    if (entry.child & kLeafBit) {
+      const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
+      if (shape.point) {
+        point_gaps(shape.from, block, shape.placement, row);
+      } else {
+        segment_gaps(shape.from, shape.to, block, shape.placement, row);
+      }
+      const Within some = within(load<Eight<Base>::Floats>(row), limit());
+      leave_out(some.beyond);  // lanes without a triangle repeat the first one
+      std::uint32_t left = some.lanes & lanes_in_use(block);
+      while (left != 0) {
+        auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
+        for (std::uint32_t rest = left & (left - 1); rest != 0; rest &= rest - 1) {
+          const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+          if (row[lane] < row[nearest]) nearest = lane;
+        }
+        left &= ~(1u << nearest);
+        if (double{row[nearest]} > limit()) {
+          leave_out(row[nearest]);
+          break;
+        }
+        if (!visit(block, nearest, row[nearest] <= 0)) return 0;
+      }
+      continue;
+    }
+    const BallSlabBlock& block = tree.ball_slabs[entry.child];
+    box_gaps(shape.box, block, 1, shape.placement.box_margin, gaps);
+    using E = Eight<Base>;
+    const auto used = E::all(0.0f) <= load<E::Floats>(block.radius);
+    const auto far = E::all(std::numeric_limits<float>::infinity());
+    const Within some = within(Base::choose(used, load<E::Floats>(gaps.gap), far), limit());
+    leave_out(some.beyond);
+    const std::size_t begin = size;
+    for (std::uint32_t left = some.lanes & gaps.used; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      std::size_t place = size++;
+      for (; place > begin && stack[place - 1].gap < gaps.gap[lane]; --place) stack[place] = stack[place - 1];
+      stack[place] = {gaps.gap[lane], block.child[lane]};
+    }
+  }
+  return beyond;
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "collision/pair_walk.h"
+#include "collision/workspace_scratch.h"
+#include "orchard/runtime/vec3.h"
+
+namespace orchard::runtime::detail {
+
+// A body that is a box with its inside, and a point of each connected piece of the other body's surface, in that body's
+// frame: a piece that lies wholly inside meets no triangle, and still is in the way.
+struct SolidBox {
+  bool is_first;
+  runtime::Vec3 half;
+  std::span<const runtime::Vec3> pieces;
+};
+
+// What a way out is looked for in. The second tree is moved, in the first tree's frame and units.
+struct WayOutSearch {
+  const PlacedPair& pair;
+  const WalkStack& room;
+  std::span<const Workspace::Scratch::Cut> cuts;  // triangles that meet where the second one is now; more may
+  std::span<const SolidBox> solids;
+  double size;   // of both bodies
+  double nudge;  // beyond a contact: more than what rounding does to poses
+};
+
+// How far the second tree has to move along a direction until no triangle of it meets any of the first one, and no
+// piece of a surface is inside a box.
+struct WayOut {
+  Vec3 direction;
+  double way;          // at its end the bodies are free of each other, rounding included
+  Vec3 normal;         // of what the surfaces leave each other in at its end, pointing along the direction
+  bool ended;          // false: given up
+  bool clear = false;  // at its end no triangles are so close that rounding of poses could make them meet
+};
+
+// The first of the points of pieces that are inside a box where the second tree is now, or null.
+const runtime::Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept;
+
+// The shortest way out that is found from `directions` on, at least one of them, by following what is in the way: where
+// the last triangles part at a face or two edges, the way across these is tried next, or the shortest one that leaves
+// all such obstacles behind. Directions all around are tried as well, so that no wrong first direction decides: for any
+// shorter way where that one is long beside the bodies or the contact, else for one that is shorter by far. Where no
+// direction comes to an end in time, the way is that to where the bodies' extents part, and `ended` is false.
+WayOut least_way_out(const WayOutSearch& search, std::span<const Vec3> directions, std::uint32_t refinements) noexcept;
+
+}  // namespace orchard::runtime::detail

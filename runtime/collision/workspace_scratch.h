@@ -1,0 +1,55 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <new>
+
+#include "collision/pair_walk.h"
+#include "orchard/runtime/body_pair.h"
+
+namespace orchard::runtime {
+
+// What contacts() and time_of_impact() keep while they run.
+struct Workspace::Scratch {
+  detail::WalkStack walk;
+
+  // Pairs of triangles that meet, and what they have in common, in the first tree's frame.
+  struct Cut {
+    detail::TrianglePoints first, second;
+    detail::Vec3 p, q;  // the ends of the common segment
+    std::uint32_t triangle_first, triangle_second;
+  };
+  static constexpr std::size_t kCuts = 512;
+  std::array<Cut, kCuts> cuts;
+  std::size_t cut_count = 0;
+
+  // Pairs of ball slabs that may meet next, the second one moved, and when at the earliest.
+  struct TimedPair {
+    float time;
+    std::uint32_t a, b;
+    detail::BallSlab second;
+  };
+  std::unique_ptr<TimedPair[]> timed;
+  std::size_t timed_room = 0;
+  // For time_of_impact() of these, and of what is no deeper. False: there is no memory.
+  bool reserve_timed(const PreparedTree& a, const PreparedTree& b) noexcept {
+    const std::size_t deepest =
+        std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
+    if (deepest > timed_room) {
+      timed.reset(new (std::nothrow) TimedPair[deepest]);
+      timed_room = timed ? deepest : 0;
+    }
+    return timed != nullptr;
+  }
+};
+
+struct PosePair {
+  Pose a, b;
+};
+
+// closer_than() within a budget, whose end makes "maybe" of what is not known by then. The work is that of
+// workspace.narrow if the margin is 0, else that of workspace.distance.
+Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
+                     const Budget& budget) noexcept;
+
+}  // namespace orchard::runtime

@@ -1,0 +1,70 @@
+#pragma once
+#include <type_traits>
+
+#include "orchard/runtime/pose.h"
+#include "simd/vector_support.h"
+
+// Whether poses may be asked about. Every query begins with this, and many end soon after, so that two poses are looked
+// at side by side.
+namespace orchard::runtime::detail {
+
+#ifdef ORCHARD_VECTORS
+using Two __attribute__((vector_size(16))) = double;
+#else
+using Two = Plain<double, 2>;
+#endif
+
+template <typename T>
+ORCHARD_INLINE T both(double value) noexcept {
+  if constexpr (std::is_same_v<T, double>) {
+    return value;
+  } else {
+    return T{value, value};
+  }
+}
+
+// 0 for a proper rotation: how far the first two rows are from unit vectors across each other, and the third one from
+// their cross product, as a sum of squares. Not a number, or infinite, if an entry is. T: a double, or several.
+template <typename T, typename At>
+ORCHARD_INLINE T rotation_defect(At&& r) noexcept {
+  const T a0 = r(0), a1 = r(1), a2 = r(2), b0 = r(3), b1 = r(4), b2 = r(5);
+  const T one = both<T>(1);
+  const T a = a0 * a0 + a1 * a1 + a2 * a2 - one, b = b0 * b0 + b1 * b1 + b2 * b2 - one;
+  const T across = a0 * b0 + a1 * b1 + a2 * b2;
+  const T x = a1 * b2 - a2 * b1 - r(6), y = a2 * b0 - a0 * b2 - r(7), z = a0 * b1 - a1 * b0 - r(8);
+  return (a * a + b * b + across * across) + (x * x + y * y + z * z);
+}
+
+inline constexpr double kMaxRotationDefect = kRigidTolerance * kRigidTolerance;
+
+inline bool scale_in_range(double scale) noexcept { return scale >= 1 / kScaleLimit && scale <= kScaleLimit; }
+
+inline bool rotates(const Pose& pose) noexcept {
+  const double defect = rotation_defect<double>([&pose](std::size_t i) { return pose.rotation[i]; });
+  return defect <= kMaxRotationDefect && scale_in_range(pose.scale);
+}
+
+// Two poses, number by number.
+struct PoseLanes {
+  Two rotation[9], translation[3], scale;
+
+  ORCHARD_INLINE PoseLanes(const Pose& p, const Pose& q) noexcept {
+    for (std::size_t i = 0; i < 9; ++i) rotation[i] = Two{p.rotation[i], q.rotation[i]};
+    for (std::size_t i = 0; i < 3; ++i) translation[i] = Two{p.translation[i], q.translation[i]};
+    scale = Two{p.scale, q.scale};
+  }
+  // As is_rigid() says of both, but for translations.
+  ORCHARD_INLINE bool rotate() const noexcept {
+    const Two defect = rotation_defect<Two>([this](std::size_t i) ORCHARD_INLINE_LAMBDA -> Two { return rotation[i]; });
+    const auto good = (defect <= both<Two>(kMaxRotationDefect)) & (both<Two>(1 / kScaleLimit) <= scale) &
+                      (scale <= both<Two>(kScaleLimit));
+    return (good[0] & good[1]) != 0;
+  }
+  // Where each puts its point, component by component: transform()'s operations in its order.
+  ORCHARD_INLINE Two placed(std::size_t i, const Two (&point)[3]) const noexcept {
+    const Two turned = rotation[3 * i] * point[0] + rotation[3 * i + 1] * point[1] + rotation[3 * i + 2] * point[2];
+    return scale * turned + translation[i];
+  }
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,154 @@
+#include "math/triangle_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/vector_functions.h"
+
+// Two closed triangles meet iff an edge of one meets the other one: their common part is convex, and each of its
+// extreme points lies on an edge of one of them, since interior points of both can be moved both ways along the common
+// line or plane. A triangle of zero area is the union of its edges. So segments against triangles and segments suffice.
+namespace orchard::runtime::detail {
+namespace {
+
+Vec3 between(const Vec3& a, const Vec3& b, double t) noexcept {
+  return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
+}
+double ratio(double part, double whole) noexcept { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
+
+// ---- Witnesses: only ever used after the exact tests said yes.
+
+// In planes that nearly are one, plain heights would be rounding and nothing else, and so would be the place.
+Vec3 crossing_point(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+  const double hp = std::fabs(volume(t[0], t[1], t[2], p)), hq = std::fabs(volume(t[0], t[1], t[2], q));
+  return between(p, q, ratio(hp, hp + hq));
+}
+
+Vec3 closest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) noexcept {
+  const Vec3 ab = minus(b, a);
+  return between(a, b, ratio(dot(minus(point, a), ab), dot(ab, ab)));
+}
+
+// The point of pq closest to ab, for segments that meet: at an end of one of them, or where their lines cross.
+Vec3 meeting_point(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
+  const Vec3 u = minus(q, p), v = minus(b, a), w = minus(a, p), n = cross(u, v);
+  const Vec3 candidates[] = {p, q, closest_on_segment(a, p, q), closest_on_segment(b, p, q),
+                             between(p, q, ratio(dot(cross(w, v), n), dot(n, n)))};
+  const auto distance = [&a, &b](const Vec3& x) {
+    const Vec3 d = minus(x, closest_on_segment(x, a, b));
+    return dot(d, d);
+  };
+  return *std::min_element(std::begin(candidates), std::end(candidates),
+                           [&distance](const Vec3& x, const Vec3& y) { return distance(x) < distance(y); });
+}
+
+// ---- Exact tests.
+
+bool boxes_overlap(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, std::size_t i) noexcept {
+  return std::max(p[i], q[i]) >= std::min(a[i], b[i]) && std::max(a[i], b[i]) >= std::min(p[i], q[i]);
+}
+
+// Segments in the plane without `axis`.
+bool segments_meet_2d(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, std::size_t axis) noexcept {
+  if (!boxes_overlap(p, q, a, b, (axis + 1) % 3) || !boxes_overlap(p, q, a, b, (axis + 2) % 3)) return false;
+  // With overlapping boxes this settles collinear segments and points, too: they overlap as their boxes do.
+  return orientation(p, q, a, axis) * orientation(p, q, b, axis) <= 0 &&
+         orientation(a, b, p, axis) * orientation(a, b, q, axis) <= 0;
+}
+
+// Segments in space. If the four points lie in one plane, projecting along an axis keeps what meets, and at least one
+// axis does not flatten that plane; if they lie on one line, their boxes tell. So they meet iff all projections do.
+bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
+  if (orientation(p, q, a, b) != 0) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!segments_meet_2d(p, q, a, b, axis)) return false;
+  }
+  return true;
+}
+
+bool holds_2d(const TrianglePoints& t, const Vec3& p, std::size_t axis) noexcept {
+  const int turn = orientation(t[0], t[1], t[2], axis);
+  if (turn == 0) return false;  // flattened to a segment: its edges are all of it
+  return turn * orientation(t[0], t[1], p, axis) >= 0 && turn * orientation(t[1], t[2], p, axis) >= 0 &&
+         turn * orientation(t[2], t[0], p, axis) >= 0;
+}
+
+bool degenerate(const TrianglePoints& t) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (orientation(t[0], t[1], t[2], axis) != 0) return false;
+  }
+  return true;
+}
+
+// A segment in the plane of a triangle that is not degenerate.
+bool coplanar_meet(const Vec3& p, const Vec3& q, const TrianglePoints& t, Vec3* witness) noexcept {
+  std::size_t axis = 0;
+  while (axis < 2 && orientation(t[0], t[1], t[2], axis) == 0) ++axis;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 &a = t[i], &b = t[(i + 1) % 3];
+    if (!segments_meet_2d(p, q, a, b, axis)) continue;
+    if (witness) *witness = meeting_point(p, q, a, b);
+    return true;
+  }
+  if (!holds_2d(t, p, axis)) return false;
+  if (witness) *witness = p;
+  return true;
+}
+
+// An edge whose ends lie on the sides `side_p`, `side_q` of the plane of `t`, which is not degenerate.
+bool edge_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const TrianglePoints& t, Vec3* witness) noexcept {
+  if (side_p * side_q > 0) return false;
+  if (side_p == 0 && side_q == 0) return coplanar_meet(p, q, t, witness);
+  const SegmentOrientation around(p, q, t);
+  const int first = around(0, 1), second = around(1, 2);
+  if (first * second < 0) return false;
+  const int third = around(2, 0);
+  if (first * third < 0 || second * third < 0) return false;
+  if (witness) *witness = crossing_point(p, q, t);
+  return true;
+}
+
+using Sides = std::array<int, 3>;
+
+Sides sides(const TrianglePoints& plane, const TrianglePoints& of) noexcept {
+  const PlaneOrientation side(plane);
+  return {side(of[0]), side(of[1]), side(of[2])};
+}
+
+bool on_one_side(const Sides& s) noexcept { return s[0] * s[1] > 0 && s[0] * s[2] > 0; }
+bool in_plane(const Sides& s) noexcept { return s[0] == 0 && s[1] == 0 && s[2] == 0; }
+
+bool edges_meet(const TrianglePoints& edges, const Sides& s, const TrianglePoints& t, Vec3* witness) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if (edge_meets(edges[i], edges[j], s[i], s[j], t, witness)) return true;
+  }
+  return false;
+}
+
+bool segments_of_both_meet(const TrianglePoints& a, const TrianglePoints& b, Vec3* witness) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vec3 &p = a[i], &q = a[(i + 1) % 3], &r = b[j], &s = b[(j + 1) % 3];
+      if (!segments_meet(p, q, r, s)) continue;
+      if (witness) *witness = meeting_point(p, q, r, s);
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, Vec3* witness) noexcept {
+  const Sides b_sides = sides(a, b);
+  if (on_one_side(b_sides)) return false;
+  const Sides a_sides = sides(b, a);
+  if (on_one_side(a_sides)) return false;
+  // Some side differs from 0 only if the plane exists.
+  const bool a_flat = in_plane(b_sides) && degenerate(a), b_flat = in_plane(a_sides) && degenerate(b);
+  if (a_flat && b_flat) return segments_of_both_meet(a, b, witness);
+  return (!a_flat && edges_meet(b, b_sides, a, witness)) || (!b_flat && edges_meet(a, a_sides, b, witness));
+}
+
+}  // namespace orchard::runtime::detail

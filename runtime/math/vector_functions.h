@@ -1,0 +1,61 @@
+#pragma once
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "math/exact_sign.h"
+
+// The few operations that exact tests, distances and the builder of triangle trees need on plain arrays.
+namespace orchard::runtime::detail {
+
+inline Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+// a + t d.
+inline Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
+  return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
+}
+
+// As std::ilogb and std::ldexp, which the sizes that occur need no call for.
+inline int exponent_of(double value) noexcept {  // of a finite value above 0
+  const int power = static_cast<int>(std::bit_cast<std::uint64_t>(value) >> 52) - 1023;
+  return power > -1023 ? power : std::ilogb(value);
+}
+inline double scaled(double value, int power) noexcept {
+  if (power < -1000 || power > 1000) return std::ldexp(value, power);
+  return value * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + power) << 52);
+}
+
+// A vector by a power of two to about 1, so that no square of its components is lost; 0 of what has no direction.
+struct ScaledVector {
+  Vec3 value{};
+  int power = 0;
+  explicit ScaledVector(const Vec3& v) noexcept {
+    double largest = 0;
+    for (const double x : v) {
+      if (!std::isfinite(x)) return;
+      largest = std::fabs(x) > largest ? std::fabs(x) : largest;
+    }
+    if (largest == 0) return;
+    power = -exponent_of(largest);
+    for (std::size_t i = 0; i < 3; ++i) value[i] = scaled(v[i], power);
+  }
+};
+
+// The least power of two that is no less than a number above 0.
+inline double power_above(double x) noexcept {
+  constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);
+}
+
+// As std::min and std::max, but by value: an instruction each, where those can become branches that nobody predicts.
+// Where one is not a number, both give the first one.
+inline double less_of(double a, double b) noexcept { return b < a ? b : a; }
+inline double more_of(double a, double b) noexcept { return b > a ? b : a; }
+inline double largest_size(const Vec3& v) noexcept {
+  return more_of(more_of(std::fabs(v[0]), std::fabs(v[1])), std::fabs(v[2]));
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,59 @@
+#include "orchard/runtime/prepared_tree.h"
+
+#include <cstring>
+
+#include "tree/tree_nodes.h"
+
+namespace orchard::runtime {
+
+namespace {
+
+// Of the stored bytes, eight at a time: equal for copies, and different for others but for one in 2^64.
+class Fingerprint {
+ public:
+  template <typename Container>
+  void add(const Container& items) noexcept {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(items.data());
+    std::size_t left = items.size() * sizeof(items[0]);
+    mix(left);
+    for (; left >= sizeof(std::uint64_t); left -= sizeof(std::uint64_t), bytes += sizeof(std::uint64_t)) {
+      std::uint64_t word;
+      std::memcpy(&word, bytes, sizeof word);
+      mix(word);
+    }
+    std::uint64_t rest = 0;
+    if (left > 0) std::memcpy(&rest, bytes, left);
+    mix(rest);
+  }
+  std::uint64_t value() const noexcept { return value_; }
+
+ private:
+  void mix(std::uint64_t word) noexcept {  // a bijection of the value for each word, and of the word for each value
+    value_ = (value_ ^ word) * 0x9e3779b97f4a7c15u;
+    value_ ^= value_ >> 32;
+  }
+  std::uint64_t value_ = 0x243f6a8885a308d3u;
+};
+
+std::uint64_t fingerprint_of(const TreeView& tree) noexcept {
+  Fingerprint print;
+  print.add(tree.blocks), print.add(tree.triangles), print.add(tree.vertices), print.add(tree.leaf_triangles);
+  print.add(
+      std::array<double, 5>{tree.origin[0], tree.origin[1], tree.origin[2], tree.bounding_radius, tree.vertex_error});
+  return print.value();
+}
+
+}  // namespace
+
+PreparedTree::PreparedTree(const TreeView& view) noexcept : tree(view) {
+  middle = root = detail::center_of(tree, 0);
+  for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
+  const SiblingBlock& block = tree.blocks[0];
+  radius = double{block.radius[0]}, reach = double{block.error[0]}, depth = double{block.depth[0]};
+  bits = link_bits(tree.branching);
+  extent = coordinate_extent(tree);
+  error = detail::kStretch * (extent + detail::length(tree.origin)) + tree.vertex_error;
+  fingerprint = fingerprint_of(tree);
+}
+
+}  // namespace orchard::runtime
