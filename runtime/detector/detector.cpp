@@ -427,11 +427,10 @@ std::size_t Detector::memory_bytes() const noexcept {
   const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
   return sizeof(State) + (s.kept_states ? s.kept_states->memory_bytes() : 0) + s.shapes.memory_bytes() +
          s.bodies.memory_bytes() + s.halves.memory_bytes() + s.broad.memory_bytes() + s.monitor.memory_bytes() +
-         s.records.memory_bytes() + s.part_search.memory_bytes() + s.queries.memory_bytes() + s.fronts.memory_bytes() +
-         s.rounds.memory_bytes() +
+         s.records.memory_bytes() + s.part_search.memory_bytes() + s.pairs.memory_bytes() + s.queries.memory_bytes() +
+         s.fronts.memory_bytes() + s.rounds.memory_bytes() +
          bytes(s.due, s.involved, s.is_involved, s.active, s.active_of_job, s.everyone, s.refused, s.broken,
-               s.plane_pairs, s.kept_pairs, s.part_pairs, s.body_pairs, s.more_pairs, s.all_pairs, s.static_pairs,
-               s.searches_to_change, s.open, s.events, s.ended, s.marks, s.tallies);
+               s.static_pairs, s.searches_to_change, s.open, s.events, s.ended, s.marks, s.tallies);
 }
 
 }  // namespace orchard::runtime

@@ -14,28 +14,7 @@ using detail::StepBudget;
 
 namespace {
 
-constexpr double kSmoothing = 0.1;              // of what foresee() goes by
-constexpr double kSlower = 0.5, kFaster = 0.1;  // of times: what takes longer than foreseen is believed sooner
-// No time is believed to have more than doubled, or grown by so much: else one step that the machine interrupts, for
-// milliseconds, would rule many that follow.
-constexpr double kMaxGrowthOfPair = 20, kMaxGrowthOfBroad = 5000;  // ns
-
 double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
-
-// Of ascending ones, `more` mostly being none or few. In `all`, if there are any.
-std::span<const BodyPair> merged(std::span<const BodyPair> some, std::span<const BodyPair> more,
-                                 std::vector<BodyPair>& all) {
-  if (more.empty()) return some;
-  if (some.empty()) return more;
-  all.resize(some.size() + more.size());
-  std::merge(some.begin(), some.end(), more.begin(), more.end(), all.begin());
-  return all;
-}
-
-void learn_time(double& mean, double value, double max_growth) noexcept {
-  const double believed = std::clamp(value, 0.0, std::max(2 * mean, mean + max_growth));
-  mean += (believed > mean ? kSlower : kFaster) * (believed - mean);
-}
 
 }  // namespace
 
@@ -56,7 +35,6 @@ Frame Detector::step(double time, const Budget& budget, const StepOptions& optio
   return frame;
 }
 
-// The part of the meetings that overlap, and what a pair costs, are what they have been lately.
 std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   const State& s = *state_;
   constexpr std::size_t kMaxAhead = 254;
@@ -64,14 +42,9 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   const std::size_t wanted = std::min(loads.size(), kMaxAhead);
   const double now = s.clock.time(s.answered);
   const std::size_t known = s.valid && !s.stepping ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
-  double pairs = static_cast<double>(s.records.size());
+  s.load_model.predict(std::span(ahead).first(known), s.records.size(), loads);
   for (std::size_t i = 0; i < known; ++i) {
-    pairs += s.share_of_meetings * static_cast<double>(ahead[i].meetings);
     loads[i].time = s.clock.time(s.answered + 1 + static_cast<State::Step>(i));
-    loads[i].motions = ahead[i].updates + 2 * ahead[i].meetings + 2 * ahead[i].overlaps;
-    loads[i].pairs = pairs;
-    loads[i].work = pairs * s.work_per_pair + static_cast<double>(loads[i].motions * kMotionWork);
-    pairs -= s.share_that_part * pairs;
   }
   return known;
 }
@@ -124,7 +97,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     const std::uint64_t before = broad.motions_asked();
     StepsAhead next;
     broad.foresee(clock.time(answered), {&next, 1});
-    meetings = static_cast<double>(next.meetings);
+    pairs_seen.meetings = static_cast<double>(next.meetings);
     Advance now{};
     StepBudget share = budget.share(static_cast<std::uint64_t>(end - answered));
     if (!budget.limited()) {
@@ -134,11 +107,11 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     } else {
       Budget work;
       if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
-      if (share.timed()) work.time = time_for_broad(share);
+      if (share.timed()) work.time = load_model.time_for_broad(share.time_left(), records.size());
       const StepBudget::Stopwatch watch(share.timed());
       now = broad.advance(time, work, share.replay() != nullptr ? share.replay()->broad : 0);
       if (share.timed() && now.incomplete_from != kNoClass)
-        learn_time(broad_excess, watch.passed() - nanoseconds(work.time), kMaxGrowthOfBroad);
+        load_model.learn_broad_excess(watch.passed() - nanoseconds(work.time));
       if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
     }
     const std::uint64_t asked = (broad.motions_asked() - before) * kMotionWork;
@@ -156,13 +129,6 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
   }
 }
 
-// Half of what is left for choosing: not of what each step does in any case, for every pair and to end the broad phase.
-std::chrono::nanoseconds Detector::State::time_for_broad(const StepBudget& budget) const noexcept {
-  const double in_any_case = (before_pair + after_pair) * static_cast<double>(records.size());
-  const double time = (nanoseconds(budget.time_left()) - in_any_case) / 2 - broad_excess;
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::max(0.0, time)));
-}
-
 // Both bodies are those of before.
 bool Detector::State::still_there(const detail::RecordTable::Known& known) const noexcept {
   const auto there = [this](BodyIndex body) { return bodies[body].id != kNoBody; };
@@ -174,14 +140,15 @@ bool Detector::State::still_there(const detail::RecordTable::Known& known) const
 // The pairs of the step, in ascending order: the broad phase's, those with half-spaces, those found by parts, and those
 // known before that an interrupted broad phase may have left out.
 void Detector::State::gather(Step step, const Advance& now) {
-  plane_pairs.clear(), kept_pairs.clear();
+  pairs.clear();
   due.clear();
   halves.due(step, due);
   if (!due.empty()) {
     bodies.ask(step, clock.time(step), due, options.executor);
     due_motions.clear();
     for (const BodyIndex body : due) due_motions.push_back(promise_of(body, clock.time(step)));
-    halves.update_windows(step, clock, due, bodies, due_motions, clock.time_step, options.position_slack, plane_pairs);
+    halves.update_windows(step, clock, due, bodies, due_motions, clock.time_step, options.position_slack,
+                          pairs.with_planes);
   }
   if (now.incomplete_from != kNoClass) {
     auto reported = now.pairs.begin();
@@ -190,17 +157,15 @@ void Detector::State::gather(Step step, const Advance& now) {
       if (is_half_space(pair.b) || found_by_parts(pair)) continue;
       while (reported != now.pairs.end() && *reported < pair) ++reported;
       if (reported != now.pairs.end() && *reported == pair) continue;
-      if (still_there(records.known(place))) kept_pairs.push_back(pair);
+      if (still_there(records.known(place))) pairs.kept.push_back(pair);
     }
     involved.clear();
-    for (const BodyPair& pair : kept_pairs) involved.push_back(pair.a), involved.push_back(pair.b);
+    for (const BodyPair& pair : pairs.kept) involved.push_back(pair.a), involved.push_back(pair.b);
     bodies.ask(step, clock.time(step), involved);
-    std::erase_if(kept_pairs, [&](const BodyPair& pair) { return bodies.surely_apart(pair, clock.time_step); });
+    std::erase_if(pairs.kept, [&](const BodyPair& pair) { return bodies.surely_apart(pair, clock.time_step); });
   }
   find_part_pairs(step);
-  pairs = merged(now.pairs, kept_pairs, body_pairs);
-  pairs = merged(pairs, part_pairs, more_pairs);
-  pairs = merged(pairs, plane_pairs, all_pairs);
+  pairs.merge(now.pairs);
   ask_involved(step);
 }
 
@@ -218,7 +183,7 @@ void Detector::State::ask_involved(Step step) {
     is_involved[body] = 1;
   };
   BodyIndex last = kNoIndex;
-  for (const BodyPair& pair : pairs) {
+  for (const BodyPair& pair : pairs.all()) {
     if (pair.a != last) involve(last = pair.a);
     if (!is_half_space(pair.b)) involve(pair.b);
   }
@@ -227,15 +192,6 @@ void Detector::State::ask_involved(Step step) {
   for (const BodyIndex body : involved) {
     if (!bodies[body].valid) refused.push_back(body);
   }
-}
-
-// For foresee().
-void Detector::State::learn(std::uint64_t work) noexcept {
-  const auto smooth = [](double& mean, double value) { mean += kSmoothing * (value - mean); };
-  const double now = static_cast<double>(pairs.size());
-  if (!pairs.empty()) smooth(work_per_pair, static_cast<double>(work) / now);
-  if (meetings > 0) smooth(share_of_meetings, std::min(1.0, static_cast<double>(fresh_pairs) / meetings));
-  if (known_pairs > 0) smooth(share_that_part, static_cast<double>(parted_pairs) / static_cast<double>(known_pairs));
 }
 
 void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, Frame& frame) {
@@ -249,7 +205,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   if (budget.limited()) {
     open_records(step);
     answer_within(step, watch, budget, frame);
-    learn(budget.spent() - before);
+    load_model.learn_pairs(pairs_seen, budget.spent() - before, pairs.all().size());
   } else {
     if (sweeps_or_ends) {
       open_records(step);
@@ -259,7 +215,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
     } else {
       budget.spend(answer_one_by_one(step));
     }
-    learn(budget.spent() - before);
+    load_model.learn_pairs(pairs_seen, budget.spent() - before, pairs.all().size());
     report(step, frame);
   }
   choose_part_searches(step);
@@ -268,8 +224,8 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
 
 // With time set aside for what follows, and half of the rest for sweeps if there are any.
 void Detector::State::answer_within(Step step, const StepBudget::Stopwatch& watch, StepBudget& budget, Frame& frame) {
-  const double known = static_cast<double>(std::max<std::size_t>(1, records.size()));
-  const StepBudget::Part report_time{0, std::chrono::nanoseconds(static_cast<std::int64_t>(after_pair * known))};
+  const std::size_t known = records.size();
+  const StepBudget::Part report_time{0, load_model.time_to_report(known)};
   if (budget.timed()) budget.set_aside(report_time);
   rounds.begin_within(records, open, step);
   const double begun = watch.passed();
@@ -286,8 +242,7 @@ void Detector::State::answer_within(Step step, const StepBudget::Stopwatch& watc
   report(step, frame);
   if (!budget.timed()) return;
   budget.give_back(report_time);
-  learn_time(before_pair, begun / known, kMaxGrowthOfPair);
-  learn_time(after_pair, (folded + rest.passed() - swept) / known, kMaxGrowthOfPair);
+  load_model.learn_times(begun, folded + rest.passed() - swept, known);
 }
 
 }  // namespace orchard::runtime

@@ -31,26 +31,26 @@ void Detector::State::keep_part_pairs(BodyIndex body) {
   for (std::size_t place = 0; place < records.size(); ++place) {
     const BodyPair& pair = records.pair(place);
     if ((pair.a == body || pair.b == body) && found_by_parts(pair) && still_there(records.known(place)))
-      part_pairs.push_back(pair);
+      pairs.by_parts.push_back(pair);
   }
 }
 
 void Detector::State::find_part_pairs(Step step) {
-  part_pairs.clear();
   if (!part_search.any()) return;
   bodies.ask(step, clock.time(step), part_search.bodies(), options.executor);
   for (const BodyIndex body : part_search.bodies()) {
     if (bodies[body].valid) {
       for (const BodyIndex other : part_search.touching(body, bodies))
-        part_pairs.push_back({std::min(body, other), std::max(body, other)});
+        pairs.by_parts.push_back({std::min(body, other), std::max(body, other)});
     } else {
       refused.push_back(body);
       keep_part_pairs(body);
     }
   }
-  if (!std::is_sorted(part_pairs.begin(), part_pairs.end())) std::sort(part_pairs.begin(), part_pairs.end());
+  if (!std::is_sorted(pairs.by_parts.begin(), pairs.by_parts.end()))
+    std::sort(pairs.by_parts.begin(), pairs.by_parts.end());
   if (!filters_pairs && !filter) return;
-  std::erase_if(part_pairs, [this](const BodyPair& pair) {
+  std::erase_if(pairs.by_parts, [this](const BodyPair& pair) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     return !detail::filters_allow(a, b) || (filter && !filter(a.id, b.id));
   });
