@@ -6,11 +6,11 @@
 
 #include "canonical_frame.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/proven.h"
 #include "tightened/tightened_in_frame.h"
+#include "tightened/tree_looseness.h"
 
 namespace orchard {
 namespace {
@@ -58,7 +58,8 @@ class TreeBuilder {
     stage("measuring", [&] {
       measure(build_.tree, given_, progress_);
       measure_inaccuracy(build_.octree, given_, progress_, build_.tree);
-      if (is_loosened()) put_back(whole);
+      if (is_compared() && build_.redundancy.removed > 0 && detail::is_loosened(build_.tree, build_.octree))
+        put_back(whole);
     });
     stage("packing and verifying", [&] { require_proof(); });
     return std::move(build_);
@@ -161,21 +162,10 @@ class TreeBuilder {
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
-  // Whether a level has become looser in the mean than the one above it or than the octree's: by tight spheres that
-  // were redundant.
-  bool is_loosened() const {
-    if (options_.method != TreeMethod::tightened || options_.descent > 0 || build_.redundancy.removed == 0 ||
-        options_.refinement.error > 0 || !options_.refinement.regions.empty())
-      return false;
-    const auto levels = level_figures(build_.tree, given_.bounding_radius());
-    const auto octree = level_figures(build_.octree, given_.bounding_radius());
-    const auto is_looser = [](const LevelFigures& level, const LevelFigures& other) {
-      return level.mean_inaccuracy > other.mean_inaccuracy + tolerance::kInaccuracy;
-    };
-    for (std::size_t i = 1; i < levels.size(); ++i) {
-      if (is_looser(levels[i], levels[i - 1]) || (i < octree.size() && is_looser(levels[i], octree[i]))) return true;
-    }
-    return false;
+  // Whether no level may be looser than the one above it or than the octree's.
+  bool is_compared() const {
+    return options_.method == TreeMethod::tightened && options_.descent == 0 &&
+           detail::goes_on_everywhere(options_.refinement);
   }
 
   void put_back(const SphereTree& whole) {

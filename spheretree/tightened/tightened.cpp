@@ -7,6 +7,8 @@
 #include "canonical_frame.h"
 #include "level_samples.h"
 #include "orchard/geometry/error.h"
+#include "orchard/spheretree/measure.h"
+#include "orchard/spheretree/octree.h"
 #include "tightened_in_frame.h"
 #include "tightener.h"
 #include "tree_looseness.h"
@@ -26,6 +28,14 @@ detail::Work work_for(Effort effort) {
       return {1, 16, 4, 48, {4, 1}};
   }
   return {0.7, 14, 0, 48, {6, 1}};
+}
+
+// As the finished tree is compared with it; without nodes if it is not.
+SphereTree octree_to_compare_with(const Surface& surface, const TightenOptions& options) {
+  if (!detail::goes_on_everywhere(options.refinement)) return {};
+  SphereTree compared = octree(surface, {.depth = options.depth});
+  measure_inaccuracy(compared, surface);
+  return compared;
 }
 
 }  // namespace
@@ -77,14 +87,15 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   own.effort = Effort::standard;
   Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), first);
   TightenBuild usual = standard.run();
-  const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, surface);
+  const SphereTree compared = octree_to_compare_with(surface, options);
+  const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, compared, surface);
   if (allowed.size() != usual.report.levels.size() + 1) return usual;
   own.effort = Effort::high;
   // Levels below may have spheres removed above: then those above are left as they are.
   for (Index same = 0; same < usual.report.levels.size();) {
     Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), rest);
-    TightenBuild best = thorough.run_beside(standard, same, allowed);
-    const std::vector<LevelLooseness> figures = looseness_by_level(best.tree, surface);
+    TightenBuild best = thorough.run_beside(standard, same, allowed, compared);
+    const std::vector<LevelLooseness> figures = looseness_by_level(best.tree, compared, surface);
     Index within = 0;
     while (within < figures.size() && figures[within].is_within(allowed[within])) ++within;
     if (within == allowed.size()) return best;

@@ -134,9 +134,6 @@ double looseness(const LevelSolver& solver) {
   return mean_times_max(values) * volume;
 }
 
-// Whether the tree goes on everywhere down to its depth.
-bool is_whole(const Refinement& refinement) { return refinement.error <= 0 && refinement.regions.empty(); }
-
 std::vector<Index> spheres_by_level(const TightenOptions& options) {
   if (!options.spheres.empty()) return options.spheres;
   std::vector<Index> spheres;
@@ -170,10 +167,12 @@ TightenBuild Tightener::run() {
   return result();
 }
 
-TightenBuild Tightener::run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed) {
+TightenBuild Tightener::run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed,
+                                   const SphereTree& octree) {
   restore_from(other, same);
   report_.levels.assign(other.report_.levels.begin(), other.report_.levels.begin() + same);
-  for (Index level = same + 1; level < allowed.size(); ++level) build_level_beside(level, other, allowed[level]);
+  for (Index level = same + 1; level < allowed.size(); ++level)
+    build_level_beside(level, other, {allowed[level], octree});
   return result();
 }
 
@@ -242,7 +241,7 @@ bool Tightener::build_level(Index level) {
 
 // First on the levels so far. Where no cover on these keeps to what is allowed, on the levels that the other one has;
 // where none on those does either, the level is the other one's.
-void Tightener::build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed) {
+void Tightener::build_level_beside(Index level, const Tightener& other, const AllowedLooseness& allowed) {
   if (take_cover_within(level, other.partial_, allowed)) return;
   const bool differed = differs_;
   restore_from(other, level - 1);
@@ -253,7 +252,7 @@ void Tightener::build_level_beside(Index level, const Tightener& other, const Le
 
 // Covers as usual, but that balls looser than any of the usual tree's cost much more: where the usual level is tight,
 // the maximum is what most covers would break the rule by. False: none keeps to what is allowed.
-bool Tightener::take_cover_within(Index level, const PartialTree& usual, const LevelLooseness& allowed) {
+bool Tightener::take_cover_within(Index level, const PartialTree& usual, const AllowedLooseness& allowed) {
   std::optional<LevelOptions> options = next_level(level);
   if (!options) return false;
   options->keep_above = true;
@@ -290,10 +289,11 @@ void Tightener::take_tightest(std::vector<Candidate>& all) {
 }
 
 // Whatever is looser in a figure breaks the rule by that. The others are compared by their figures' product.
-void Tightener::hold_to(const LevelLooseness& allowed, std::vector<Candidate>& all) const {
+void Tightener::hold_to(const AllowedLooseness& within, std::vector<Candidate>& all) const {
+  const auto& [allowed, octree] = within;
   const double radius = surface_.bounding_radius();
   for (Candidate& candidate : all) {
-    const LevelLooseness own = looseness_by_level(candidate.partial.tree(), surface_).back();
+    const LevelLooseness own = looseness_by_level(candidate.partial.tree(), octree, surface_).back();
     candidate.looseness = own.product();
     if (!own.is_within(allowed))
       candidate.excess =
@@ -345,7 +345,7 @@ void Tightener::cap(Candidate& candidate) const {
 
 // By how much a level with this tightness is looser than it may be, as a part of R; not above 0: it is not.
 double Tightener::excess(const LevelTightness& level, Index balls) {
-  if (!is_whole(options_.refinement)) return 0;
+  if (!goes_on_everywhere(options_.refinement)) return 0;
   const LevelTightness above = tightness(inaccuracies_), octree = octree_.bound(balls);
   const double mean = level.mean - std::min(above.mean, octree.mean), max = level.max - std::min(above.max, octree.max);
   return std::max(mean, max) / surface_.bounding_radius() - kSameTightness;

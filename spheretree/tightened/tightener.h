@@ -35,9 +35,10 @@ class Tightener {
             const Work& work, const Progress& progress);
   TightenBuild run();
   // The same beside another one that has run on the same surface with less work: no level gets looser than allowed,
-  // which is what its tree's levels are (as looseness_by_level() has it). Its first levels, as many as `same`, are
-  // taken as they are.
-  TightenBuild run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed);
+  // which is what its tree's levels are (as looseness_by_level() has it, beside this octree). Its first levels, as many
+  // as `same`, are taken as they are.
+  TightenBuild run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed,
+                          const SphereTree& octree);
 
  private:
   // What a level's balls are searched from, and how; those with the same number have the same unit of cost.
@@ -45,6 +46,11 @@ class Tightener {
     LevelOptions options;
     std::vector<LevelBall> balls;  // none: seeded ones
     int kind = 0;
+  };
+  // What a level may have, and the octree that is_loosened() asks after.
+  struct AllowedLooseness {
+    const LevelLooseness& level;
+    const SphereTree& octree;
   };
   // A level that covers the surface.
   struct Candidate {
@@ -59,10 +65,10 @@ class Tightener {
   };
   TightenBuild result();
   bool build_level(Index level);
-  void build_level_beside(Index level, const Tightener& other, const LevelLooseness& allowed);
-  bool take_cover_within(Index level, const PartialTree& usual, const LevelLooseness& allowed);
+  void build_level_beside(Index level, const Tightener& other, const AllowedLooseness& allowed);
+  bool take_cover_within(Index level, const PartialTree& usual, const AllowedLooseness& allowed);
   void restore_from(const Tightener& other, Index level);
-  void hold_to(const LevelLooseness& allowed, std::vector<Candidate>& all) const;
+  void hold_to(const AllowedLooseness& allowed, std::vector<Candidate>& all) const;
   void take_tightest(std::vector<Candidate>& all);
   std::optional<LevelOptions> next_level(Index level) const;
   LevelOptions options_for(Index level, Index balls) const;

@@ -16,6 +16,7 @@
 #include "orchard/spheretree/outside_volume.h"
 #include "orchard/spheretree/redundancy.h"
 #include "support.h"
+#include "tightened/tree_looseness.h"
 
 namespace orchard {
 namespace {
@@ -385,6 +386,26 @@ TEST(TightenedTree, IsLooserInNoFigureWithHighEffort) {
   constexpr double kRounding = 1e-9;
   for (std::size_t level = 0; level < high.size(); ++level)
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(high[level][i], standard[level][i] * (1 + kRounding)) << level << i;
+}
+
+// A root with two children that hold everything and a small one that is redundant but tight: without it, or with it, as
+// the finished tree will be.
+TEST(TreeLooseness, CountsRedundantSpheresWhereTheFinishedTreeKeepsThem) {
+  const Surface surface(torus(16, 8));
+  const Sphere& ball = surface.bounding_ball();
+  SphereTree tree;
+  tree.nodes.push_back({.sphere = {ball.center, 1.1 * ball.radius}, .first_child = 1, .child_count = 3});
+  for (const double factor : {1.2, 0.05, 1.3})
+    tree.nodes.push_back({.sphere = {ball.center, factor * ball.radius}, .parent = 0, .level = 1});
+  SphereTree compared = octree(surface, {.depth = 1}), whole = tree, lean = tree;
+  for (SphereTree* measured : {&compared, &whole}) measure(*measured, surface);
+  remove_redundant(lean, surface);
+  measure(lean, surface);
+  ASSERT_LT(lean.nodes.size(), tree.nodes.size());
+  EXPECT_TRUE(detail::is_loosened(lean, compared));
+  EXPECT_EQ(detail::looseness_by_level(tree, compared, surface)[1].mean, level_figures(whole, 1)[1].mean_inaccuracy);
+  // Trees that do not go on everywhere are compared with no octree, and keep nothing that is redundant.
+  EXPECT_EQ(detail::looseness_by_level(tree, {}, surface)[1].mean, level_figures(lean, 1)[1].mean_inaccuracy);
 }
 
 TEST(TightenedTree, GivesEachOfManyPartsASphereOfItsOwn) {
