@@ -268,6 +268,11 @@ orchard_pair_event orchard_detector_event(const orchard_detector* detector, size
   return result;
 }
 
+orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t index) {
+  const rt::PairEvent event = detector->frame.events[index];
+  return rt::detail::manifold_of(detector->detector->manifold(event));
+}
+
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index) {
   return detector->frame.refused[index];
 }

@@ -313,20 +313,8 @@ int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, con
 
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
                                   const orchard_tree* b, const orchard_pose* pose_b) {
-  const rt::Manifold m =
-      rt::contacts(workspace->workspace, rt::TreePair(a->prepared, b->prepared), pose_of(*pose_a), pose_of(*pose_b));
-  orchard_manifold result{};
-  result.answer = static_cast<orchard_answer>(m.answer);
-  result.count = m.count;
-  for (std::uint32_t i = 0; i < m.count; ++i) {
-    std::copy_n(m.points[i].place.begin(), 3, result.points[i]);
-    result.triangles[i][0] = m.points[i].triangle_a, result.triangles[i][1] = m.points[i].triangle_b;
-  }
-  std::copy_n(m.normal.begin(), 3, result.normal);
-  result.depth = m.depth;
-  result.error = m.error;
-  result.complete = m.complete;
-  return result;
+  return rt::detail::manifold_of(
+      rt::contacts(workspace->workspace, rt::TreePair(a->prepared, b->prepared), pose_of(*pose_a), pose_of(*pose_b)));
 }
 
 orchard_signed_distance orchard_measure_signed(orchard_workspace* workspace, const orchard_tree* a,

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/contacts.h"
 #include "orchard/runtime/mapped_tree.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/orchard.h"
@@ -46,6 +47,21 @@ void put_contact(const Contact& contact, InC& result) noexcept {
   result.contact_radius = contact.radius;
   result.triangle_a = contact.triangle_a;
   result.triangle_b = contact.triangle_b;
+}
+
+inline orchard_manifold manifold_of(const Manifold& m) noexcept {
+  orchard_manifold result{};
+  result.answer = static_cast<orchard_answer>(m.answer);
+  result.count = m.count;
+  for (std::uint32_t i = 0; i < m.count; ++i) {
+    std::copy_n(m.points[i].place.begin(), 3, result.points[i]);
+    result.triangles[i][0] = m.points[i].triangle_a, result.triangles[i][1] = m.points[i].triangle_b;
+  }
+  std::copy_n(m.normal.begin(), 3, result.normal);
+  result.depth = m.depth;
+  result.error = m.error;
+  result.complete = m.complete;
+  return result;
 }
 
 inline orchard_verdict verdict_of(const Verdict& v) noexcept {

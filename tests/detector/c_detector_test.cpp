@@ -72,6 +72,12 @@ TEST(CDetector, TellsWhatBeginsAndEnds) {
   EXPECT_EQ(event.verdict.answer, ORCHARD_YES);
   EXPECT_NEAR(event.verdict.contact_center[0], 1, 0.01);
   EXPECT_TRUE(std::isnan(event.impact_from));
+  const orchard_manifold manifold = orchard_detector_manifold(w.detector, 0);
+  EXPECT_EQ(manifold.answer, ORCHARD_YES);
+  ASSERT_GE(manifold.count, 1u);
+  EXPECT_NEAR(std::fabs(manifold.normal[0]), 1, 0.1);
+  EXPECT_GT(manifold.depth, 0);
+  EXPECT_EQ(orchard_detector_event(w.detector, 0).a.index, a.index);  // events stay
   EXPECT_EQ(orchard_detector_event(w.detector, 1).a.index, d.index);
   double pairs[4], work[4];
   EXPECT_EQ(orchard_detector_foresee(w.detector, 4, pairs, work), 4u);

@@ -148,6 +148,9 @@ orchard_frame orchard_detector_step(orchard_detector* detector, double time, orc
 orchard_frame orchard_detector_step_latest(orchard_detector* detector, double time, orchard_budget budget);
 /* Of the last step; index < events. */
 orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index);
+/* Where the two touch, at up to four points, and how they come apart: see Detector::manifold. Without points, and
+ * "maybe", if the event's answer is not yes or its bodies are gone. */
+orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t index);
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index);
 uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index);
 uint64_t orchard_detector_promises_broken(const orchard_detector* detector);
