@@ -192,7 +192,6 @@ class BodyPool {
   }
   std::uint8_t importance(BodyIndex body) const noexcept { return importance_[body]; }
   unsigned next_class(unsigned from) const noexcept;  // the first class, from `from` on, that has bodies; or kNoClass
-  bool one_class() const noexcept { return classes_ <= 1; }
   // A pair is as important as the less important of its bodies.
   std::uint8_t importance(const BodyPair& pair) const noexcept {
     return std::max(importance_[pair.a], importance_[pair.b]);
@@ -252,10 +251,9 @@ class BodyPool {
   void make_class(std::uint8_t importance) {
     if (in_class_.size() <= importance) in_class_.resize(std::size_t{importance} + 1);
   }
-  void enter_class(std::uint8_t importance) noexcept { classes_ += in_class_[importance]++ == 0; }
-  void leave_class(std::uint8_t importance) noexcept { classes_ -= --in_class_[importance] == 0; }
+  void enter_class(std::uint8_t importance) noexcept { ++in_class_[importance]; }
+  void leave_class(std::uint8_t importance) noexcept { --in_class_[importance]; }
   std::vector<std::uint32_t> in_class_;  // bodies, by class
-  unsigned classes_ = 0;                 // that have bodies
 };
 
 // Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is

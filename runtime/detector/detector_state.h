@@ -16,7 +16,7 @@ struct Detector::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  // detector.cpp: what changes between steps
+  // detector.cpp
   // What `made()` gives. Where there is no memory for it, nobody knows what has been done.
   template <typename Make>
   auto or_fail(Make&& made) {
@@ -29,6 +29,9 @@ struct Detector::State {
     until_done.done = true;
     return result;
   }
+  static void run_for_broad(void* context, std::size_t count, Executor::Job job, void* data);
+
+  // change_bodies.cpp: bodies come, change and go between two steps
   detail::Body& take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
   bool acceptable(std::span<const BodyPart> parts) const noexcept;
   bool acceptable(const BodyOptions& with) const noexcept;
@@ -44,7 +47,6 @@ struct Detector::State {
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
   static BodyFilter broad_filter(const detail::Body& body) noexcept;
   void stir(detail::Body& body) noexcept;  // what sleeps
-  static void run_for_broad(void* context, std::size_t count, Executor::Job job, void* data);
 
   // kept_states.cpp: bodies whose states the detector keeps
   double last_time() const noexcept;  // that of the last step, or of the first one
