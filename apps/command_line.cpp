@@ -313,6 +313,11 @@ void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
       ->check(CLI::Range(1, 10));
 }
 
+void add_features(CLI::App& command, MedialCommand& medial) {
+  command.add_option("--features", medial.features,
+                     "Your own feature edges, which sheets reach to: lines of an .obj file along edges of the mesh");
+}
+
 void add_side(CLI::App& command, MedialCommand& medial) {
   CLI::Option* side = command
                           .add_option_function<std::string>(
@@ -358,6 +363,7 @@ void add_medial(CLI::App& app, Request& request) {
   command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
   add_mesh_options(command, medial.reading);
   add_side(command, medial);
+  add_features(command, medial);
   command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
   command
       .add_option(

@@ -96,6 +96,7 @@ struct MedialCommand {
   AxisSource source;
   bool outside = false;                       // the axis of the space around the solid, within a sphere
   double outside_radius = 2;                  // of that sphere, in bounding radii
+  std::filesystem::path features;             // .obj: the edges that sheets reach to; empty: found by their loss
   std::filesystem::path axis;                 // not empty: a .ma file to judge; nothing is built
   bool report = false;                        // judge what was built
   std::vector<std::filesystem::path> beside;  // .ma files to judge by the same measures, in the same table

@@ -123,6 +123,15 @@ void refuse_idle_options(const MedialCommand& command) {
   const Names swept = swept_flags(command);
   refuse_idle_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
+  if (!command.features.empty()) {
+    if (judges || sweeps || command.outside || !command.tuning.refine)
+      throw InputError(fmt::format("--features has no effect with {}", judges   ? "--axis, which builds nothing"
+                                                                       : sweeps ? "--sweep"
+                                                                       : command.outside ? "--side outside"
+                                                                                         : "--raw or --refine no"));
+    if (among("feature-loss", command.given))
+      throw InputError("--feature-loss has no effect with --features, which says where sheets end");
+  }
   Names sources;
   for (const char* source : {"points", "diagram"})
     if (among(source, command.given)) sources.emplace_back(source);

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "feature_lines.h"
 #include "idle_options.h"
 #include "input_file.h"
 #include "medial_advice.h"
@@ -47,7 +48,7 @@ std::vector<std::string> names_of(const MedialCommand& command) {
     return names;
   }
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
-  for (const char* ending : {".ma", ".graphml"}) names.push_back(named(command.mesh, ending));
+  for (const char* ending : {".ma", ".graphml", "-features.obj"}) names.push_back(named(command.mesh, ending));
   return names;
 }
 
@@ -79,6 +80,7 @@ Destination check(const MedialCommand& command) {
   refuse_idle_options(command);
   check_sweep(command);  // without a sweep, that of the one combination that there is
   inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
+  if (!command.features.empty()) inputs.push_back(command.features);
   inputs.insert(command.axis.empty() ? inputs.begin() : inputs.begin() + 1, command.mesh);
   for (const fs::path& file : inputs) check_input(file);
   Destination destination{.folder = command.folder,
@@ -159,8 +161,7 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
   MedialJudgement judgement;
   time_stage(judgement.seconds, "quality",
              [&] { judgement.quality = medial_quality(solid.surface, mesh, quality_options(command), progress); });
-  const Judged judged{
-      .mesh = mesh, .judgement = std::move(judgement), .origin = {.built = false}, .name = command.axis.string()};
+  const Judged judged{.mesh = mesh, .judgement = std::move(judgement), .origin = {}, .name = command.axis.string()};
   bar.clear();
   json report = counts_of(mesh);
   report["mesh"] = mesh_json(solid.surface);
@@ -200,7 +201,8 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                     ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
-  const MedialBuildOptions options = build_options(command.tuning);
+  MedialBuildOptions options = build_options(command.tuning);
+  if (!command.features.empty()) options.refine->features = read_feature_lines(command.features, surface);
   OwnInput own = read_axis_source(command.source, surface);
   if (talk) print_reading(command.source.points, own.reading);
   if (inner != nullptr) own.input.sampling = sample_outside(*inner, surface, options.sampling, progress);
@@ -229,6 +231,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
   if (!warning.empty()) report["warning"] = warning;
   report["promise"]["broken"] = broken.what;
+  report["promise"]["kept"] = broken.none();  // what could not be proven is not kept
   add_solid_json(solid, report);
   if (talk) {
     fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
@@ -247,8 +250,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                  [&] { errors = medial_errors(surface, build, mesh, quality_options(command)); });
     const Judged judged{.mesh = mesh,
                         .judgement = std::move(*judgement),
-                        .origin = {.built = true,
-                                   .tuning = command.tuning,
+                        .origin = {.tuning = &command.tuning,
                                    .own_points = !command.source.files().empty(),
                                    .cuts_itself = solid.self_intersections.value_or(0) > 0},
                         .name = "this axis"};
@@ -257,6 +259,9 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   Outputs outputs(destination);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
              to_ma(mesh) + to_structure_section(structure) + (last_line.empty() ? "" : "# " + last_line + "\n"));
+  if (!build.features.empty())
+    write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
+               to_feature_lines(surface, build.features));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,

@@ -15,7 +15,7 @@ constexpr double kSlack = 1.5;              // times a bound: what is beyond tha
 
 std::string more_points(const AxisOrigin& origin) {
   if (origin.own_points) return "more points of your own there";
-  return fmt::format("--samples {}", 2 * origin.tuning.samples.value_or(kStandardSamples));
+  return fmt::format("--samples {}", 2 * origin.tuning->samples.value_or(kStandardSamples));
 }
 
 // The most that the surface turns at a convex edge that comes within `reach` of a place, in radians; 0 if there is
@@ -40,7 +40,7 @@ double sharpest_edge_near(const Surface& surface, const Point& position, double 
 }
 
 std::string about_protrusion(const WorstPlace& place, const AxisOrigin& origin) {
-  const MedialTuning& tuning = origin.tuning;
+  const MedialTuning& tuning = *origin.tuning;
   if (!tuning.refine) return "no --raw, or " + more_points(origin);
   if (place.value <= kSlack * tuning.refinement.tolerance)
     return fmt::format("--linear-error {:.2g}", 50 * place.value);
@@ -48,28 +48,28 @@ std::string about_protrusion(const WorstPlace& place, const AxisOrigin& origin) 
 }
 
 std::string about_coverage(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
-  const MedialTuning& tuning = origin.tuning;
+  const MedialTuning& tuning = *origin.tuning;
   if (tuning.prune_degrees > 0) return fmt::format("--prune-angle {:.3g}", 0.5 * tuning.prune_degrees);
   if (tuning.options.prune.scale > 1) return "--prune-scale 1";
   if (!tuning.refine) return "no --raw, or " + more_points(origin);
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double turn = sharpest_edge_near(surface, place.position, 1e-9 * diagonal + 0.5 * place.value * diagonal);
-  if (turn > kMinTurn && turn < tuning.refinement.sharp_angle)
-    return fmt::format("--sharp-angle {:.0f}, for the edge here", std::floor(turn * kDegrees));
+  if (turn > kMinTurn && place.value < tuning.refinement.feature_loss)
+    return fmt::format("--feature-loss {:.2g}, for the edge here", 50 * place.value);
   if (turn < kMinTurn && place.value <= kSlack * tuning.refinement.border_loss)
     return fmt::format("--border-loss {:.2g}", 50 * place.value);
   return more_points(origin);
 }
 
 std::string about_dent(const AxisOrigin& origin) {
-  if (!origin.tuning.refine) return "no --raw, or " + more_points(origin);
+  if (!origin.tuning->refine) return "no --raw, or " + more_points(origin);
   return more_points(origin);
 }
 
 }  // namespace
 
 std::string advice(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
-  if (!origin.built) return "nothing here: the axis is a file";
+  if (origin.tuning == nullptr) return "nothing here: the axis is a file";
   if (origin.cuts_itself) return "--wrap, since the mesh cuts itself";
   switch (place.kind) {
     case WorstKind::protrusion:

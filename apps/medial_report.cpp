@@ -43,7 +43,7 @@ json to_json(const RefineReport& report) {
           {"folded_triangles", report.folded_triangles},
           {"border_cuts", report.border_cuts},
           {"spike_and_flake_cells_removed", report.small_pieces},
-          {"doubled_triangles_removed", report.doubled},
+          {"vertices_moved", report.vertices_moved},
           {"notches_filled", report.notches},
           {"open_places_reached", report.reached_places},
           {"vertices_on_sharp_edges", report.edge_vertices},
@@ -70,6 +70,7 @@ json to_json(const MedialBuild& build) {
           {"vertices_before_pruning", build.unpruned_vertices},
           {"open_places", build.open_places},
           {"refinement", build.refinement.vertices > 0 ? to_json(build.refinement) : json()},
+          {"feature_edges", build.features.size()},
           {"vertices_on_stems", build.axis.stems},
           {"bridges", build.axis.bridges},
           {"vertices_left_out", build.axis.left_out},
@@ -140,10 +141,10 @@ void print(const MedialBuild& build) {
   fmt::print(", {} faces\n", build.axis.faces.size());
   if (refinement.vertices == 0) return;
   fmt::print(
-      "refining: {} folded triangles and what borders lose less than cut off, {} cells of spikes and flakes, {} "
-      "triangles of doubled sheets, {} notches filled, {} open places reached, {} edges divided",
-      refinement.folded_triangles, refinement.small_pieces, refinement.doubled, refinement.notches,
-      refinement.reached_places, refinement.divided);
+      "refining: {} folded triangles and what borders lose less than cut off, {} cells of spikes and flakes taken "
+      "away, {} notches filled, {} open places reached, {} edges divided",
+      refinement.folded_triangles, refinement.small_pieces, refinement.notches, refinement.reached_places,
+      refinement.divided);
   if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
   fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
 }

@@ -150,8 +150,13 @@ std::vector<TuningFlag> refining_flags() {
                 "edges and ridges that no point shows",
                 [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
           no_refining),
-      idle_where(real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
-                      [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); }),
+      idle_where(real("feature-loss", "0.165", 1e-4, 100,
+                      "Percent of the diagonal: sheets reach to convex edges beyond which so much is lost otherwise",
+                      [](T& t, double x) { t.refinement.feature_loss = x / 100; }),
+                 no_refining),
+      idle_where(real("edge-length", "3", 0.05, 100,
+                      "Percent of the diagonal that edges of the axis are long: less makes more and smaller triangles",
+                      [](T& t, double x) { t.refinement.edge_length = x / 100; }),
                  no_refining)};
 }
 

@@ -51,8 +51,7 @@ Broken broken(const PromiseCheck& check) {
 json to_json(const PromiseCheck& check) {
   json topology = nullptr;
   if (check.promise.topology) topology = check.keeps_topology();
-  return {{"kept", check.kept()},
-          {"proven", check.proven()},
+  return {{"proven", check.proven()},
           {"open", limited(check.promise.open, check.open, check.open_upper)},
           {"protrusion", limited(check.promise.protrusion, check.protrusion, check.protrusion_upper)},
           {"topology", topology}};

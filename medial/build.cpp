@@ -124,6 +124,7 @@ class MedialBuilder {
       RefinedAxis refined = refiner->finish();
       build_.axis = std::move(refined.axis);
       build_.refinement = refined.report;
+      build_.features = std::move(refined.features);
     });
   }
 

@@ -2,16 +2,17 @@
 #include <array>
 #include <vector>
 
+#include "../remesh/feature_edges.h"
 #include "ball_complex.h"
 
 namespace orchard::detail {
 
 struct BorderOptions {
-  double level = 0;        // mesh units: sheets end where what they lose beyond is this (BallSolver::loss)
-  double tolerance = 0;    // mesh units: what a ball between two exact ones may protrude or fall short
-  double spacing = 0;      // mesh units, of the surface points
-  double merging = 0;      // mesh units; see BallSolver
-  double sharp_angle = 0;  // radians between the normals of two faces at an edge that sheets reach to
+  double level = 0;      // mesh units: sheets end where what they lose beyond is this (BallSolver::loss)
+  double tolerance = 0;  // mesh units: what a ball between two exact ones may protrude or fall short
+  double spacing = 0;    // mesh units, of the surface points
+  double merging = 0;    // mesh units; see BallSolver
+  const FeatureEdges* features = nullptr;  // edges that sheets reach to
 };
 
 // Tolerances that cells added at borders may be off by: what is a little off is divided later.

@@ -30,13 +30,14 @@ struct Row {
   }
 };
 
-std::map<MeshEdge, Row> rows_on_edges(const Surface& surface, const BallComplex& complex, double sharp_angle) {
+std::map<MeshEdge, Row> rows_on_edges(const Surface& surface, const BallComplex& complex,
+                                      const FeatureEdges& features) {
   const std::vector<Point>& vertices = surface.mesh().vertices;
   const auto place = [&](const MeshEdge& edge, Index v) {
     const Point& start = vertices[edge[0]];
     return std::pair((vertices[edge[1]] - start).dot(complex.balls[v].center - start), v);
   };
-  SharpEdges edges(surface, sharp_angle);
+  SharpEdges edges(surface, features);
   std::map<MeshEdge, Row> rows;
   std::vector<std::vector<MeshEdge>> edges_of(complex.size());
   for (Index v = 0; v < complex.size(); ++v) {
@@ -61,10 +62,10 @@ std::map<MeshEdge, Row> rows_on_edges(const Surface& surface, const BallComplex&
 }  // namespace
 
 std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex,
-                                                double sharp_angle) {
+                                                const FeatureEdges& features) {
   std::vector<std::array<Index, 2>> gaps;
   std::map<Index, std::vector<Index>> nearest;  // to a vertex of the mesh, on each sharp edge
-  for (const auto& [edge, row] : rows_on_edges(surface, complex, sharp_angle)) {
+  for (const auto& [edge, row] : rows_on_edges(surface, complex, features)) {
     for (std::size_t i = 0; i + 1 < row.places.size(); ++i) {
       if (row.along[i] == 0) gaps.push_back({row.places[i].second, row.places[i + 1].second});
     }

@@ -2,14 +2,16 @@
 #include <array>
 #include <vector>
 
+#include "../remesh/feature_edges.h"
 #include "ball_complex.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {
 
-// Pairs of vertices of radius 0 that are next to each other on a sharp convex edge of the mesh (SharpEdges), or around
+// Pairs of vertices of radius 0 that are next to each other on a feature edge of the mesh, or around
 // a corner where two such edges meet, and no edge of the complex runs along the edge between them. In the order of the
 // mesh's vertices. O(n log n).
-std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex, double sharp_angle);
+std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex,
+                                                const FeatureEdges& features);
 
 }  // namespace orchard::detail

@@ -38,13 +38,9 @@ Index extend_to_edges(const Surface& surface, BallComplex& complex, const Border
 // vertices.
 Index extend_to_corners(const Surface& surface, BallComplex& complex, const BorderOptions& options);
 
-// Fills sheets between places next to each other on sharp convex edges, where thin parts of the solid leave them in
-// strips. Returns the number of new triangles.
+// Fills sheets between places next to each other on feature edges, where thin parts of the solid leave them in strips,
+// or seams end there. Returns the number of new triangles.
 Index fill_along_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
-
-// Bends the borders between places of sharp convex edges onto these, and into their corners. Returns the number of new
-// vertices.
-Index follow_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
 
 // Reaches for places that the balls leave open: by a triangle beside the borders near them, from the edge from where
 // they become longer by the least and the triangle can be divided (SplitOptions) until it is right, so that places

@@ -14,7 +14,7 @@ namespace {
 class EdgeReacher {
  public:
   EdgeReacher(const Surface& surface, BallComplex& complex, const BorderOptions& options)
-      : sheets_(surface, complex, options), edges_(surface, options.sharp_angle) {}
+      : sheets_(surface, complex, options), edges_(surface, *options.features) {}
 
   Index run() {
     const Index before = sheets_.complex.size();
@@ -42,7 +42,7 @@ class EdgeReacher {
       for (const Index v : sheets_.complex.edges[e]) on_border[v] = 1;
     }
     tbb::parallel_for(tbb::blocked_range<Index>(0, sheets_.complex.size(), 64), [&](const auto& range) {
-      SharpEdges edges(sheets_.surface, sheets_.options.sharp_angle);
+      SharpEdges edges(sheets_.surface, *sheets_.options.features);
       for (Index v = range.begin(); v != range.end(); ++v) {
         const ExactBall& ball = sheets_.complex.balls[v];
         if (ball.exact && ball.radius > 0 && on_border[v]) find_ends(ball, edges, ends_[v]);

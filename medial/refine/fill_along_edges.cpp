@@ -12,10 +12,10 @@ namespace {
 class EdgeFiller {
  public:
   EdgeFiller(const Surface& surface, BallComplex& complex, const BorderOptions& options)
-      : sheets_(surface, complex, options), edges_(surface, options.sharp_angle) {}
+      : sheets_(surface, complex, options), edges_(surface, *options.features) {}
 
   Index run() {
-    for (const auto& [x, y] : gaps_on_edges(sheets_.surface, sheets_.complex, sheets_.options.sharp_angle)) fill(x, y);
+    for (const auto& [x, y] : gaps_on_edges(sheets_.surface, sheets_.complex, *sheets_.options.features)) fill(x, y);
     return sheets_.triangles.finish();
   }
 

@@ -28,7 +28,7 @@ class OpenPlaceReacher {
         borders_(sheets_, kBeside * options.spacing),
         edge_numbers_(complex.edge_numbers()),
         solver_(solver),
-        edges_(surface, options.sharp_angle),
+        edges_(surface, *options.features),
         reconstruction_(reconstruction),
         left_(left),
         dividing_(dividing) {}
@@ -210,7 +210,8 @@ class OpenPlaceReacher {
       radius = to.squaredNorm() / (2 * across);
     }
     const std::array<ClosestPoint, 2> seeds{contact, other};
-    return solver_.solve(contact.position + radius * inward, seeds);
+    const ExactBall ball = solver_.solve(contact.position + radius * inward, seeds);
+    return sheets_.surface.inside(ball.center) ? ball : ExactBall{};  // where a mesh cuts itself, it may be outside
   }
 
   // The edges of a cell that a place of it is on; or its edges.

@@ -10,19 +10,16 @@
 #include <utility>
 
 #include "../axis_triangles.h"
+#include "../remesh/remesh.h"
 #include "axis_of_balls.h"
 #include "cut_at_level.h"
 #include "dents_below.h"
 #include "drop_degenerate.h"
-#include "drop_doubled.h"
-#include "drop_flakes.h"
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
 #include "orchard/medial/quality.h"
 #include "small_pieces.h"
-#include "solve_again.h"
-#include "spread_flat.h"
 
 namespace orchard::detail {
 namespace {
@@ -31,25 +28,25 @@ constexpr const char* kStage = "refining the axis";
 // Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
 // which side of the level a vertex is.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;     // of filling notches and reaching edges: the last ones find next to nothing
+constexpr int kBorderPasses = 3;     // of reaching edges and corners: the last ones find next to nothing
 constexpr double kMinLength = 1e-3;  // diagonals: shorter edges are not divided
 constexpr std::size_t kEnough = 24;  // seeds of a vertex: coalesced ones have hundreds
 constexpr double kOpen = 1.65;       // of the border loss: places left open by more are reached for
 constexpr double kResolution = 0.1;  // spacings, of looking for these
 constexpr double kDetail = 0.15;     // of what is left open: places open by this more are not missed
 constexpr double kDentWidth = 0.5;   // of what is left open: narrower dents are missed
-constexpr int kReachPasses = 3;      // of reaching for what dropped pieces leave open: one does for most meshes
+constexpr int kReachPasses = 3;      // of reaching for what is left open and evening that out
 constexpr int kDentRounds = 3;       // of looking for these, once nothing is open: some stay where no ball fits
 constexpr double kApart = 0.5;       // spacings, between two that are reached for at once
-constexpr double kShorter = 0.5;     // spacings, by which the borders become shorter where a doubled sheet goes
+constexpr double kMinAim = 0.125;    // of the edge length asked for: no shorter ones are aimed at
+constexpr double kGuarded =
+    0.7;  // of what borders may leave open: what evening out may leave of the places it asks after
+constexpr int kEvenRounds = 6;
+constexpr std::size_t kFineMesh = 2;  // vertices for each surface point: with more, the points stand for them
 constexpr double kDegree = std::numbers::pi / 180;
 // Of borders as the diagram leaves them, and as they grow.
 constexpr NotchLimits kNotches{
     .max_angle = 150 * kDegree, .max_bend = 180 * kDegree, .max_length = 4, .min_loss = 0.5, .on_trial = false};
-// Of borders where they go in steps from one facet of the surface to the next; over wide angles, since what is in
-// between has a ball that would lose less, but still something.
-constexpr NotchLimits kSteps{
-    .max_angle = 176 * kDegree, .max_bend = 60 * kDegree, .max_length = 6, .min_loss = 0.2, .on_trial = true};
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
 
 void check(const RefineOptions& options) {
@@ -57,29 +54,33 @@ void check(const RefineOptions& options) {
     throw InputError("border loss: a finite number of diagonals, not negative");
   if (!(options.tolerance > 0 && std::isfinite(options.tolerance)))
     throw InputError("refining tolerance: a finite number of diagonals above 0");
-  if (!(options.sharp_angle >= 0 && options.sharp_angle <= std::numbers::pi))
-    throw InputError("sharp angle: between 0 and pi");
+  if (!(options.feature_loss > 0 && std::isfinite(options.feature_loss)))
+    throw InputError("loss of features: a finite number of diagonals above 0");
+  if (!(options.feature_length >= 0 && std::isfinite(options.feature_length)))
+    throw InputError("length of features: a finite number of diagonals, not negative");
+  if (!(options.edge_length > 0 && std::isfinite(options.edge_length)))
+    throw InputError("length of edges: a finite number of diagonals above 0");
   if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
   if (!(options.reach_detail >= 0 && std::isfinite(options.reach_detail)))
     throw InputError("detail that is reached for: a finite number, not negative");
   if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
 }
 
-// Where balls are of which others were taken away, by their numbers before; kNone for those.
-std::vector<Index> numbers_of(const std::vector<ExactBall>& before, const std::vector<ExactBall>& left) {
-  std::vector<Index> number(before.size(), kNone);
-  Index next = 0;
-  for (std::size_t v = 0; v < before.size() && next < left.size(); ++v) {
-    if (before[v].center == left[next].center && before[v].radius == left[next].radius) number[v] = next++;
-  }
-  return number;
+// In diagonals.
+double left_open_by_borders(const RefineOptions& options) {
+  return kOpen * std::max(options.border_loss, options.tolerance);
+}
+
+FeatureEdges features_of(const Surface& surface, const RefineOptions& options, double diagonal) {
+  if (!options.features.empty()) return {surface, options.features};
+  return {surface, {.min_loss = options.feature_loss * diagonal, .min_length = options.feature_length * diagonal}};
 }
 
 }  // namespace
 
 double left_open(const Surface& surface, const RefineOptions& options, Index points) {
   const double squared_spacing = surface.report().area / points / surface.bounding_box().diagonal().squaredNorm();
-  return std::max(kOpen * std::max(options.border_loss, options.tolerance), options.reach_detail * squared_spacing);
+  return std::max(left_open_by_borders(options), options.reach_detail * squared_spacing);
 }
 
 Refiner::Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis,
@@ -91,7 +92,8 @@ Refiner::Refiner(const Surface& surface, const SurfaceSampling& sampling, const 
       progress_(progress),
       diagonal_(surface.bounding_box().diagonal().norm()),
       level_(std::max(options.border_loss, std::numeric_limits<double>::min()) * diagonal_),
-      guard_(sampling.points, left_open()) {
+      guard_(sampling.points, left_open()),
+      features_(features_of(surface, options, diagonal_)) {
   check(options);
 }
 
@@ -99,52 +101,49 @@ void Refiner::refine(FoundBalls* found) {
   report_.vertices_before = axis_.size();
   make_complex();
   find_balls(found);
-  solve_outliers_again(surface_, complex_, kMerging * level_);
-  report_progress(progress_, kStage, 0.25);
+  report_progress(progress_, kStage, 0.1);
   drop_folded();
   report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);
   report_.small_pieces = drop_small_pieces(complex_, &guard_);
-  report_progress(progress_, kStage, 0.45);
-  mend_borders();
+  report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
+  report_progress(progress_, kStage, 0.2);
+  reach_edges();
   report_.small_pieces += drop_small_pieces(complex_, &guard_);
-  report_progress(progress_, kStage, 0.6);
+  report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
+  report_progress(progress_, kStage, 0.3);
 }
 
 RefinedAxis Refiner::finish() {
-  std::vector<Sphere> around;
-  drop_degenerate_cells(false, around);
-  drop_doubled_and_flakes();
-  smooth_borders();
+  places_ = sampling_.points;
+  const std::vector<Point>& vertices = surface_.mesh().vertices;
+  if (vertices.size() < kFineMesh * places_.size()) places_.insert(places_.end(), vertices.begin(), vertices.end());
+  even_out();
+  for (int pass = 0; reach() && pass < kReachPasses; ++pass) even_out();
   divide();
-  reach();
-  spread_flat(surface_, complex_, kMerging * level_);
+  report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
   report_progress(progress_, kStage, 1);
   return result();
 }
 
-// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went, or flakes, and
-// adds spheres around them.
-bool Refiner::drop_degenerate_cells(bool and_flakes, std::vector<Sphere>& around) {
-  const std::vector<ExactBall> before = complex_.balls;
-  report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  Index pieces = and_flakes ? drop_flakes(complex_, &guard_, &around) : 0;
-  pieces += drop_small_pieces(complex_, &guard_, &around);
-  report_.small_pieces += pieces;
-  split_errors_.renumber(numbers_of(before, complex_.balls));
-  return pieces > 0;
-}
-
-// Before anything is divided: what is taken away needs no dividing, and what it covered alone is reached for.
-void Refiner::drop_doubled_and_flakes() {
-  report_.doubled = drop_doubled(complex_, options_.tolerance * diagonal_, kShorter * border_options().spacing);
-  report_.small_pieces += drop_flakes(complex_, &guard_);
-  report_.small_pieces += drop_small_pieces(complex_, &guard_);
-}
-
-// Between one facet of the surface and the next, what sheets lose jumps, and their borders go in steps.
-void Refiner::smooth_borders() {
-  BallSolver solver = this->solver();
-  report_.notches += fill_notches(surface_, complex_, solver, border_options(), split_options(), kSteps);
+// What is new since it was last done, and what is near that.
+void Refiner::even_out() {
+  const auto key = [](const ExactBall& ball) { return std::array{ball.center.x(), ball.center.y(), ball.center.z()}; };
+  std::vector<std::uint8_t> where(complex_.size());
+  for (Index v = 0; v < complex_.size(); ++v)
+    where[v] = std::binary_search(evened_.begin(), evened_.end(), key(complex_.balls[v])) ? 0 : 1;
+  const double length = options_.edge_length * diagonal_;
+  const RemeshOptions options{.max_length = length,
+                              .min_length = kMinAim * length,
+                              .tolerance = options_.tolerance * diagonal_,
+                              .limit = kGuarded * left_open_by_borders(options_) * diagonal_,
+                              .merging = kMerging * level_,
+                              .features = &features_,
+                              .rounds = kEvenRounds};
+  report_.vertices_moved += remesh(surface_, places_, complex_, where, options, progress_).moved;
+  split_errors_ = {};  // vertices have other numbers
+  evened_.clear();
+  for (const ExactBall& ball : complex_.balls) evened_.push_back(key(ball));
+  std::sort(evened_.begin(), evened_.end());
 }
 
 BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }
@@ -258,24 +257,20 @@ BorderOptions Refiner::border_options() const {
           .tolerance = options_.tolerance * diagonal_,
           .spacing = std::sqrt(surface_.report().area / sampling_.size()),
           .merging = kMerging * level_,
-          .sharp_angle = options_.sharp_angle};
+          .features = &features_};
 }
 
-void Refiner::mend_borders() {
+void Refiner::reach_edges() {
   const BorderOptions border = border_options();
-  BallSolver solver = this->solver();
   for (int pass = 0; pass < kBorderPasses; ++pass) {
-    const Index notches = fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
     const Index seams = extend_to_seams(surface_, complex_, border);
     Index reached = extend_to_edges(surface_, complex_, border);
-    reached += follow_edges(surface_, complex_, border);
+    report_.notches += seams + fill_along_edges(surface_, complex_, border);
     reached += extend_to_corners(surface_, complex_, border);
-    report_.notches += notches;
-    report_.edge_vertices += reached;
-    if (notches == 0 && seams == 0 && reached == 0) break;
+    if (seams == 0 && reached == 0) break;
   }
-  report_.notches += fill_along_edges(surface_, complex_, border);
-  report_.edge_vertices += follow_edges(surface_, complex_, border);
+  BallSolver solver = this->solver();
+  report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
 }
 
 SplitOptions Refiner::split_options() const {
@@ -299,41 +294,33 @@ Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector
                            split_options());
 }
 
-// Again as long as pieces go that may have covered something alone; flakes that come again at last stay.
-void Refiner::reach() {
-  const double spacing = border_options().spacing, limit = left_open();
+// Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added
+// is divided, too. Returns whether anything was.
+bool Refiner::reach() {
+  report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
+  report_.small_pieces += drop_small_pieces(complex_, &guard_);
+  split_errors_ = {};
+  const BorderOptions border = border_options();
+  const double spacing = border.spacing, limit = left_open(), apart = kApart * spacing;
   UncoveredSearch open(surface_, limit, kResolution * spacing, kDetail * limit);
   DentsBelow dents(surface_, limit, kDentWidth * limit);
-  std::vector<Sphere> around;
-  for (int pass = 0; pass < kReachPasses; ++pass) {
-    reach(open, dents);
-    around.clear();
-    if (!drop_degenerate_cells(pass + 1 < kReachPasses, around)) break;
-    open.look_again(around);
-    dents.look_again(around);
-  }
-}
-
-// Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added
-// is divided, too.
-void Refiner::reach(UncoveredSearch& open, DentsBelow& dents) {
-  const BorderOptions border = border_options();
-  const double apart = kApart * border.spacing;
   BallSolver solver = this->solver();
   Reconstruction reconstruction(complex_.mesh());
+  const Index before = report_.reached_places;
   int dent_rounds = 0;
   for (int round = 0; round < options_.reach_rounds; ++round) {
     if (round > 0) reconstruction.change(complex_.mesh());
-    Index reached = reach_for(reconstruction, open.find(reconstruction, apart), solver);
+    const std::vector<UncoveredPlace> places = open.find(reconstruction, apart);
+    for (const UncoveredPlace& place : places) places_.push_back(place.position);
+    Index reached = reach_for(reconstruction, places, solver);
     if (reached == 0 && dent_rounds++ < kDentRounds)
       reached = reach_for(reconstruction, dents.find(reconstruction, apart), solver);
     if (reached == 0) break;
     report_.reached_places += reached;
     report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
-    report_.notches += fill_along_edges(surface_, complex_, border);
-    report_.edge_vertices += follow_edges(surface_, complex_, border);
     divide();
   }
+  return report_.reached_places > before;
 }
 
 RefinedAxis Refiner::result() {
@@ -342,6 +329,9 @@ RefinedAxis Refiner::result() {
   refined.axis.stems = axis_.stems;
   refined.axis.bridges = axis_.bridges;
   refined.axis.left_out = axis_.left_out;
+  refined.features = features_.edges();
+  report_.edge_vertices = static_cast<Index>(std::count_if(complex_.balls.begin(), complex_.balls.end(),
+                                                           [](const ExactBall& ball) { return ball.radius == 0; }));
   report_.vertices = refined.axis.size();
   report_.inexact = static_cast<Index>(
       std::count_if(complex_.balls.begin(), complex_.balls.end(), [](const ExactBall& ball) { return !ball.exact; }));

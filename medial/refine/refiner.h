@@ -49,13 +49,10 @@ class Refiner {
   void seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const;
   void find_balls(FoundBalls* found);
   void drop_folded();
-  void mend_borders();
-  bool drop_degenerate_cells(bool and_flakes, std::vector<Sphere>& around);
-  void drop_doubled_and_flakes();
-  void smooth_borders();
+  void reach_edges();
   void divide();
-  void reach();
-  void reach(UncoveredSearch& open, DentsBelow& dents);
+  void even_out();
+  bool reach();
   Index reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);
   RefinedAxis result();
 
@@ -66,7 +63,10 @@ class Refiner {
   const Progress& progress_;
   const double diagonal_, level_;  // mesh units
   BallComplex complex_;
-  const CoverGuard guard_;  // of the surface points, against all that is taken away
+  const CoverGuard guard_;                     // of the surface points, against all that is taken away
+  std::vector<Point> places_;                  // of the surface: what is covered of them stays covered
+  std::vector<std::array<double, 3>> evened_;  // centres of the vertices after evening out, ascending
+  const FeatureEdges features_;
   SplitErrors split_errors_;
   std::vector<Index> face_of_triangle_;  // of the axis as it came
   RefineReport report_;

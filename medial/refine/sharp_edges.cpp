@@ -17,12 +17,10 @@ template <class Visit>
 void SharpEdges::visit_near(const Point& place, double far, const Visit& visit) {
   surface_.triangles_near({place, far}, near_);
   for (const Index triangle : near_) {
-    const auto corners = surface_.corners(triangle);
     for (std::size_t i = 0; i < 3; ++i) {
       const Index other = surface_.neighbors(triangle)[i];
       if (other == kNone || other < triangle) continue;
-      const Vector &n = surface_.normal(triangle), &m = surface_.normal(other);
-      if (angle_between(n, m) >= angle_ && n.cross(m).dot(corners[(i + 1) % 3] - corners[i]) > 0) visit(triangle, i);
+      if (features_.has(triangle, i)) visit(triangle, i);
     }
   }
 }

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "../remesh/feature_edges.h"
 #include "exact_ball.h"
 
 namespace orchard::detail {
@@ -9,7 +10,7 @@ namespace orchard::detail {
 // The convex edges of a mesh whose faces turn by an angle or more. Not for several threads at once.
 class SharpEdges {
  public:
-  SharpEdges(const Surface& surface, double angle) : surface_(surface), angle_(angle) {}
+  SharpEdges(const Surface& surface, const FeatureEdges& features) : surface_(surface), features_(features) {}
 
   // The nearest place on them closer than `far`; false if there is none.
   bool nearest(const Point& place, double far, ClosestPoint& found);
@@ -28,7 +29,7 @@ class SharpEdges {
   bool search(const Point& place, double far, ClosestPoint& found, PlaceOnEdge&& place_on_edge);
 
   const Surface& surface_;
-  const double angle_;  // radians
+  const FeatureEdges& features_;
   std::vector<Index> near_;
 };
 

@@ -56,7 +56,7 @@ TEST(IdleOptions, MedialRefusesWhatItsInputOrOtherFlagsLeaveIdle) {
                   {{"--relaxation", "clusters", "--crease-angle", "40"}, "no effect with --relaxation clusters"},
                   {{"--edge-samples", "0", "--crease-angle", "40"}, "no effect with --edge-samples 0"},
                   {{"--raw", "--border-loss", "1"}, "--border-loss has no effect with --refine no (--raw)"},
-                  {{"--refine", "no", "--sharp-angle", "30"}, "--sharp-angle has no effect with --refine no"},
+                  {{"--refine", "no", "--feature-loss", "1"}, "--feature-loss has no effect with --refine no"},
                   {{"--raw", "--refine", "yes"}, "--refine"},
                   {{"--quality-samples", "500"}, "--quality-samples has no effect without --report"},
                   {{"--wrap-alpha", "0.02"}, "--wrap-alpha requires --wrap"}});

@@ -6,7 +6,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -18,7 +17,6 @@
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
-#include "orchard/geometry/random.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/medial_mesh.h"
@@ -27,7 +25,6 @@
 #include "quality/reconstruction.h"
 #include "refine/found_balls.h"
 #include "refine/free_extension.h"
-#include "refine/solve_again.h"
 #include "support/brute_distance.h"
 #include "support/effort.h"
 #include "support/shapes.h"
@@ -45,15 +42,15 @@ double diagonal(const Surface& surface) { return surface.bounding_box().diagonal
 struct Solid {
   const char* name;
   TriangleMesh mesh;
-  // The least share of exact balls. Those of the torus touch up to sixteen faces at once, which four contacts do not
-  // decide.
+  // The least share of exact balls. Those of the torus touch up to sixteen faces at once, and those in the middle of
+  // the cylinder 24, which four contacts do not decide.
   double exact = 0.97;
 };
 
 std::vector<Solid> solids() {
   return {{"box", test::known_box({1, 2, 3}).solid},
           {"L", test::known_l_shape(8).solid},
-          {"cylinder", test::known_cylinder(24, 4).solid},
+          {"cylinder", test::known_cylinder(24, 4).solid, 0.85},
           {"torus", test::known_torus(32, 16).solid, 0.5},
           {"bridge", test::extruded(test::thin_bridge(0.05), 1)},
           {"notch", test::extruded(test::v_notch(0.2), 1)}};
@@ -140,7 +137,9 @@ TEST(RefineAxis, LiesOnTheClosedFormOfABoxAndReachesItsEdges) {
 TEST(RefineAxis, ReachesTheEdgesOfAPlateThatIsThinnerThanThePointsSpacing) {
   const test::KnownAxis known = test::known_box({0.02, 1, 2});
   const Surface surface(known.solid);
-  const MedialBuild build = build_medial_axis(surface, options_for(400));
+  MedialBuildOptions options = options_for(400);
+  options.refine->feature_loss = 1e-3;  // its edges lose little beside the diagonal: 0.2 %
+  const MedialBuild build = build_medial_axis(surface, options);
   EXPECT_EQ(topology(medial_mesh(build.axis)), solid_topology(surface));
   const Surface built(test::as_triangles(medial_mesh(build.axis)));
   Index missed = 0;
@@ -160,44 +159,6 @@ double mean_gap(const Surface& surface, const MedialAxis& axis) {
   return sum / places.size();
 }
 
-// A sheet of 5 x 5 balls in the middle of a plate, of which some inside are where they do not belong.
-TEST(SolveOutliersAgain, BringsBallsThatStandOutBackIntoTheirSheet) {
-  const Surface plate(test::box(Point::Zero(), {4, 4, 0.2}));
-  for (std::uint64_t seed = 0; seed < 50 * test::more(); ++seed) {
-    Random random(test::first_seed(), seed);
-    detail::BallComplex complex;
-    detail::BallSolver solver(plate, 1e-6);
-    const Index side = 5;
-    for (Index v = 0; v < side * side; ++v) {
-      const Point place(1 + v % side * 0.5 + random.uniform(-0.1, 0.1), 1 + v / side * 0.5, 0.1);
-      const std::array<ClosestPoint, 2> seeds{plate.closest(place + Vector(0, 0, 0.05)),
-                                              plate.closest(place - Vector(0, 0, 0.05))};
-      complex.balls.push_back(solver.solve(place, seeds));
-      ASSERT_TRUE(complex.balls.back().exact);
-      if (v % side + 1 == side || v / side + 1 == side) continue;
-      complex.triangles.push_back({v, v + 1, v + side});
-      complex.triangles.push_back({v + 1, v + side, v + side + 1});
-    }
-    complex.complete();
-    const detail::BallComplex right = complex;
-    const Index spoilt = side + 1 + static_cast<Index>(random.uniform(0, 3)) * (side + 1);
-    if (seed % 2 == 0) {
-      complex.balls[spoilt].exact = false;
-    } else {
-      complex.balls[spoilt].center.z() = 1e-4;
-      complex.balls[spoilt].radius = 1e-4;
-    }
-    EXPECT_EQ(detail::solve_outliers_again(plate, complex, 1e-6), 1u);
-    for (Index v = 0; v < complex.size(); ++v) {
-      EXPECT_TRUE(complex.balls[v].exact);
-      EXPECT_NEAR(complex.balls[v].center.z(), 0.1, 1e-9);
-      EXPECT_NEAR(complex.balls[v].radius, 0.1, 1e-9);
-      EXPECT_LT((complex.balls[v].center - right.balls[v].center).norm(), 0.5);
-    }
-    EXPECT_EQ(detail::solve_outliers_again(plate, complex, 1e-6), 0u);
-  }
-}
-
 // Where the points see only strips of the sheets between a bar's middle and its edges, what is between these is filled.
 TEST(RefineAxis, SheetsOfABarThinnerThanThePointsSpacingAreNotTorn) {
   for (const Vector& size : {Vector(10, 0.25, 0.2), Vector(10, 0.2, 0.2), Vector(8, 0.3, 0.15)}) {
@@ -205,9 +166,9 @@ TEST(RefineAxis, SheetsOfABarThinnerThanThePointsSpacingAreNotTorn) {
     const double edges = 4 * size.sum(), diagonal = bar.bounding_box().diagonal().norm();
     for (std::uint64_t seed = 1; seed <= 3 * test::more(); ++seed) {
       SCOPED_TRACE(seed);
-      const MedialBuild build =
-          build_medial_axis(bar, {.sampling = {.face_points = 300, .edge_points = 0, .seed = test::first_seed() + seed},
-                                  .refine = RefineOptions{}});
+      const MedialBuild build = build_medial_axis(
+          bar, {.sampling = {.face_points = 300, .edge_points = 0, .seed = test::first_seed() + seed},
+                .refine = RefineOptions{.feature_loss = 2e-3}});  // all of their edges lose more than that
       EXPECT_EQ(topology(medial_mesh(build.axis)), (Topology{1, 0, 0}));
       const double length = build.refinement.border_length * diagonal;
       // Torn into strips they had more than twice as much.
@@ -419,7 +380,7 @@ TEST(RefineAxis, LessBorderLossGivesLargerSheets) {
   for (const double loss : {3e-2, 1e-2, 3e-3}) {
     MedialBuildOptions options = options_for(1000);
     options.refine->border_loss = loss;
-    options.refine->sharp_angle = 3;  // no edges to reach
+    options.refine->feature_loss = 1;  // no edges to reach
     const double now = area(medial_mesh(build_medial_axis(surface, options).axis));
     EXPECT_GT(now, last);
     last = now;
@@ -454,7 +415,9 @@ TEST(RefineAxis, RefusesOptionsOutOfRange) {
   refused({.border_loss = -1});
   refused({.border_loss = std::numeric_limits<double>::quiet_NaN()});
   refused({.tolerance = 0});
-  refused({.sharp_angle = 4});
+  refused({.feature_loss = 0});
+  refused({.feature_loss = std::numeric_limits<double>::infinity()});
+  refused({.feature_length = -1});
   refused({.max_rounds = -1});
 }
 

@@ -369,10 +369,10 @@ TEST(SimplifiedMedialMesh, IsWithinTheErrorAskedFor) {
   const MedialMesh axis = built_axis(surface, 200);
   const SimplifiedMedialMesh coarse =
       simplify_medial_mesh(surface, axis, {.error = 0.04, .samples = 500, .check = 500, .search = 20'000, .rounds = 1});
-  const SimplifiedMedialMesh fine =
-      simplify_medial_mesh(surface, axis, {.error = 0.02, .samples = 500, .check = 500, .search = 20'000, .rounds = 1});
+  const SimplifiedMedialMesh fine = simplify_medial_mesh(
+      surface, axis, {.error = 0.006, .samples = 500, .check = 500, .search = 20'000, .rounds = 1});
   EXPECT_LE(coarse.report.upper, 0.04);
-  EXPECT_LE(fine.report.upper, 0.02);
+  EXPECT_LE(fine.report.upper, 0.006);
   EXPECT_LT(coarse.mesh.size(), fine.mesh.size());
   EXPECT_LT(fine.mesh.size(), axis.size() / 2);
 }

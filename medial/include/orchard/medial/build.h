@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -58,6 +59,7 @@ struct MedialBuild {
   Index unpruned_vertices = 0;
   MedialAxis axis;                              // refined, if that was asked for
   RefineReport refinement;                      // zeros, if not
+  std::vector<std::array<Index, 2>> features;   // edges of the mesh that sheets reach to, by its vertices, if refined
   PromiseCheck promise;                         // what was promised, and whether it holds; if that was asked for
   Index open_places = 0;                        // points added where a refined axis left the surface open
   Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis

@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <vector>
+
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/sampling.h"
 #include "orchard/geometry/surface.h"
@@ -14,8 +17,15 @@ struct RefineOptions {
   // In diagonals: how far a ball that is interpolated on an edge or a triangle may protrude from the solid or fall
   // short of its surface before the cell is divided. Above 0.
   double tolerance = 5e-4;
-  // Radians between the normals of two faces from which sheets reach to the convex edge between them, in [0, pi].
-  double sharp_angle = 0.7;
+  // In diagonals: sheets reach to the convex edges of the mesh that would lose so much, or more, if none did: an edge
+  // lies so far outside the largest ball that touches both of its faces. By default as much as borders may leave open.
+  // They come in chains that are as long as feature_length, or longer. Above 0; at least 0.
+  double feature_loss = 1.65e-3, feature_length = 0.2;
+  // The edges that sheets reach to, by the mesh's vertices; none: those that are found by their loss.
+  std::vector<std::array<Index, 2>> features = {};
+  // In diagonals: edges of the result are no longer than 4/3 of it, but where the surface asks for it shorter: where
+  // what is interpolated would be off by more than the tolerance, and at borders with small balls. Above 0.
+  double edge_length = 0.03;
   // Of dividing cells; each halves them. At least 0.
   int max_rounds = 6;
   // Of reaching for what is left open of the surface. At least 0.
@@ -32,7 +42,7 @@ struct RefineReport {
   Index folded_triangles = 0;  // taken away: their two points have one contact
   Index border_cuts = 0;       // edges cut where the loss passes border_loss
   Index small_pieces = 0;      // edges and triangles of spikes and flakes, taken away
-  Index doubled = 0;           // triangles of sheets that double others, taken away
+  Index vertices_moved = 0;    // by evening out, each as often as it was
   Index notches = 0;           // triangles that fill notches of borders, and what is open along sharp edges
   Index edge_vertices = 0;     // vertices of radius 0 on sharp edges
   Index reached_places = 0;    // of the surface, left open by more than borders may
@@ -47,22 +57,18 @@ struct RefinedAxis {
   // of a face are the two contacts of its corners that are seen farthest apart. Vertices of radius 0 are on sharp
   // edges. So validate(axis, surface) does not hold.
   MedialAxis axis;
+  std::vector<std::array<Index, 2>> features;  // edges of the mesh that sheets reach to, by its vertices, ascending
   RefineReport report;
 };
 
 // The refined axis: every vertex is moved to the centre of a ball of the medial axis of the mesh itself, which touches
-// the surface where the forming points stand for and holds nothing of it, or, inside a sheet where none is found or one
-// that stands out, to such a ball between its neighbours; cells that fold onto others are taken away; sheets are cut
-// where their borders lose border_loss; spikes and flakes go that hang on the rest by one vertex and reach no farther
-// from it than twice its radius, but for what the topology needs; notches between the teeth of their borders are
-// filled, those that end at sharp convex edges are extended onto these, and what is open between such ends on one edge
-// is filled; sheets and spikes go whose balls lie in others up to the tolerance, where the borders become shorter by
-// that, and flakes that one edge joins to others, before anything is reached for; the steps of borders from one facet
-// of the surface to the next are filled; what is interpolated too coarsely is divided, with exact balls for new
-// vertices; where the surface is then left open by more than 1.65 border_loss and reach_detail, or balls leave a dent
-// that is a tenth deeper, triangles reach for it from the nearest edges; and at last vertices at one place are merged,
-// and triangles without area taken away, or given some by moving a vertex along its sheet. All by divisions, collapses,
-// free extensions and contractions under the link condition, so the topology is that of `axis`.
+// the surface where the forming points stand for and holds nothing of it; cells that fold onto others are taken away;
+// sheets are cut where their borders lose border_loss, and reach the feature edges of the mesh and their corners. Then
+// the axis is meshed anew with even triangles (edges are split, drawn together and flipped, vertices move along their
+// sheet, seam, border or curve, each to an exact ball), so that nothing is uncovered; where the surface is left open by
+// more than 1.65 border_loss and reach_detail, or balls leave a dent that is a tenth deeper, triangles reach for it
+// from the nearest edges, and are made even, too; and what is interpolated too coarsely is divided. All by divisions,
+// collapses, flips, free extensions and contractions under the link condition, so the topology is that of `axis`.
 //
 // Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
 // parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws

@@ -1,0 +1,60 @@
+#include "triangle_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace orchard::detail {
+namespace {
+
+double flatness_at(const SheetMesh& mesh, Index a, Index b, std::vector<Index>& opposite,
+                   std::vector<Vector>& heights) {
+  mesh.opposite(a, b, opposite);
+  const Vector along = (mesh.center(b) - mesh.center(a)).normalized();
+  heights.clear();
+  for (const Index c : opposite) {
+    const Vector side = mesh.center(c) - mesh.center(a);
+    const Vector height = side - side.dot(along) * along;
+    heights.push_back(height.squaredNorm() > 0 ? height.normalized() : height);
+  }
+  double worst = 1;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) worst = std::min(worst, -heights[i].dot(heights[k]));
+  }
+  return worst;
+}
+
+}  // namespace
+
+double triangle_quality(const Point& a, const Point& b, const Point& c) {
+  const double x = (b - a).norm(), y = (c - b).norm(), z = (a - c).norm(), longest = std::max({x, y, z});
+  if (!(longest > 0)) return 0;
+  return 6 / std::sqrt(3.0) * ((b - a).cross(c - a).norm() / 2) / ((x + y + z) / 2 * longest);
+}
+
+double triangle_quality(const SheetMesh& mesh, const SheetMesh::Cell& cell) {
+  return triangle_quality(mesh.center(cell[0]), mesh.center(cell[1]), mesh.center(cell[2]));
+}
+
+double worst_quality(const SheetMesh& mesh, std::span<const Index> cells) {
+  double worst = 1;
+  for (const Index c : cells) {
+    if (is_triangle(mesh.corners(c))) worst = std::min(worst, triangle_quality(mesh, mesh.corners(c)));
+  }
+  return worst;
+}
+
+double worst_flatness(const SheetMesh& mesh, std::span<const Index> cells) {
+  std::vector<Index> opposite;
+  std::vector<Vector> heights;
+  double worst = 1;
+  for (const Index c : cells) {
+    const SheetMesh::Cell& cell = mesh.corners(c);
+    if (!is_triangle(cell)) continue;
+    for (std::size_t i = 0; i < 3; ++i)
+      worst = std::min(worst, flatness_at(mesh, cell[i], cell[(i + 1) % 3], opposite, heights));
+  }
+  return worst;
+}
+
+}  // namespace orchard::detail
