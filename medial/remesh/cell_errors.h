@@ -13,7 +13,7 @@ class CellErrors {
  public:
   // `fine`: errors below it need not be told apart.
   CellErrors(const Surface& surface, const SheetMesh& mesh, double fine)
-      : surface_(surface), mesh_(mesh), fine_(fine) {}
+      : surface_(surface), mesh_(mesh), fine_(fine), cuts_itself_(!surface.self_intersections().empty()) {}
 
   // At the middle of an edge; errors below `fine` need not be told apart.
   double of_edge(Index a, Index b, double fine) const { return at({a, b, b}, 0.5, 0.5, 0, fine); }
@@ -25,6 +25,9 @@ class CellErrors {
   // Whether the balls of an edge stick out of the solid by more than `limit`: such edges lead through the outside, for
   // the sake of the topology alone.
   bool leads_outside(Index a, Index b, double limit) const;
+  // Whether an edge goes through a part of the surface that lies inside the solid, as there is where the surface cuts
+  // itself: distances fall to 0 there, so the edge is wrong however short it is.
+  bool goes_through_wall(Index a, Index b) const;
 
  private:
   double at(const SheetMesh::Cell& cell, double u, double v, double w, double fine) const;
@@ -33,6 +36,7 @@ class CellErrors {
   const Surface& surface_;
   const SheetMesh& mesh_;
   const double fine_;
+  const bool cuts_itself_;
   std::vector<Index> ends_;
 };
 
