@@ -203,7 +203,7 @@ MedialBuildOptions build_options(const MedialTuning& tuning) {
   if (tuning.cluster_degrees) options.sampling.cluster_angle = *tuning.cluster_degrees * kRadians;
   options.prune.angle = std::min(tuning.prune_degrees * kRadians, std::numbers::pi);
   options.axis.keep_topology = tuning.keep_topology;
-  if (tuning.refine) options.refine = tuning.refinement;
+  if (tuning.refine) options.refine.emplace(tuning.refinement);
   return options;
 }
 

@@ -51,7 +51,7 @@ constexpr std::uint64_t kShapes = 7;
 // An axis of the solid whose balls are smaller by up to `share` each, and so leave dents.
 MedialMesh shrunk_axis(const Surface& surface, double share, Random& random) {
   MedialBuildOptions options{.sampling = {.face_points = 120, .edge_points = 40}};
-  options.refine = RefineOptions{};
+  options.refine.emplace();
   MedialMesh mesh = medial_mesh(build_medial_axis(surface, options).axis);
   for (double& radius : mesh.radii) radius *= 1 - share * random.uniform();
   return mesh;

@@ -170,7 +170,7 @@ TEST(Climb, ComesToTheFarthestPlaceAround) {
 TEST(FewBalls, DoNotRunAwayOnTheShip) {
   const Surface surface = bundled("ship");
   MedialBuildOptions options;
-  options.refine = RefineOptions{};
+  options.refine.emplace();
   const MedialMesh axis = medial_mesh(build_medial_axis(surface, options).axis);
   // One ball that stands for too much makes the largest distance jump by a percent from count to count.
   for (const Index vertices : {80u, 100u, 120u}) {

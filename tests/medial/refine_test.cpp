@@ -409,7 +409,7 @@ TEST(RefineAxis, RefusesOptionsOutOfRange) {
   const Surface surface(test::known_box({1, 2, 3}).solid);
   const auto refused = [&](const RefineOptions& refine) {
     MedialBuildOptions options = options_for(100);
-    options.refine = refine;
+    options.refine.emplace(refine);
     EXPECT_THROW(build_medial_axis(surface, options), InputError);
   };
   refused({.border_loss = -1});

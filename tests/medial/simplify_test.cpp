@@ -37,7 +37,7 @@ using detail::ContractibleMesh;
 
 MedialMesh built_axis(const Surface& surface, Index points, bool refined = true) {
   MedialBuildOptions options{.sampling = {.face_points = points - points / 5, .edge_points = points / 5}};
-  if (refined) options.refine = RefineOptions{};
+  if (refined) options.refine.emplace();
   return medial_mesh(build_medial_axis(surface, options).axis);
 }
 
