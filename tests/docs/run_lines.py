@@ -38,11 +38,6 @@ NOT_RUN = {
         "cmake ..": "builds for a minute; tools/follow does it in .ci/run",
         "out/example/approach ..": "is what the lines before it build",
     },
-    "docs/broad-phase.md": {
-        "cmake ..": "builds for a minute",
-        "size ..": "measures what the line before it builds",
-        "g++ ..": "needs what the line before it builds",
-    },
     "docs/cli.md": {
         "orchard view out/lamp/lamp.orchard --window": "needs a screen; viz.Window.DoesWhatItIsTold is at it",
         "orchard completion zsh ..": "writes outside of the folder; Completion.* of the tests of apps read what it says",
