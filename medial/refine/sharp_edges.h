@@ -7,7 +7,7 @@
 
 namespace orchard::detail {
 
-// The convex edges of a mesh whose faces turn by an angle or more. Not for several threads at once.
+// Looks for places on the feature edges of a mesh. Not for several threads at once.
 class SharpEdges {
  public:
   SharpEdges(const Surface& surface, const FeatureEdges& features) : surface_(surface), features_(features) {}

@@ -64,7 +64,7 @@ struct RefinedAxis {
 // The refined axis: every vertex is moved to the centre of a ball of the medial axis of the mesh itself, which touches
 // the surface where the forming points stand for and holds nothing of it; cells that fold onto others are taken away;
 // sheets are cut where their borders lose border_loss, and reach the feature edges of the mesh and their corners. Then
-// the axis is meshed anew with even triangles (edges are split, drawn together and flipped, vertices move along their
+// the triangles are made even (edges are split, drawn together and flipped, vertices move along their
 // sheet, seam, border or curve, each to an exact ball), so that nothing is uncovered; where the surface is left open by
 // more than 1.65 border_loss and reach_detail, or balls leave a dent that is a tenth deeper, triangles reach for it
 // from the nearest edges, and are made even, too; and what is interpolated too coarsely is divided. All by divisions,
