@@ -139,7 +139,7 @@ void Refiner::even_out() {
                               .merging = kMerging * level_,
                               .features = &features_,
                               .rounds = kEvenRounds};
-  report_.vertices_moved += remesh(surface_, places_, complex_, where, options, progress_).moved;
+  report_.vertices_moved += remesh(surface_, places_, complex_, where, options, progress_);
   split_errors_ = {};  // vertices have other numbers
   evened_.clear();
   for (const ExactBall& ball : complex_.balls) evened_.push_back(key(ball));

@@ -30,7 +30,7 @@ void Remesher::collapse_short() {
   for (const auto& [part, edge] : chosen) {
     const auto& [a, b] = edge;
     if (!mesh_.has(a) || !mesh_.has(b) || !mesh_.has_edge(a, b)) continue;
-    if (length(a, b) < kShort * target(a, b)) report_.collapsed += collapse(a, b) ? 1 : 0;
+    if (length(a, b) < kShort * target(a, b)) collapse(a, b);
   }
 }
 

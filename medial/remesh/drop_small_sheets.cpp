@@ -95,7 +95,7 @@ void Remesher::drop_small_sheets() {
     if (size < kSmallSheet * largest || cells.size() <= kFew) small.emplace_back(size, root);
   }
   std::sort(small.begin(), small.end());
-  for (const auto& [size, root] : small) report_.dropped += drop(triangles[root]) ? 1 : 0;
+  for (const auto& [size, root] : small) drop(triangles[root]);
 }
 
 // Triangles that stick out of borders, and ends of curves, go where the rest covers what they cover.
@@ -105,12 +105,12 @@ void Remesher::trim() {
     const Cell cell = mesh_.corners(c);
     if (cell[0] == cell[1] || !is_open(cell)) continue;
     if (!is_triangle(cell)) {
-      report_.dropped += drop_end(c) ? 1 : 0;
+      drop_end(c);
       continue;
     }
     const bool sticks_out = std::any_of(
         cell.begin(), cell.end(), [&](Index v) { return mesh_.cells_at(v).size() == 1 && is_ear(mesh_, cell, v); });
-    if (sticks_out) report_.dropped += drop({c}) ? 1 : 0;
+    if (sticks_out) drop({c});
   }
 }
 

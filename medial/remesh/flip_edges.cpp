@@ -11,7 +11,7 @@ constexpr double kBetter = 0.02;  // of quality: what a flip must gain
 }  // namespace
 
 void Remesher::flip() {
-  for (const auto& [a, b] : open_edges()) report_.flipped += flip(a, b) ? 1 : 0;
+  for (const auto& [a, b] : open_edges()) flip(a, b);
 }
 
 bool Remesher::flip(Index a, Index b) {

@@ -18,13 +18,13 @@ constexpr int kSmoothings = 2;     // in a round
 
 }  // namespace
 
-RemeshReport remesh(const Surface& surface, std::span<const Point> places, BallComplex& complex,
-                    std::span<const std::uint8_t> where, const RemeshOptions& options, const Progress& progress) {
-  if (complex.size() == 0) return {};
+Index remesh(const Surface& surface, std::span<const Point> places, BallComplex& complex,
+             std::span<const std::uint8_t> where, const RemeshOptions& options, const Progress& progress) {
+  if (complex.size() == 0) return 0;
   Remesher remesher(surface, places, complex, where, options);
   remesher.run(progress);
   complex = remesher.complex();
-  return remesher.report();
+  return remesher.moved();
 }
 
 Remesher::Remesher(const Surface& surface, std::span<const Point> places, const BallComplex& complex,

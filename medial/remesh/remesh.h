@@ -18,16 +18,12 @@ struct RemeshOptions {
   int rounds = 6;
 };
 
-struct RemeshReport {
-  Index split = 0, collapsed = 0, flipped = 0, moved = 0, dropped = 0;
-};
-
 // Makes the triangles of a medial complex even, at vertices for which `where` is not 0 and near them: edges that are
 // long are split, short ones are drawn together, others flipped, and vertices moved along the sheet, seam, border or
 // curve that they are in; every vertex is the centre of an exact ball where one is found. Topology stays, and what
 // junctions, seams, borders and curves there are; nothing folds that did not, and what is covered of `places` on the
-// surface stays covered. Deterministic.
-RemeshReport remesh(const Surface& surface, std::span<const Point> places, BallComplex& complex,
-                    std::span<const std::uint8_t> where, const RemeshOptions& options, const Progress& progress);
+// surface stays covered. Deterministic. Returns how often a vertex was moved.
+Index remesh(const Surface& surface, std::span<const Point> places, BallComplex& complex,
+             std::span<const std::uint8_t> where, const RemeshOptions& options, const Progress& progress);
 
 }  // namespace orchard::detail

@@ -24,7 +24,7 @@ class Remesher {
 
   void run(const Progress& progress);
   BallComplex complex() const { return mesh_.complex(); }
-  const RemeshReport& report() const { return report_; }
+  Index moved() const { return moved_; }
 
  private:
   using Cell = SheetMesh::Cell;
@@ -100,7 +100,7 @@ class Remesher {
   std::vector<double> target_;        // of each vertex, mesh units: how long edges at it should be
   std::vector<std::uint8_t> open_;    // of each vertex: whether it may be changed
   std::vector<std::uint8_t> active_;  // of each vertex: whether something changed near it since it was last moved
-  RemeshReport report_;
+  Index moved_ = 0;                   // vertices, each as often as it was
 };
 
 }  // namespace orchard::detail

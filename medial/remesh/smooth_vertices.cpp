@@ -41,7 +41,7 @@ void Remesher::smooth() {
         moved = smooth_along(v);
         break;
     }
-    report_.moved += moved ? 1 : 0;
+    moved_ += moved ? 1 : 0;
   }
 }
 

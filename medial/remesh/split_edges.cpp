@@ -11,7 +11,7 @@ void Remesher::split_long() {
     if (over > kLong) chosen.push_back({-over, edge});
   }
   std::sort(chosen.begin(), chosen.end());
-  for (const auto& [over, edge] : chosen) report_.split += split(edge[0], edge[1]) ? 1 : 0;
+  for (const auto& [over, edge] : chosen) split(edge[0], edge[1]);
 }
 
 // Where balls between the ends are off by more than the tolerance, however long the edge is meant to be.
@@ -25,7 +25,7 @@ void Remesher::split_wrong() {
     chosen.push_back({-error, edge});
   }
   std::sort(chosen.begin(), chosen.end());
-  for (const auto& [error, edge] : chosen) report_.split += split(edge[0], edge[1]) ? 1 : 0;
+  for (const auto& [error, edge] : chosen) split(edge[0], edge[1]);
 }
 
 bool Remesher::split(Index a, Index b) {

@@ -128,7 +128,7 @@ function(orchard_add_module name)
   set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
   if(name STREQUAL "runtime")  # file by file, so that a game links no more than it uses
     orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
-    if(ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS)  # where nobody links it but its tests
+    if(ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS)  # where only its tests link it
       orchard_unite(${target} APART ${ARG_APART})
     endif()
   else()
