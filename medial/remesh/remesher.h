@@ -30,7 +30,6 @@ class Remesher {
   using Cell = SheetMesh::Cell;
   using Edge = SheetMesh::Edge;
 
-  static constexpr double kFlat = 0.3;         // cosine of what two triangles may turn by at an edge, or as before
   static constexpr double kGoodQuality = 0.4;  // a change may make triangles worse that stay above
   // Of the length aimed at: longer edges are split, shorter ones drawn together (Botsch, Kobbelt 2004).
   static constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;

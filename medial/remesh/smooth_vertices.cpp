@@ -161,12 +161,12 @@ bool Remesher::put(Index v, const ExactBall& ball) {
 // Whether the cells at a vertex are well shaped, or as well as before.
 bool Remesher::stays_well_shaped(std::span<const Index> cells, Index v, const ExactBall& ball_before) {
   const TriangleShape now = worst_shape(mesh_, cells);
-  if (now.quality >= kGoodQuality && now.flatness >= kFlat) return true;
+  if (now.quality >= kGoodQuality && now.flatness.keeps({})) return true;
   const ExactBall ball = mesh_.ball(v);
   mesh_.set_ball(v, ball_before);
   const TriangleShape before = worst_shape(mesh_, cells);
   mesh_.set_ball(v, ball);
-  return now.quality >= std::min(before.quality, kGoodQuality) && now.flatness >= std::min(before.flatness, kFlat);
+  return now.quality >= std::min(before.quality, kGoodQuality) && now.flatness.keeps(before.flatness);
 }
 
 // Whether the cells at a vertex are off by no more than the tolerance, or than before.
