@@ -35,8 +35,11 @@ struct Candidate {
 class SampledContraction {
  public:
   SampledContraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                     Assignment& feet)
-      : mesh_(mesh),
+                     Assignment& feet, SimplifiedBalls balls)
+      : surface_(surface),
+        mesh_(mesh),
+        medial_(balls == SimplifiedBalls::medial),
+        error_(feet.max),
         feet_(mesh, samples, feet),
         protrusion_(surface, mesh, LookOptions(surface, samples[0].weight), kNegligible * feet.max),
         blocked_(mesh.size()) {
@@ -133,7 +136,8 @@ class SampledContraction {
       before += feet_.sample(i).weight * fourth(feet_.foot(i).value);
     }
     Candidate best{.cost = std::numeric_limits<double>::infinity()};
-    for (const Ball4& ball : {optimum(parts, middle), middle, mesh_.ball(a), mesh_.ball(b)}) {
+    const auto allowed = [&](const Ball4& ball) { return medial_ ? medial_ball(surface_, ball, error_) : ball; };
+    for (const Ball4& ball : {allowed(optimum(parts, middle)), allowed(middle), mesh_.ball(a), mesh_.ball(b)}) {
       double cost = -before;
       for (const Part& p : parts) cost += p.sample->weight * fourth(p.value(ball));
       if (cost < best.cost) best = {cost, ball};
@@ -282,7 +286,10 @@ class SampledContraction {
     return ball.allFinite() ? ball : middle;
   }
 
+  const Surface& surface_;
   ContractibleMesh& mesh_;
+  const bool medial_;
+  const double error_;  // mesh units: how far the radius of a ball that is to be medial may be off
   FeetByVertex feet_;
   ProtrusionCost protrusion_;
   std::vector<std::vector<Index>> blocked_;  // other ends of edges that the link condition stood against
@@ -296,8 +303,8 @@ class SampledContraction {
 }  // namespace
 
 void contract_by_samples(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                         Assignment& feet, Index target) {
-  SampledContraction(surface, mesh, samples, feet).run(target);
+                         Assignment& feet, SimplifiedBalls balls, Index target) {
+  SampledContraction(surface, mesh, samples, feet, balls).run(target);
 }
 
 }  // namespace orchard::detail

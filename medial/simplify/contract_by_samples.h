@@ -12,6 +12,6 @@ namespace orchard::detail {
 // first, if that costs less than any other contraction. The feet are followed, and walk to better ones around.
 // Deterministic; parallel at its beginning.
 void contract_by_samples(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                         Assignment& feet, Index target);
+                         Assignment& feet, SimplifiedBalls balls, Index target);
 
 }  // namespace orchard::detail

@@ -67,7 +67,9 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
   for (const Index v : in_depth_first_order(whole_)) axis_balls_.push_back({mesh.centers[v], mesh.radii[v]});
 }
 
-Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
+Stage Descent::start(SimplifiedBalls contracted) const {
+  return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}, contracted};
+}
 
 void Descent::go_down(Stage& stage, Index count) const {
   contract_by_slabs(surface_, stage.mesh, stage.samples,
@@ -88,7 +90,7 @@ void Descent::go_down(Stage& stage, Index count) const {
 }
 
 void Descent::contract(Stage& stage, Index count) const {
-  contract_by_samples(surface_, stage.mesh, stage.samples, stage.feet, count);
+  contract_by_samples(surface_, stage.mesh, stage.samples, stage.feet, stage.contracted, count);
 }
 
 void Descent::refine(Stage& stage, std::span<const FitOptions> passes) const {
@@ -124,6 +126,11 @@ Stage Descent::finished(Stage stage) const {
     failed = enough;
     if (enough) share /= 2;  // fewer may find their places where many were in each other's way
   }
+  if (options_.balls == SimplifiedBalls::medial) {
+    for (Index v = 0; v < stage.mesh.size(); ++v) {
+      if (stage.mesh.alive(v)) stage.mesh.set_ball(v, medial_ball(surface_, stage.mesh.ball(v), stage.feet.worst()));
+    }
+  }
   return stage;
 }
 
@@ -138,6 +145,7 @@ void Descent::look_closer(Stage& stage, int round) const {
     if (std::abs(feet.feet[i].value) >= enough) off.push_back(others[i]);
   }
   climb(surface_, stage.mesh, std::sqrt(surface_.report().area / options_.samples), off);
+  for (FitSample& sample : off) sample.area = 0;
   add(stage, off);
   if (enough > kInvisible * diagonal_) add_dents(stage, round, enough);
 }

@@ -11,7 +11,8 @@ namespace orchard::detail {
 struct Stage {
   ContractibleMesh mesh;
   std::vector<FitSample> samples;
-  Assignment feet;  // of the samples
+  Assignment feet;                                     // of the samples
+  SimplifiedBalls contracted = SimplifiedBalls::free;  // what balls contractions make, before they are fitted
 };
 
 // The way from a medial mesh to ever fewer vertices.
@@ -19,7 +20,9 @@ class Descent {
  public:
   Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options, const Progress& progress);
 
-  Stage start() const;
+  // Contractions that make free balls see farther, those that make medial ones leave less to be mended: either may come
+  // nearer in the end.
+  Stage start(SimplifiedBalls contracted) const;
   // Contracts until `count` vertices are left, or nothing may be contracted; fits in between.
   void go_down(Stage& stage, Index count) const;
   // The balls fitted as well as they can be, and vertices moved to where they are needed: no more than there are.

@@ -100,9 +100,7 @@ class Fitter {
   // What is missing to the solid's volume, as far as samples tell: over what may be missing.
   double volume_error() const {
     double sum = 0;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      if (samples_[i].depth == 0) sum += samples_[i].weight * feet_.feet[i].value;
-    }
+    for (std::size_t i = 0; i < samples_.size(); ++i) sum += samples_[i].area * feet_.feet[i].value;
     return sum * volume_factor_;
   }
   double ball_weight() const { return kProtrusionWeight * samples_[0].weight; }
@@ -128,8 +126,7 @@ class Fitter {
         block.topLeftCorner<3, 3>() += bend * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
       }
       equations_.add(foot.corners, foot.weights, weight * block, weight * foot.value * row);
-      if (samples_[i].depth == 0)
-        equations_.add_to_vector(foot.corners, foot.weights, samples_[i].weight * volume_factor_ * row);
+      equations_.add_to_vector(foot.corners, foot.weights, samples_[i].area * volume_factor_ * row);
     }
     for (const Protrusion& protrusion : protrusions_) {
       const double weight = ball_weight() * weight_at(protrusion.value);
@@ -210,7 +207,7 @@ void Assignment::find_off(const ContractibleMesh& mesh, std::span<const FitSampl
   tbb::parallel_for(std::size_t{0}, (samples.size() + kInTurn - 1) / kInTurn, [&](std::size_t block) {
     const std::size_t begin = block * kInTurn, end = std::min(samples.size(), begin + kInTurn);
     for (std::size_t i = begin; i < end; ++i) {
-      const auto& [position, normal, weight, depth] = samples[i];
+      const auto& [position, normal, weight, depth, area] = samples[i];
       if (i == begin && !known) {
         feet[i] = finder.find(position).below(depth);
         continue;

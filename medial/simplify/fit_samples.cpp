@@ -70,7 +70,7 @@ void thin_out(std::vector<FitSample>& samples, std::size_t max) {
 std::vector<FitSample> fit_samples(const Surface& surface, Index count, std::uint64_t seed) {
   std::vector<FitSample> samples;
   for (const SurfaceSample& sample : quality_samples(surface, count, seed))
-    samples.push_back({sample.position, sample.normal, 0});
+    samples.push_back({.position = sample.position, .normal = sample.normal, .area = 1.0 / count});
   std::vector<Pointed> corners = pointed_corners(surface);
   if (corners.size() > count / 4) corners.resize(count / 4);
   for (const Pointed& corner : corners) samples.push_back(corner.sample);

@@ -12,6 +12,7 @@ struct FitSample {
   Vector normal;      // outward
   double weight = 0;  // of all of them about 1
   double depth = 0;   // in the solid, mesh units; 0 on the surface
+  double area = 0;    // of the surface's, that it stands for: of all of them 1, of those that were added nothing
 };
 
 // `count` places spread evenly over the area, and, as many again at most, where the surface is bent: the corners of the

@@ -39,7 +39,7 @@ SimplifiedMedialMesh finish(const Surface& surface, const MedialMesh& whole, con
     MedialMesh single;
     single.centers.push_back(ball.center);
     single.radii.push_back(ball.radius);
-    return descent.measured({ContractibleMesh(single), {}, {}});
+    return descent.measured({ContractibleMesh(single), {}, {}, {}});
   }
   return descent.measured(descent.finished(std::move(stage)));
 }
@@ -51,6 +51,26 @@ std::string too_few(Index wanted, Index reached, Index least) {
          "contractions led to " + std::to_string(reached) +
          ", no complex with these loops and cavities has fewer than " + std::to_string(least) + "; at least " +
          std::to_string(reached);
+}
+
+// Which numbers of vertices are tried for every larger one, too: half-powers of 2. More vertices may find worse places
+// than fewer did; so the distance does not rise with their number.
+Index rung_below(Index count) {
+  Index rung = 1;
+  for (int k = 0;; ++k) {
+    const auto next = static_cast<Index>(std::lround(std::exp2(0.5 * k)));
+    if (next >= count) return rung;
+    rung = next;
+  }
+}
+
+std::vector<SimplifiedBalls> ways(const SimplifyOptions& options) {
+  if (options.balls == SimplifiedBalls::free) return {SimplifiedBalls::free};
+  return {SimplifiedBalls::free, SimplifiedBalls::medial};
+}
+
+SimplifiedMedialMesh nearer(SimplifiedMedialMesh more, SimplifiedMedialMesh fewer) {
+  return fewer.report.upper <= more.report.upper ? std::move(fewer) : std::move(more);
 }
 
 // The fewest vertices whose two-sided distance is proved to be within the limit, to a fiftieth, by bisection of their
@@ -107,7 +127,7 @@ class FewestWithin {
   // From the nearest stage above that was met on the way.
   Stage stage_of(Index count) {
     const auto found = stages_.lower_bound(count);
-    Stage stage = found == stages_.end() ? descent_.start() : found->second;
+    Stage stage = found == stages_.end() ? descent_.start(SimplifiedBalls::free) : found->second;
     if (stage.mesh.living() > count) descent_.go_down(stage, count);
     stages_.insert_or_assign(stage.mesh.living(), stage);
     return stage;
@@ -132,13 +152,21 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
   }
   report_progress(progress, kStage, 0);
   const Descent descent(surface, mesh, options, progress);
-  Stage stage = descent.start();
-  descent.go_down(stage, options.vertices);
-  if (stage.mesh.living() > options.vertices)
-    throw InputError(too_few(options.vertices, stage.mesh.living(), detail::least_vertices(mesh)));
-  SimplifiedMedialMesh result = finish(surface, mesh, descent, std::move(stage));
+  std::optional<SimplifiedMedialMesh> best;
+  Index reached = mesh.size();
+  for (const SimplifiedBalls contracted : ways(options)) {
+    Stage stage = descent.start(contracted);
+    for (const Index count : {options.vertices, rung_below(options.vertices)}) {
+      descent.go_down(stage, count);
+      reached = std::min(reached, stage.mesh.living());
+      if (stage.mesh.living() > count) break;
+      SimplifiedMedialMesh result = finish(surface, mesh, descent, stage);
+      best = best ? nearer(std::move(*best), std::move(result)) : std::move(result);
+    }
+  }
+  if (!best) throw InputError(too_few(options.vertices, reached, detail::least_vertices(mesh)));
   report_progress(progress, kStage, 1);
-  return result;
+  return std::move(*best);
 }
 
 std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const MedialMesh& mesh,
@@ -146,14 +174,22 @@ std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const
                                                    const Progress& progress) {
   check(surface, mesh, options);
   const Descent descent(surface, mesh, options, progress);
-  Stage stage = descent.start();
   std::vector<SimplifiedMedialMesh> results;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    report_progress(progress, kStage, static_cast<double>(i) / static_cast<double>(vertices.size()));
-    descent.go_down(stage, vertices[i]);
-    if (stage.mesh.living() > vertices[i]) break;
-    results.push_back(finish(surface, mesh, descent, stage));
+  for (const SimplifiedBalls contracted : ways(options)) {
+    Stage stage = descent.start(contracted);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      report_progress(progress, kStage, static_cast<double>(i) / static_cast<double>(vertices.size()));
+      descent.go_down(stage, vertices[i]);
+      if (stage.mesh.living() > vertices[i]) break;
+      SimplifiedMedialMesh result = finish(surface, mesh, descent, stage);
+      if (i < results.size()) {
+        results[i] = nearer(std::move(results[i]), std::move(result));
+      } else if (i == results.size()) {
+        results.push_back(std::move(result));
+      }
+    }
   }
+  for (std::size_t i = results.size(); i-- > 1;) results[i - 1] = nearer(std::move(results[i - 1]), results[i]);
   report_progress(progress, kStage, 1);
   return results;
 }

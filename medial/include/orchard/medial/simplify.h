@@ -15,8 +15,8 @@ namespace orchard {
 // What balls of a simplified axis may be. Free ones are those that fit best: a part too thin for so few balls is given
 // some whose centres lie outside.
 enum class SimplifiedBalls : std::uint8_t {
-  medial,  // centres in the solid, or on its surface; radii off the centre's distance to the surface by no more than the
-           // two-sided distance; and the solid's volume is aimed at
+  medial,  // centres in the solid, or on its surface; radii off the centre's distance to the surface by no more than
+           // the two-sided distance; and the solid's volume is aimed at
   free
 };
 
@@ -27,7 +27,7 @@ struct SimplifyOptions {
   Index check = 20'000;      // places from which the distance is measured at the end
   Index search = 1'000'000;  // parts at most in which dents and what protrudes are searched, each time
   SimplifiedBalls balls = SimplifiedBalls::medial;
-  int rounds = 4;            // at most, of moving vertices from where they are spared to where the distance is largest
+  int rounds = 4;  // at most, of moving vertices from where they are spared to where the distance is largest
   std::uint64_t seed = 1;
 };
 
