@@ -441,6 +441,37 @@ void add_inspect(CLI::App& app, Request& request) {
   });
 }
 
+void add_leaderboard(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand(
+      "leaderboard", "Measure the medial axes of all systems in a folder, and orchard's beside them");
+  LeaderboardCommand& leaderboard = request.leaderboard;
+  command
+      .add_option("folder", leaderboard.input,
+                  "Meshes, and axes MODEL-SYSTEM-N.ma (.obj, .ply, ..) beside them or in its folder results")
+      ->required();
+  command.add_option("-o,--output", leaderboard.folder, "Folder for the table, and for what a later run need not redo")
+      ->required();
+  add_list(command, "--builders", leaderboard.builders,
+           "Of orchard, in as few balls: refined axes, raw ones (default refined)", {"refined", "raw"});
+  add_list(command, "--vertices", leaderboard.vertices, "Numbers of balls to build besides those of the axes", 1);
+  command.add_flag("--connect", leaderboard.connect,
+                   "Connect balls without cells by their power diagram within the solid");
+  command.add_option("--quality-samples", leaderboard.quality_samples, "Surface points that each axis is measured at")
+      ->capture_default_str()
+      ->check(CLI::Range(100, 10'000'000));
+  command.add_option("--samples", leaderboard.samples, "Surface points that orchard's axes are built from")
+      ->capture_default_str()
+      ->check(CLI::Range(10, 10'000'000));
+  command.add_option("--seed", leaderboard.seed, "Of all random choices")->capture_default_str();
+  add_force(command, leaderboard.output);
+  add_output_flags(command, leaderboard.output);
+  command.footer("Example:\n  orchard leaderboard results -o out/leaderboard --vertices 50,100,300");
+  command.callback([&request, &command] {
+    request.leaderboard.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::leaderboard(request.leaderboard); };
+  });
+}
+
 void add_view(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("view", "Draw files, one in the other, or look at them in a window");
   ViewCommand& view = request.view;
@@ -576,6 +607,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_compare(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
+  add_leaderboard(app, request);
   add_view(app, request);
   add_completion(app, request);
   add_reference(app, request);

@@ -121,6 +121,18 @@ struct MedialCommand {
 bool given(const MedialCommand& command, const char* option);  // on the command line
 ExitCode medial(const MedialCommand& command);
 
+struct LeaderboardCommand {
+  std::filesystem::path input, folder;  // of meshes and axes; for the table
+  std::vector<std::string> builders;    // of orchard: refined, raw; empty: refined
+  std::vector<Index> vertices;          // numbers of balls beside those of the axes
+  bool connect = false;                 // as of MedialCommand
+  Index quality_samples = 20'000;       // surface points of each judgement
+  Index samples = kStandardSamples;     // surface points of orchard's axes
+  std::uint64_t seed = 1;
+  Output output;
+};
+void leaderboard(const LeaderboardCommand& command);
+
 struct CompareCommand {
   std::filesystem::path mesh;
   std::vector<std::filesystem::path> trees;  // .orchard, .sph, or .json lists of spheres
