@@ -17,6 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReport = "leaderboard.json";
+#ifdef ORCHARD_HAS_VIZ
+constexpr const char* kScript = "leaderboard-worst.py";
+#endif
 
 std::vector<std::string> models_of(const LeaderboardFolder& found) {
   std::vector<std::string> models;
@@ -66,6 +69,9 @@ void leaderboard(const LeaderboardCommand& command) {
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
   std::vector<std::string> names{"leaderboard.md", "leaderboard.csv"};
+#ifdef ORCHARD_HAS_VIZ
+  names.push_back(kScript);
+#endif
   for (const std::string& model : models) names.push_back(plot_name(model));
   check_outputs(destination, names, inputs);
   const bool talk = !command.output.quiet && !command.output.json;
@@ -88,6 +94,9 @@ void leaderboard(const LeaderboardCommand& command) {
   write_file(outputs.add("leaderboard.md", "the table, with what is not comparable"),
              to_markdown(rows, found.skipped, plots));
   write_file(outputs.add("leaderboard.csv", "every measure of every axis"), to_csv(rows));
+#ifdef ORCHARD_HAS_VIZ
+  write_file(outputs.add(kScript, "opens the worst places in ParaView"), to_paraview(rows, found.entries));
+#endif
   nlohmann::json report = to_json(rows, found.skipped);
   outputs.add_report(report, "the same as JSON");
   outputs.commit();

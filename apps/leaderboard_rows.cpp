@@ -20,6 +20,9 @@
 #include "orchard/medial/simplify.h"
 #include "orchard/medial/structure.h"
 #include "provenance.h"
+#ifdef ORCHARD_HAS_VIZ
+#include "orchard/viz/medial_writer.h"
+#endif
 
 namespace orchard::apps {
 namespace {
@@ -126,7 +129,15 @@ class Model {
                                  .economy_candidates = options_.quality_samples / 10,
                                  .economy_samples = options_.quality_samples / 10,
                                  .seed = options_.seed};
-    row.measures = to_json(judge_mesh(surface, axis.mesh, quality));
+    const MedialJudgement judgement = judge_mesh(surface, axis.mesh, quality);
+    row.measures = to_json(judgement);
+    std::vector<ReportedPlace> places;
+    for (const WorstPlace& place : judgement.quality.worst) places.push_back({place, {}});
+    row.worst = to_json(places);
+    for (json& place : row.worst) place.erase("advice");
+#ifdef ORCHARD_HAS_VIZ
+    write_worst_places(folder_ / "worst" / (row.file + ".vtp"), judgement.quality.worst);
+#endif
   }
 
   // The refined axis is built more closely until it has enough balls for the largest number that is asked for.
@@ -189,9 +200,9 @@ double LeaderboardRow::value(const char* measure) const {
 }
 
 json to_json(const LeaderboardRow& row) {
-  return {{"model", row.model},     {"system", row.system}, {"file", row.file},        {"asked", row.asked},
-          {"balls", row.balls},     {"edges", row.edges},   {"own", row.own},          {"triangles", row.triangles},
-          {"refused", row.refused}, {"notes", row.notes},   {"measures", row.measures}};
+  return {{"model", row.model},     {"system", row.system}, {"file", row.file},         {"asked", row.asked},
+          {"balls", row.balls},     {"edges", row.edges},   {"own", row.own},           {"triangles", row.triangles},
+          {"refused", row.refused}, {"notes", row.notes},   {"measures", row.measures}, {"worst", row.worst}};
 }
 
 LeaderboardRow row_from(const json& json) {
@@ -201,6 +212,7 @@ LeaderboardRow row_from(const json& json) {
   json.at("triangles").get_to(row.triangles), json.at("own").get_to(row.own);
   json.at("refused").get_to(row.refused), json.at("notes").get_to(row.notes);
   row.measures = json.at("measures");
+  row.worst = json.at("worst");
   return row;
 }
 
@@ -208,6 +220,7 @@ std::vector<LeaderboardRow> measure_entries(const LeaderboardFolder& found, cons
                                             const std::filesystem::path& folder, const Progress& progress) {
   fs::create_directories(folder / "rows");
   fs::create_directories(folder / "axes");
+  fs::create_directories(folder / "worst");
   std::vector<LeaderboardRow> rows;
   const double all = static_cast<double>(std::max<std::size_t>(found.entries.size(), 1));
   for (std::size_t i = 0; i < found.entries.size();) {

@@ -31,6 +31,9 @@ struct LeaderboardRow {
   std::vector<std::string> notes = {};                 // what limits its comparison
   nlohmann::json measures = nlohmann::json::object();  // by the names of medial_measures()
 
+  // Where it is worst: measure (protrusion, coverage or dent), value (% of the diagonal) and position of each place.
+  nlohmann::json worst = nlohmann::json::array();
+
   double value(const char* measure) const;  // NaN where it is not defined
   bool topology_right() const { return value("topology_right") == 1; }
   // Whether it is a medial mesh as other systems write it, so that its errors are those of the same thing.
@@ -40,7 +43,8 @@ nlohmann::json to_json(const LeaderboardRow& row);
 LeaderboardRow row_from(const nlohmann::json& json);
 
 // Measures every entry, and builds and measures orchard's axes for every mesh that has one, at the same numbers of
-// balls. `folder` keeps each row (rows/) and each axis that was built (axes/): what is there with the same inputs,
+// balls. `folder` keeps each row (rows/), its worst places for ParaView (worst/, if the program was built with VTK) and
+// each axis that was built (axes/): what is there with the same inputs,
 // options and version is not made again. Rows come by model, number of balls asked for, system and file. A mesh or file
 // that cannot be read makes rows that say so.
 std::vector<LeaderboardRow> measure_entries(const LeaderboardFolder& found, const LeaderboardOptions& options,
