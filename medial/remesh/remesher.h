@@ -44,7 +44,7 @@ class Remesher {
   bool on_surface(Index v) const { return !(mesh_.ball(v).radius > 0); }
   bool is_bare(Index a, Index b) const { return mesh_.stratum(a, b) == Stratum::curve; }
   bool is_open(const Cell& cell) const { return open_[cell[0]] != 0 && open_[cell[1]] != 0 && open_[cell[2]] != 0; }
-  std::vector<Edge> open_edges() const;
+  std::vector<Edge> open_edges() const { return mesh_.edges(open_); }
   std::vector<Index> cells_at(Index v) const { return {mesh_.cells_at(v).begin(), mesh_.cells_at(v).end()}; }
   std::vector<Index> cells_at_edge(Index a, Index b) const;
   ExactBall middle(Index a, Index b);
