@@ -16,9 +16,10 @@ namespace {
 constexpr Index kLookedAt = 300;     // balls at most, evenly chosen: a median needs no more
 constexpr double kOnSurface = 1e-6;  // of the diagonal: centres nearer than this are vertices or samples of the surface
 constexpr double kUnfilled = 0.1;    // of the diagonal: axes in few balls leave so much of the solid's box empty
+constexpr double kSameFrame = 0.3;   // of the diagonal: a frame that moves no corner of the box by more is the same one
 constexpr double kMostly = 0.9;      // of all balls
 constexpr double kFits = 0.25;       // of what it was: a frame that makes it so much better is named
-constexpr double kFarOff = 2;        // times tolerance::kFrameError: no frame need fit for a refusal
+constexpr double kFarOff = 3;        // times tolerance::kFrameError: no frame need fit for a refusal
 
 // From the file's coordinates to the mesh's: scale, then move; before both, axes change places.
 struct Frame {
@@ -86,6 +87,16 @@ class FrameFinder {
   // The same and how far the balls are from filling the solid's box: small ones are near any surface around them.
   double error(const Frame& frame) const {
     return median(frame) + (fit_ == Fit::inside ? size_error(frame.scale) : box_error(frame));
+  }
+
+  // Of the diagonal: how far a frame moves the corners of the solid's box.
+  double moved(const Frame& frame) const {
+    double farthest = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Point corner = surface_.bounding_box().corner(static_cast<Box::CornerType>(i));
+      farthest = std::max(farthest, (frame(corner) - corner).norm());
+    }
+    return farthest / diagonal_;
   }
 
   // Whether nearly all centres are on the surface.
@@ -178,10 +189,12 @@ void check_frame(const Surface& surface, const ForeignAxis& axis) {
   const double now = finder.error({}), balls_off = finder.median({});
   if (now <= tolerance::kFrameError) return;
   const Frame best = finder.best();
+  // Coarse axes, whose balls are too large, would fit better if they were a little smaller.
+  const bool other = finder.moved(best) > kSameFrame;
   const double then = finder.error(best);
   const std::string off = name_of(axis) + ": the balls do not lie near the mesh: half of them are off its surface by " +
                           number(100 * balls_off) + " % of its diagonal or more, or they fill another box";
-  if (then < kFits * now && then <= tolerance::kFrameError)
+  if (other && then < kFits * now && then <= tolerance::kFrameError)
     throw InputError(off + "; they would be off by " + number(100 * finder.median(best)) + " % if they were " +
                      in_words(best) + ", so the file is in another frame than the mesh");
   if (balls_off > kFarOff * tolerance::kFrameError)

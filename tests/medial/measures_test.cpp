@@ -118,7 +118,6 @@ TEST(EnvelopeSamples, OfASlabAreOnItsTwoFacesAndItsRim) {
   for (const Point& p : samples) EXPECT_NEAR(whole.distance(p), 0, 1e-9);
 }
 
-// A bar of a square section, whose axis in two balls and a line is its inscribed capsule.
 TEST(PaperMeasures, OfABallInABallAreItsSamplingError) {
   const Surface ball(test::icosphere(4));
   const MedialMesh exact{.centers = {{0, 0, 0}}, .radii = {1}, .edges = {}, .triangles = {}};
@@ -136,10 +135,10 @@ TEST(PaperMeasures, OfABallInABallAreItsSamplingError) {
   EXPECT_NEAR(less.sampled_hausdorff * diagonal, 0.15, 0.06);
 }
 
-// The seam of an L-shaped solid's axis touches three walls; one that is moved aside does not.
+// The seam of a square bar's axis touches four walls; one that is moved towards a wall touches that alone.
 TEST(PaperMeasures, CountSeamBallsThatTouchTooFewPlaces) {
   const Surface bar(test::box({0, 0, 0}, {10, 2, 2}));
-  // The axis of a long box of square section: four sheets from its middle line to its edges.
+  // Four sheets from its middle line to its edges.
   MedialMesh mesh;
   for (int i = 0; i <= 4; ++i) {
     const double x = 2 + 1.5 * i;

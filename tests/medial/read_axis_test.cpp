@@ -317,6 +317,13 @@ TEST(PlaceAxis, SaysWhichFrameWouldFit) {
   expect_input_error([&] { place_axis(surface, {.mesh = turned}); }, {"another frame"});
 }
 
+TEST(PlaceAxis, TakesACoarseAxisWhoseBallsAreFarTooLarge) {
+  const Surface surface(test::box({0, 0, 0}, {6, 2, 2}));
+  MedialMesh coarse = rod(Vector::Zero(), 1);
+  for (std::size_t i = 0; i < coarse.radii.size(); ++i) coarse.radii[i] = 1.45 + 0.01 * static_cast<double>(i);
+  EXPECT_NO_THROW(place_axis(surface, {.mesh = coarse}));
+}
+
 TEST(PlaceAxis, RefusesTheSurfaceItselfWithRadiusOne) {
   const Surface surface(test::icosphere(2, 3));
   MedialMesh mesh;
