@@ -72,6 +72,7 @@ class MaReader {
   Index fourth_count() {
     std::array<std::int64_t, 1> number{};
     if (lines_.whole_numbers_to_the_end(number) == 0) return 0;
+    has_copies_ = true;
     if (number[0] < 0 || number[0] > std::numeric_limits<Index>::max())
       lines_.fail("a number of tetrahedra that is none");
     return static_cast<Index>(number[0]);
@@ -98,19 +99,21 @@ class MaReader {
     std::sort(result.begin(), result.end());
     return result;
   }
-  // "type", "type deleted", "type deleted copies" or none; anything else at the end of a line is not meant for us.
+  // "type", "type deleted", of MATTopo "type deleted copies", or none; anything else at the end of a line is not meant
+  // for us.
   CellFlags flags_with_type() {
     std::array<std::int64_t, 3> numbers{};
     const std::size_t count = lines_.whole_numbers_to_the_end(numbers);
-    if (count == 0) return {};
+    if (count == 0 || (count == 3 && !has_copies_)) return {};
     if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("a type that is beyond 32-bit numbers");
     return {static_cast<int>(numbers[0]), deleted(numbers[1])};
   }
-  // "deleted", "importance deleted", "importance deleted copies" or none; of a tetrahedron "deleted copies".
+  // "deleted" or none; of MATTopo "importance deleted [copies]", of its tetrahedra "deleted [copies]".
   CellFlags flag_without_type() {
     std::array<std::int64_t, 2> numbers{};
     std::size_t count = lines_.whole_numbers_to_the_end(numbers);
     if (count == 1) return {0, deleted(numbers[0])};
+    if (!has_copies_) return {};
     if (count == 2 && in_tetrahedra_) return {0, deleted(numbers[0])};
     if (count == 2) return {0, deleted(numbers[1])};
     double importance = 0;
@@ -180,6 +183,7 @@ class MaReader {
   TextLines lines_;
   Index vertices_ = 0;
   bool any_flags_ = false, in_tetrahedra_ = false;
+  bool has_copies_ = false;  // a file of MATTopo, with its columns
   FlaggedMedialMesh flagged_;
 };
 
