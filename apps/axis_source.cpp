@@ -3,7 +3,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/tolerance.h"
-#include "orchard/medial/medial_mesh.h"
+#include "orchard/medial/read_axis.h"
 #include "orchard/voronoi/diagram_io.h"
 
 namespace orchard::apps {
@@ -60,7 +60,7 @@ OwnInput read_axis_source(const AxisSource& source, const Surface& surface) {
     own.input.sampling = std::move(placed.sampling);
   }
   if (!source.diagram.empty()) own.input.diagram = read_diagram(source.diagram, surface);
-  if (!source.axis.empty()) own.input.mesh = read_ma(source.axis);
+  if (!source.axis.empty()) own.input.mesh = place_axis(surface, read_axis(source.axis)).mesh;
   return own;
 }
 

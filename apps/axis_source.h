@@ -11,7 +11,7 @@ namespace orchard::apps {
 struct AxisSource {
   std::filesystem::path points;   // surface points: .xyz, or .ply or .obj, whose faces are not looked at
   std::filesystem::path diagram;  // a Voronoi diagram of points on the mesh, a .vor file; taken as it is
-  std::filesystem::path axis;     // the axis itself, a .ma file of any system
+  std::filesystem::path axis;     // the axis itself, a file of any system that read_axis() reads
 
   std::vector<std::filesystem::path> files() const;  // those that are given
 };

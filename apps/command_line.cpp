@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "a_number.h"
+#include "axis_export.h"
 #include "command_list.h"
 #include "list_option.h"
 #include "orchard/geometry/tolerance.h"
@@ -124,7 +125,7 @@ void add_build(CLI::App& app, Request& request) {
   add_tuning(command, build.tuning, true);
   add_axis_source(command, build.source);
   command.add_option("--from-axis", build.source.axis,
-                     "Build from this medial axis, a .ma file of any system, instead of one of its own");
+                     "Build from this medial axis, a file of any system, instead of one of its own");
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", build.views, "Write no files for ParaView");
@@ -366,9 +367,8 @@ void add_medial(CLI::App& app, Request& request) {
   add_features(command, medial);
   command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
   command
-      .add_option(
-          "--beside", medial.beside,
-          "A .ma file of any system to measure with the same instrument, beside this axis; again for another one")
+      .add_option("--beside", medial.beside,
+                  "The axis of any system to measure with the same instrument, beside this axis; again for another one")
       ->allow_extra_args(false);
   CLI::Option* picture = command.add_flag("--picture", medial.picture,
                                           "With --report or --axis: draw where the axis is worst, places numbered");
@@ -381,7 +381,16 @@ void add_medial(CLI::App& app, Request& request) {
                   "Surface points to measure at: fewer are faster and miss more of the largest errors")
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
-  command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
+  CLI::Option* axis = command.add_option(
+      "--axis", medial.axis,
+      "Build nothing; measure this axis of any system: .ma, .obj, .ply, .off, .sph, .swc or text (docs/FORMATS.md)");
+  command
+      .add_flag("--connect", medial.connect,
+                "With --axis: connect balls without cells by their power diagram within the solid")
+      ->needs(axis);
+  add_list(command, "--export", medial.exports, "With --axis: write it in these formats as well: AXIS-converted.ma, ..",
+           axis_export_kinds())
+      ->needs(axis);
   add_axis_source(command, medial.source);
   add_few_balls(command, medial);
   command
@@ -429,6 +438,37 @@ void add_inspect(CLI::App& app, Request& request) {
   command.callback([&request, &command] {
     request.inspect.output.run = invocation_of(command, request.typed);
     request.run = [&request] { orchard::apps::inspect(request.inspect); };
+  });
+}
+
+void add_leaderboard(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand(
+      "leaderboard", "Measure the medial axes of all systems in a folder, and orchard's beside them");
+  LeaderboardCommand& leaderboard = request.leaderboard;
+  command
+      .add_option("folder", leaderboard.input,
+                  "Meshes, and axes MODEL-SYSTEM-N.ma (.obj, .ply, ..) beside them or in its folder results")
+      ->required();
+  command.add_option("-o,--output", leaderboard.folder, "Folder for the table, and for what a later run need not redo")
+      ->required();
+  add_list(command, "--builders", leaderboard.builders,
+           "Of orchard, in as few balls: refined axes, raw ones (default refined)", {"refined", "raw"});
+  add_list(command, "--vertices", leaderboard.vertices, "Numbers of balls to build besides those of the axes", 1);
+  command.add_flag("--connect", leaderboard.connect,
+                   "Connect balls without cells by their power diagram within the solid");
+  command.add_option("--quality-samples", leaderboard.quality_samples, "Surface points that each axis is measured at")
+      ->capture_default_str()
+      ->check(CLI::Range(100, 10'000'000));
+  command.add_option("--samples", leaderboard.samples, "Surface points that orchard's axes are built from")
+      ->capture_default_str()
+      ->check(CLI::Range(10, 10'000'000));
+  command.add_option("--seed", leaderboard.seed, "Of all random choices")->capture_default_str();
+  add_force(command, leaderboard.output);
+  add_output_flags(command, leaderboard.output);
+  command.footer("Example:\n  orchard leaderboard results -o out/leaderboard --vertices 50,100,300");
+  command.callback([&request, &command] {
+    request.leaderboard.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::leaderboard(request.leaderboard); };
   });
 }
 
@@ -567,6 +607,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_compare(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
+  add_leaderboard(app, request);
   add_view(app, request);
   add_completion(app, request);
   add_reference(app, request);

@@ -18,6 +18,7 @@ struct Request {
   SampleCommand sample;
   VoronoiCommand voronoi;
   MedialCommand medial;
+  LeaderboardCommand leaderboard;
   ViewCommand view;
   std::string shell, format;  // of completion and reference
   ProfileCommand profile;

@@ -97,9 +97,11 @@ struct MedialCommand {
   bool outside = false;                       // the axis of the space around the solid, within a sphere
   double outside_radius = 2;                  // of that sphere, in bounding radii
   std::filesystem::path features;             // .obj: the edges that sheets reach to; empty: found by their loss
-  std::filesystem::path axis;                 // not empty: a .ma file to judge; nothing is built
+  std::filesystem::path axis;                 // not empty: the axis of a file to judge; nothing is built
+  bool connect = false;                       // balls of files without cells, by their power diagram
+  std::vector<std::string> exports;           // of that axis: ma, ply, obj, graphml, vtp
   bool report = false;                        // judge what was built
-  std::vector<std::filesystem::path> beside;  // .ma files to judge by the same measures, in the same table
+  std::vector<std::filesystem::path> beside;  // axes of files to judge by the same measures, in the same table
   bool picture = false;                       // of where the judged axis is worst
   std::string up = "y";                       // the mesh's axis that points up in the picture
   Index quality_samples = 100'000;            // surface points of the judgement
@@ -118,6 +120,18 @@ struct MedialCommand {
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line
 ExitCode medial(const MedialCommand& command);
+
+struct LeaderboardCommand {
+  std::filesystem::path input, folder;  // of meshes and axes; for the table
+  std::vector<std::string> builders;    // of orchard: refined, raw; empty: refined
+  std::vector<Index> vertices;          // numbers of balls beside those of the axes
+  bool connect = false;                 // as of MedialCommand
+  Index quality_samples = 20'000;       // surface points of each judgement
+  Index samples = kStandardSamples;     // surface points of orchard's axes
+  std::uint64_t seed = 1;
+  Output output;
+};
+void leaderboard(const LeaderboardCommand& command);
 
 struct CompareCommand {
   std::filesystem::path mesh;

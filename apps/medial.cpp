@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "axis_export.h"
 #include "commands.h"
 #include "console.h"
 #include "feature_lines.h"
@@ -20,6 +21,7 @@
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
+#include "orchard/medial/read_axis.h"
 #include "outputs.h"
 #include "promises.h"
 #include "reading_report.h"
@@ -45,6 +47,8 @@ std::vector<std::string> names_of(const MedialCommand& command) {
   std::vector<std::string> names = few_balls_names(command);
   if (!command.axis.empty()) {
     names.push_back(named(command.axis, "-quality.png"));
+    const std::vector<std::string> exports = axis_export_names(command);
+    names.insert(names.end(), exports.begin(), exports.end());
     return names;
   }
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
@@ -75,6 +79,7 @@ Destination check(const MedialCommand& command) {
   if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
   if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
   check_side(command);
+  check_axis_exports(command);
   if (command.tree && command.sweep.empty())
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
   refuse_idle_options(command);
@@ -100,15 +105,29 @@ void finish(const MedialCommand& command, json& report, Outputs& outputs) {
 }
 
 // The axes of files, read before anything takes long.
+std::vector<ForeignAxis> read_axes(const std::vector<fs::path>& files) {
+  std::vector<ForeignAxis> axes;
+  axes.reserve(files.size());
+  for (const fs::path& file : files) axes.push_back(read_axis(file));
+  return axes;
+}
+
+// The same for one solid.
 struct AxisFile {
   fs::path file;
-  MedialMesh mesh;
+  PlacedAxis axis;
 };
-std::vector<AxisFile> read_axes(const std::vector<fs::path>& files) {
-  std::vector<AxisFile> axes;
-  axes.reserve(files.size());
-  for (const fs::path& file : files) axes.push_back({file, read_ma(file)});
-  return axes;
+std::vector<AxisFile> place_axes(const Surface& surface, std::vector<ForeignAxis> axes, const PlaceOptions& options) {
+  std::vector<AxisFile> placed;
+  placed.reserve(axes.size());
+  for (ForeignAxis& axis : axes) {
+    const fs::path file = axis.files.front();
+    placed.push_back({file, place_axis(surface, std::move(axis), options)});
+  }
+  return placed;
+}
+void print_notes(const AxisFile& axis) {
+  for (const std::string& note : axis.axis.notes) fmt::print("{}: {}\n", axis.file.string(), note);
 }
 
 json counts_of(const MedialMesh& mesh) {
@@ -131,10 +150,11 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
   StageTimes seconds = first.judgement.seconds;
   const Stopwatch measuring;
   for (const AxisFile& other : beside) {
-    const MedialJudgement judgement = judge_beside(command, solid.surface, other.mesh, first.mesh, progress);
+    const MedialJudgement judgement = judge_beside(command, solid.surface, other.axis.mesh, first.mesh, progress);
     axes.push_back({other.file.string(), judgement});
-    json row = counts_of(other.mesh);
+    json row = counts_of(other.axis.mesh);
     row["axis"] = other.file.string();
+    row["notes"] = other.axis.notes;
     row["quality"] = to_json(judgement);
     others.push_back(std::move(row));
   }
@@ -155,26 +175,30 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
 }
 
 void judge_file(const MedialCommand& command, const Destination& destination, const SolidMesh& solid,
-                const std::vector<AxisFile>& beside, const MedialMesh& mesh, const Progress& progress,
-                ProgressBar& bar) {
+                const std::vector<AxisFile>& beside, const AxisFile& axis, const Progress& progress, ProgressBar& bar) {
   const bool talk = !command.output.quiet && !command.output.json;
+  const MedialMesh& mesh = axis.axis.mesh;
   MedialJudgement judgement;
   time_stage(judgement.seconds, "quality",
-             [&] { judgement.quality = medial_quality(solid.surface, mesh, quality_options(command), progress); });
+             [&] { judgement = judge_mesh(solid.surface, mesh, quality_options(command), progress); });
   const Judged judged{.mesh = mesh, .judgement = std::move(judgement), .origin = {}, .name = command.axis.string()};
   bar.clear();
   json report = counts_of(mesh);
   report["mesh"] = mesh_json(solid.surface);
   report["axis"] = command.axis.string();
+  report["notes"] = axis.axis.notes;
   add_solid_json(solid, report);
   if (talk) {
     fmt::print("{}: {} vertices, {} edges, {} triangles\n", command.axis.string(), mesh.centers.size(),
                mesh.edges.size(), mesh.triangles.size());
+    print_notes(axis);
+    for (const AxisFile& other : beside) print_notes(other);
   }
   const FewBalls few = make_few_balls(command, solid.surface, mesh, progress);
   report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
+  write_axis_exports(command, mesh, outputs);
   write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
                 named(command.axis, "-quality.png"), outputs);
   finish(command, report, outputs);
@@ -301,7 +325,7 @@ MedialJudgement judge(const MedialCommand& command, const Surface& surface, cons
                       const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress) {
   MedialJudgement judgement;
   time_stage(judgement.seconds, "quality",
-             [&] { judgement.quality = medial_quality(surface, mesh, quality_options(command), progress); });
+             [&] { judgement = judge_mesh(surface, mesh, quality_options(command), progress); });
   time_stage(judgement.seconds, "stability", [&] {
     judgement.stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress);
   });
@@ -310,7 +334,7 @@ MedialJudgement judge(const MedialCommand& command, const Surface& surface, cons
 
 MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
                              const MedialMesh& first, const Progress& progress) {
-  MedialJudgement judgement{.quality = medial_quality(surface, mesh, quality_options(command), progress)};
+  MedialJudgement judgement = judge_mesh(surface, mesh, quality_options(command), progress);
   const double diagonal = judgement.quality.diagonal;
   AxisDistance distance = axis_distance(first, mesh, kDistanceAccuracy * diagonal);
   for (double* length : {&distance.max, &distance.max_gap, &distance.mean, &distance.max_from, &distance.max_to})
@@ -321,8 +345,8 @@ MedialJudgement judge_beside(const MedialCommand& command, const Surface& surfac
 
 ExitCode medial(const MedialCommand& command) {
   const Destination destination = check(command);
-  const std::vector<AxisFile> beside = read_axes(command.beside);
-  const std::optional<MedialMesh> axis = command.axis.empty() ? std::nullopt : std::optional(read_ma(command.axis));
+  std::vector<ForeignAxis> foreign = read_axes(command.beside);
+  if (!command.axis.empty()) foreign.push_back(read_axis(command.axis));
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
@@ -340,8 +364,11 @@ ExitCode medial(const MedialCommand& command) {
       fmt::print("outside: the space around it, within a sphere of {:.6g} bounding radii\n", command.outside_radius);
   }
   const SolidMesh& wanted = outside ? *outside : solid;
-  if (axis) {
-    judge_file(command, destination, wanted, beside, *axis, bar.callback(), bar);
+  std::vector<AxisFile> beside = place_axes(wanted.surface, std::move(foreign), {.connect = command.connect});
+  if (!command.axis.empty()) {
+    const AxisFile axis = std::move(beside.back());
+    beside.pop_back();
+    judge_file(command, destination, wanted, beside, axis, bar.callback(), bar);
   } else if (!command.sweep.empty()) {
     sweep_medial(command, destination, wanted.surface, bar.callback());
     bar.clear();

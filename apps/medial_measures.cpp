@@ -1,5 +1,6 @@
 #include "medial_measures.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace orchard::apps {
@@ -67,7 +68,7 @@ std::vector<MedialMeasure> topology_measures() {
            [](const J& j) { return number(j.quality.found.euler_characteristic()); }}};
 }
 
-std::vector<MedialMeasure> shape_measures() {
+std::vector<MedialMeasure> form_measures() {
   return {
       {"balls", "balls", "", true, [](const J& j) { return number(j.quality.balls); }},
       {"border_length", "length of borders", "diagonals", true, [](const J& j) { return j.quality.border_length; }},
@@ -75,6 +76,44 @@ std::vector<MedialMeasure> shape_measures() {
       {"wires", "wires: edges without faces", "", true, [](const J& j) { return number(j.quality.pieces.wires); }},
       {"small_pieces", "flakes and spikes of these", "", true,
        [](const J& j) { return number(j.quality.pieces.small); }}};
+}
+
+std::vector<MedialMeasure> making_measures() {
+  return {{"triangle_quality_mean", "triangle quality, mean", "1: equilateral", false,
+           [](const J& j) { return j.shape.quality_mean; }},
+          {"triangle_quality_5", "triangle quality, 5th percentile", "1: equilateral", false,
+           [](const J& j) { return j.shape.quality_5; }},
+          {"triangle_quality_below", "triangles of quality below .1", "fraction", true,
+           [](const J& j) { return j.shape.quality_below; }},
+          {"edge_spread", "edges, 90th over 10th percentile", "ratio", true,
+           [](const J& j) { return j.shape.edge_spread; }},
+          {"sheets_between_seams", "sheets, cut at seams", "", true, [](const J& j) { return number(j.shape.sheets); }},
+          {"small_sheets", "sheets smaller than their balls", "", true,
+           [](const J& j) { return number(j.shape.small_sheets); }},
+          {"tiny_sheets", "sheets of 3 triangles or fewer", "", true,
+           [](const J& j) { return number(j.shape.tiny_sheets); }},
+          {"seam_length", "length of seams", "diagonals", false, [](const J& j) { return j.shape.seam_length; }},
+          {"wire_length", "length of wires", "diagonals", false, [](const J& j) { return j.shape.wire_length; }},
+          {"border_turns", "border turns by more than 60", "fraction", true,
+           [](const J& j) { return j.shape.border_turns; }},
+          {"border_roughness", "border roughness", "ratio", true, [](const J& j) { return j.shape.border_roughness; }},
+          {"flaps", "flaps at borders", "", true, [](const J& j) { return number(j.shape.flaps); }},
+          {"forked_borders", "vertices where borders fork", "", true,
+           [](const J& j) { return number(j.shape.forked_borders); }}};
+}
+
+std::vector<MedialMeasure> paper_measures_of() {
+  return {
+      {"chamfer", "Chamfer distance, sampled", kDiagonal, true, [](const J& j) { return percent(j.paper.chamfer); }},
+      {"sampled_hausdorff", "Hausdorff distance, sampled", kDiagonal, true,
+       [](const J& j) { return percent(j.paper.sampled_hausdorff); }},
+      {"covered", "covered by balls dilated by .02", "fraction", false, [](const J& j) { return j.paper.covered; }},
+      {"dilation_needed", "dilation that covers all", "of the side", true,
+       [](const J& j) { return j.paper.dilation_needed; }},
+      {"wrong_structure", "wrong seam and junction balls", "fraction", true,
+       [](const J& j) { return j.paper.wrong_structure; }},
+      {"structure_balls", "seam and junction balls", "", false,
+       [](const J& j) { return number(j.paper.structure_balls); }}};
 }
 
 std::vector<MedialMeasure> use_measures() {
@@ -102,11 +141,21 @@ std::vector<MedialMeasure> distance_measures() {
 
 }  // namespace
 
+MedialJudgement judge_mesh(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options,
+                           const Progress& progress) {
+  MedialJudgement judgement;
+  judgement.quality = medial_quality(surface, mesh, options, progress);
+  judgement.shape = shape_measures(mesh, judgement.quality.diagonal);
+  const PaperOptions paper{.samples = std::min(options.surface_samples, PaperOptions{}.samples), .seed = options.seed};
+  judgement.paper = paper_measures(surface, mesh, paper);
+  return judgement;
+}
+
 const std::vector<MedialMeasure>& medial_measures() {
   static const std::vector<MedialMeasure> measures = [] {
     std::vector<MedialMeasure> all;
-    for (const auto& some : {reconstruction_measures(), ball_measures(), topology_measures(), shape_measures(),
-                             use_measures(), distance_measures()})
+    for (const auto& some : {reconstruction_measures(), ball_measures(), topology_measures(), form_measures(),
+                             making_measures(), paper_measures_of(), use_measures(), distance_measures()})
       all.insert(all.end(), some.begin(), some.end());
     return all;
   }();

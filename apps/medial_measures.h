@@ -5,7 +5,9 @@
 
 #include "orchard/geometry/stage_times.h"
 #include "orchard/medial/axis_distance.h"
+#include "orchard/medial/paper_measures.h"
 #include "orchard/medial/quality.h"
+#include "orchard/medial/shape_measures.h"
 
 namespace orchard::apps {
 
@@ -13,10 +15,16 @@ namespace orchard::apps {
 // one that stands beside another how far it is from that.
 struct MedialJudgement {
   MedialQuality quality;
+  ShapeMeasures shape = {};
+  PaperMeasures paper = {};
   std::optional<MedialStability> stability = {};
   std::optional<AxisDistance> distance = {};  // in diagonals
   StageTimes seconds = {};                    // that measuring took
 };
+
+// What is known of any medial mesh. The counts of samples go with those of `options`.
+MedialJudgement judge_mesh(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options,
+                           const Progress& progress = {});
 
 // One number of a judgement, by the one name and in the one unit that it has in tables, JSON, sweeps and views.
 struct MedialMeasure {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "ma_text.h"
@@ -10,9 +11,10 @@ namespace {
 template <std::size_t kCorners>
 using Cells = std::vector<std::array<Index, kCorners>>;
 
-// Sorts cells, and of those that are repeated keeps the first that is not deleted, or else the first.
+// Sorts cells, and of those that are repeated keeps the first that is not deleted, or else the first. Returns the new
+// number of each.
 template <std::size_t kCorners>
-void sort_and_deduplicate(Cells<kCorners>& cells, std::vector<CellFlags>& flags) {
+std::vector<Index> sort_and_deduplicate(Cells<kCorners>& cells, std::vector<CellFlags>& flags) {
   std::vector<Index> order(cells.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
@@ -20,13 +22,17 @@ void sort_and_deduplicate(Cells<kCorners>& cells, std::vector<CellFlags>& flags)
   });
   Cells<kCorners> sorted;
   std::vector<CellFlags> sorted_flags;
+  std::vector<Index> number(cells.size());
   for (const Index i : order) {
-    if (!sorted.empty() && sorted.back() == cells[i]) continue;
-    sorted.push_back(cells[i]);
-    sorted_flags.push_back(flags[i]);
+    if (sorted.empty() || sorted.back() != cells[i]) {
+      sorted.push_back(cells[i]);
+      sorted_flags.push_back(flags[i]);
+    }
+    number[i] = static_cast<Index>(sorted.size() - 1);
   }
   cells = std::move(sorted);
   flags = std::move(sorted_flags);
+  return number;
 }
 
 class MaReader {
@@ -36,7 +42,7 @@ class MaReader {
   FlaggedMedialMesh run() {
     if (!lines_.next()) lines_.fail("is empty; a .ma file starts with its numbers of vertices, edges and faces");
     vertices_ = lines_.index();
-    const Index edges = lines_.index(), faces = lines_.index();
+    const Index edges = lines_.index(), faces = lines_.index(), tetrahedra = fourth_count();
     if (vertices_ == 0) lines_.fail("promises no vertices");
     for (Index i = 0; i < vertices_; ++i) read_vertex();
     if (std::all_of(flagged_.vertices.begin(), flagged_.vertices.end(),
@@ -50,12 +56,27 @@ class MaReader {
       flagged_.mesh.triangles.push_back(corners<3>("f"));
       flagged_.triangles.push_back(flag_without_type());
     }
+    in_tetrahedra_ = true;
+    for (Index i = 0; i < tetrahedra; ++i) {
+      corners<4>("t");
+      if (!flag_without_type().deleted) ++flagged_.tetrahedra;
+    }
+    read_structure();
     complete_with_flags();
     if (!any_flags_) flagged_.vertices.clear(), flagged_.edges.clear(), flagged_.triangles.clear();
     return std::move(flagged_);
   }
 
  private:
+  // MATTopo counts tetrahedra as well.
+  Index fourth_count() {
+    std::array<std::int64_t, 1> number{};
+    if (lines_.whole_numbers_to_the_end(number) == 0) return 0;
+    has_copies_ = true;
+    if (number[0] < 0 || number[0] > std::numeric_limits<Index>::max())
+      lines_.fail("a number of tetrahedra that is none");
+    return static_cast<Index>(number[0]);
+  }
   void read_vertex() {
     lines_.expect("v");
     const double x = lines_.real(), y = lines_.real(), z = lines_.real(), radius = lines_.real();
@@ -78,18 +99,27 @@ class MaReader {
     std::sort(result.begin(), result.end());
     return result;
   }
-  // "type", "type deleted" or none; anything else at the end of a line is not meant for us.
+  // "type", "type deleted", of MATTopo "type deleted copies", or none; anything else at the end of a line is not meant
+  // for us.
   CellFlags flags_with_type() {
-    std::array<std::int64_t, 2> numbers{};
+    std::array<std::int64_t, 3> numbers{};
     const std::size_t count = lines_.whole_numbers_to_the_end(numbers);
-    if (count == 0) return {};
+    if (count == 0 || (count == 3 && !has_copies_)) return {};
     if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("a type that is beyond 32-bit numbers");
     return {static_cast<int>(numbers[0]), deleted(numbers[1])};
   }
+  // "deleted" or none; of MATTopo "importance deleted [copies]", of its tetrahedra "deleted [copies]".
   CellFlags flag_without_type() {
-    std::array<std::int64_t, 1> number{};
-    if (lines_.whole_numbers_to_the_end(number) == 0) return {};
-    return {0, deleted(number[0])};
+    std::array<std::int64_t, 2> numbers{};
+    std::size_t count = lines_.whole_numbers_to_the_end(numbers);
+    if (count == 1) return {0, deleted(numbers[0])};
+    if (!has_copies_) return {};
+    if (count == 2 && in_tetrahedra_) return {0, deleted(numbers[0])};
+    if (count == 2) return {0, deleted(numbers[1])};
+    double importance = 0;
+    if (!lines_.real_if_any(importance)) return {};
+    count = lines_.whole_numbers_to_the_end(numbers);
+    return count == 0 ? CellFlags() : CellFlags{0, deleted(numbers[0])};
   }
   bool deleted(std::int64_t flag) {
     if (flag != 0 && flag != 1) lines_.fail("a flag \"deleted\" that is neither 0 nor 1");
@@ -97,10 +127,43 @@ class MaReader {
     return flag == 1;
   }
 
+  // MATStruct's section, if what follows is a number of parts alone; other text is not meant for us.
+  void read_structure() {
+    std::array<std::int64_t, 1> parts{};
+    if (!lines_.next() || lines_.whole_numbers_to_the_end(parts) == 0) return;
+    if (parts[0] < 0) lines_.fail("a number of parts of the structure below 0");
+    for (std::int64_t i = 0; i < parts[0]; ++i) {
+      StructurePart part;
+      part.number = lines_.index_on_any_line("the number of a part of the structure");
+      part.kind = lines_.index_on_any_line("the kind of a part of the structure");
+      if (part.kind > 4) lines_.fail("a kind of part that is none of 0 sheet, 1 seam, 2 border, 3 junction, 4 curve");
+      const std::size_t cells = part.kind == 0   ? flagged_.mesh.triangles.size()
+                                : part.kind == 3 ? flagged_.mesh.centers.size()
+                                                 : flagged_.mesh.edges.size();
+      const Index count = lines_.index_on_any_line("the number of cells of a part of the structure");
+      for (Index k = 0; k < count; ++k) {
+        part.cells.push_back(lines_.index_on_any_line("a cell of a part of the structure"));
+        if (part.cells.back() >= cells) lines_.fail("a part of the structure names a cell beyond the last one");
+      }
+      flagged_.structure.push_back(std::move(part));
+    }
+  }
+
+  // Parts by the new numbers of cells, ascending, each once.
+  void renumber(const std::vector<Index>& edges, const std::vector<Index>& triangles) {
+    for (StructurePart& part : flagged_.structure) {
+      if (part.kind != 3) {
+        for (Index& cell : part.cells) cell = (part.kind == 0 ? triangles : edges)[cell];
+      }
+      std::sort(part.cells.begin(), part.cells.end());
+      part.cells.erase(std::unique(part.cells.begin(), part.cells.end()), part.cells.end());
+    }
+  }
+
   void complete_with_flags() {
     MedialMesh& mesh = flagged_.mesh;
-    sort_and_deduplicate(mesh.edges, flagged_.edges);
-    sort_and_deduplicate(mesh.triangles, flagged_.triangles);
+    std::vector<Index> edges = sort_and_deduplicate(mesh.edges, flagged_.edges);
+    const std::vector<Index> triangles = sort_and_deduplicate(mesh.triangles, flagged_.triangles);
     // What is missing is there for the sake of its triangles: deleted if all of these are.
     const std::size_t listed = mesh.edges.size();
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -112,12 +175,15 @@ class MaReader {
         flagged_.edges.push_back({0, flagged_.triangles[i].deleted});
       }
     }
-    sort_and_deduplicate(mesh.edges, flagged_.edges);
+    const std::vector<Index> completed = sort_and_deduplicate(mesh.edges, flagged_.edges);
+    for (Index& edge : edges) edge = completed[edge];
+    renumber(edges, triangles);
   }
 
   TextLines lines_;
   Index vertices_ = 0;
-  bool any_flags_ = false;
+  bool any_flags_ = false, in_tetrahedra_ = false;
+  bool has_copies_ = false;  // a file of MATTopo, with its columns
   FlaggedMedialMesh flagged_;
 };
 
@@ -197,10 +263,21 @@ std::string to_ma(const FlaggedMedialMesh& flagged) {
     if (triangles_deleted) append_flag(text, of(flagged.triangles, i).deleted);
     text += '\n';
   }
+  if (!flagged.structure.empty()) text += to_structure_section(flagged.structure);
   return text;
 }
 
-std::string to_ma(const MedialMesh& mesh) { return to_ma(FlaggedMedialMesh{mesh, {}, {}, {}}); }
+std::string to_ma(const MedialMesh& mesh) { return to_ma(FlaggedMedialMesh{.mesh = mesh}); }
+
+std::string to_structure_section(const std::vector<StructurePart>& parts) {
+  std::string text = std::to_string(parts.size()) + '\n';
+  for (const StructurePart& part : parts) {
+    text += std::to_string(part.number) + ' ' + std::to_string(part.kind) + ' ' + std::to_string(part.cells.size());
+    for (const Index cell : part.cells) append_number(text, cell);
+    text += '\n';
+  }
+  return text;
+}
 
 FlaggedMedialMesh read_flagged_ma(const std::filesystem::path& file) { return detail::parse_ma(TextLines(file)); }
 

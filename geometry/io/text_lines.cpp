@@ -111,6 +111,34 @@ double TextLines::real(std::string_view what) {
   return value;
 }
 
+bool TextLines::real_if_any(double& value) {
+  const std::size_t start = at_;
+  skip_space();
+  if (scan(scan_double, value) && std::isfinite(value)) return true;
+  at_ = start;
+  return false;
+}
+
+Index TextLines::index_on_any_line(std::string_view what) {
+  skip_space();
+  while (at_ >= line_end_) {
+    if (!next()) fail("the file ends where it must have " + std::string(what) + "; it may be cut off");
+  }
+  const std::size_t start = at_;
+  std::int64_t value = 0;
+  if (scan(scan_integer, value) && value >= 0 && value <= std::numeric_limits<Index>::max())
+    return static_cast<Index>(value);
+  at_ = start;
+  fail_to_find(what);
+}
+
+std::string_view TextLines::word() {
+  skip_space();
+  const std::size_t start = at_;
+  while (at_ < line_end_ && !is_space(text_[at_])) ++at_;
+  return std::string_view(text_).substr(start, at_ - start);
+}
+
 void append_number(std::string& text, double value) {
   char digits[32];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);

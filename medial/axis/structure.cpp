@@ -214,15 +214,17 @@ MedialStructure medial_structure(const MedialMesh& mesh) {
 }
 
 std::string to_structure_section(const MedialStructure& structure) {
-  std::string text = std::to_string(structure.parts.size()) + '\n';
-  for (std::size_t i = 0; i < structure.parts.size(); ++i) {
-    const MedialStructure::Part& part = structure.parts[i];
-    text += std::to_string(i) + ' ' + std::to_string(static_cast<int>(part.kind)) + ' ' +
-            std::to_string(part.vertices.size());
-    for (const Index vertex : part.vertices) append_number(text, vertex);
-    text += '\n';
+  std::vector<StructurePart> parts(structure.parts.size());
+  for (Index i = 0; i < parts.size(); ++i) {
+    parts[i].number = i;
+    parts[i].kind = static_cast<Index>(structure.parts[i].kind);
+    if (structure.parts[i].kind == StructureKind::junction) parts[i].cells = structure.parts[i].vertices;
   }
-  return text;
+  for (Index t = 0; t < structure.of_face.size(); ++t) parts[structure.of_face[t]].cells.push_back(t);
+  for (Index e = 0; e < structure.of_edge.size(); ++e) {
+    if (structure.of_edge[e] != kNone) parts[structure.of_edge[e]].cells.push_back(e);
+  }
+  return to_structure_section(parts);
 }
 
 }  // namespace orchard

@@ -52,7 +52,7 @@ TEST(Build, BuildsFromTheAxisThatMedialWrote) {
   EXPECT_GT(report["medial_axis"]["vertices"], 100);
   EXPECT_EQ(here.run({"verify", out + "/l.orchard", mesh}).exit_code, 0);
   // A ball outside is refused, and counted.
-  here.add("one.ma", std::string("2 1 0\nv 99 0 0 1\nv .5 .5 .5 .1\ne 0 1\n"));
+  here.add("one.ma", std::string("3 1 0\nv 99 0 0 1\nv .5 .5 .5 .5\nv .6 .5 .5 .5\ne 0 1\n"));
   const Finished one = here.run({"build", mesh, "-o", out, "--from-axis", (here / "one.ma").string(), "--depth", "1",
                                  "--method", "merging", "--no-views", "--json"});
   ASSERT_EQ(one.exit_code, 0) << one.err;

@@ -52,6 +52,9 @@ cp out/octree/lamp.sph other.sph
 orchard medial data/lamp.obj -o out/other --raw --samples 1500 --no-views --quiet
 cp out/other/lamp.ma other.ma
 cp out/other/lamp.ma older.ma
+mkdir -p results/results
+cp data/lamp.obj results/lamp.obj
+cp out/other/lamp.ma results/results/lamp-other-4000.ma
 awk '$1 == "v" {print $2, $3, $4}' data/lamp.obj > cloud.xyz
 grep '^v ' data/lamp.obj > vertices.obj
 (printf 'ply\\nformat ascii 1.0\\nelement vertex %s\\n' "$(wc -l < cloud.xyz)"

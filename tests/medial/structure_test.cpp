@@ -88,10 +88,10 @@ TEST(MedialStructure, OfARefinedAxisIsThatOfItsMeshNumberForNumber) {
   EXPECT_EQ(to_structure_section(own), to_structure_section(of_mesh));
 }
 
-TEST(MedialStructure, ASectionListsNumberKindAndVerticesOfEachPart) {
+TEST(MedialStructure, ASectionListsNumberKindAndCellsOfEachPart) {
   const MedialStructure structure = medial_structure(mesh_of(4, {{0, 1, 2}}, {{2, 3}}));
   // The sheet, its border, the curve, and two junctions: where the curve begins and where it ends.
-  EXPECT_EQ(to_structure_section(structure), "5\n0 0 3 0 1 2\n1 2 3 0 1 2\n2 4 2 2 3\n3 3 1 2\n4 3 1 3\n");
+  EXPECT_EQ(to_structure_section(structure), "5\n0 0 1 0\n1 2 3 0 1 2\n2 4 1 3\n3 3 1 2\n4 3 1 3\n");
 }
 
 }  // namespace

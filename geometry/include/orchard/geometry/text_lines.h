@@ -22,6 +22,13 @@ class TextLines {
   Index index();                       // a whole number, 0 or more
   std::int64_t whole();
   double real(std::string_view what = "a number");  // finite; `what` names it in the message if there is none
+  // The same if there is a number next on the line. Returns whether there is; otherwise the line stays where it is.
+  bool real_if_any(double& value);
+  // A whole number, 0 or more, on this line or the next one that has anything left.
+  Index index_on_any_line(std::string_view what);
+  // The next word of the line, which blanks end; empty at the end of the line. Valid as long as this value.
+  std::string_view word();
+  void skip_line() { at_ = line_end_; }  // what is left of it
   // What is left of the line, if it is nothing but whole numbers and no more of them than `numbers` has room for: how
   // many they are. Otherwise 0, and the line stays where it is.
   std::size_t whole_numbers_to_the_end(std::span<std::int64_t> numbers);

@@ -45,6 +45,10 @@ inline constexpr double kCoalesce = 1e-7;
 // digits.
 inline constexpr double kSameRadius = 1e-5;
 
+// Of the diagonal: balls of which half are off the surface by more than this, as their distance to it less their
+// radius, are in another frame or of another solid: the coarsest published axes are off by a tenth of that.
+inline constexpr double kFrameError = 0.05;
+
 // What a step from one vertex to the next takes off a proven distance to the surface: a thousand roundings.
 inline constexpr double kClearance = 1e-12;
 

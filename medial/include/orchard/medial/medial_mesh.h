@@ -38,10 +38,20 @@ struct CellFlags {
   bool operator==(const CellFlags&) const = default;
 };
 
+// A part of an axis in the structure section of a .ma file of MATStruct (Wang et al. 2025).
+struct StructurePart {
+  Index number = 0;          // its name in the file
+  Index kind = 0;            // 0 sheet, 1 seam, 2 border (there: boundary), 3 junction; 4 curve, which orchard adds
+  std::vector<Index> cells;  // triangles of a sheet, edges of a line, the vertex of a junction; ascending
+  bool operator==(const StructurePart&) const = default;
+};
+
 // A .ma file as it is, deleted cells included. Flags belong to the cells of `mesh` one by one, or there are none.
 struct FlaggedMedialMesh {
   MedialMesh mesh;
-  std::vector<CellFlags> vertices, edges, triangles;
+  std::vector<CellFlags> vertices = {}, edges = {}, triangles = {};
+  std::vector<StructurePart> structure = {};
+  Index tetrahedra = 0;  // that a file of MATTopo lists and does not delete; `mesh` has their triangles alone
 };
 
 // The cells that count, vertices numbered anew in their order: those that are not deleted, nor part of whose boundary
@@ -53,8 +63,13 @@ MedialMesh without_deleted(const FlaggedMedialMesh& flagged);
 // any, in the columns that MATFP reads; the column of deleted edges or triangles only if one is.
 std::string to_ma(const MedialMesh& mesh);
 std::string to_ma(const FlaggedMedialMesh& flagged);
+// The structure section for the end of a .ma file, as MATStruct reads it: a line with the number of parts, then for
+// each a line "number kind n cells..". Programs that read a .ma file by its numbers of cells do not see it.
+std::string to_structure_section(const std::vector<StructurePart>& parts);
 // Lines that start with '#' and text after what is needed on a line, unless it is flags, are skipped. The result is
 // complete (edges that only deleted triangles have are deleted) and valid; read_ma() gives the cells that count alone.
+// The columns that MATTopo's .ma_dup files have more are read over: a fourth number in the first line and the "t" lines
+// that it counts, importances of triangles, and numbers of copies. A structure section is read if there is one.
 // Throws InputError, which names file and line.
 MedialMesh read_ma(const std::filesystem::path& file);
 FlaggedMedialMesh read_flagged_ma(const std::filesystem::path& file);

@@ -18,4 +18,8 @@ std::string to_ply(const MedialMesh& mesh);
 // are lost.
 std::string to_obj(const MedialMesh& mesh);
 
+// GraphML of all edges, those of triangles included: nodes have x, y, z and radius, edges their length and the kind of
+// the part that they are in (structure.h). Triangles have no place in it.
+std::string to_graphml(const MedialMesh& mesh);
+
 }  // namespace orchard

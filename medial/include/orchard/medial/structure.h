@@ -39,8 +39,7 @@ MedialStructure medial_structure(const MedialAxis& axis);
 // Of a medial mesh: faces are its triangles. Precondition: the mesh is complete, as validate() has it.
 MedialStructure medial_structure(const MedialMesh& mesh);
 
-// The structure section for the end of a .ma file, as MATStruct writes it: a line with the number of parts, then for
-// each a line "number kind n vertices..". Programs that read a .ma file by its numbers of cells do not see it.
+// The structure section for the end of the .ma file of the mesh that this is the structure of (medial_mesh.h).
 std::string to_structure_section(const MedialStructure& structure);
 
 }  // namespace orchard

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+
+#include "axis_text.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/ply_tables.h"
+
+namespace orchard::detail {
+namespace {
+
+using Table = PlyTables::Table;
+using Column = PlyTables::Column;
+
+class PlyAxisReader {
+ public:
+  PlyAxisReader(const PlyTables& tables, const std::string& name) : tables_(tables), name_(name) {}
+
+  ForeignAxis run() {
+    const Table* vertices = tables_.find("vertex");
+    if (vertices == nullptr || vertices->rows() == 0) throw InputError(name_ + ": no vertices in this PLY file");
+    if (vertices->rows() >= kNone) throw InputError(name_ + ": too many vertices for 32-bit indices");
+    read_vertices(*vertices);
+    if (const Table* edges = tables_.find("edge")) read_edges(*edges);
+    if (const Table* faces = tables_.find("face")) read_faces(*faces);
+    complete(axis_.mesh);
+    return std::move(axis_);
+  }
+
+ private:
+  const Column* number(const Table& table, std::initializer_list<const char*> names) const {
+    for (const char* name : names) {
+      const Column* column = table.find(name);
+      if (column != nullptr && !column->list) return column;
+    }
+    return nullptr;
+  }
+
+  void read_vertices(const Table& table) {
+    const Column* place[3] = {number(table, {"x"}), number(table, {"y"}), number(table, {"z"})};
+    for (const Column* column : place) {
+      if (column == nullptr) tables_.fail(table, 0, "the vertices have no numbers x, y and z");
+    }
+    const Column* radius = number(table, {"radius", "Radius", "r", "radii", "scalar_radius"});
+    axis_.has_radii = radius != nullptr;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const Point center(place[0]->numbers[row], place[1]->numbers[row], place[2]->numbers[row]);
+      if (!center.allFinite()) tables_.fail(table, row, "a coordinate that is not finite");
+      const double own = radius != nullptr ? radius->numbers[row] : 0;
+      if (!std::isfinite(own)) tables_.fail(table, row, "a radius that is not finite");
+      if (own < 0) tables_.fail(table, row, "a negative radius");
+      axis_.mesh.centers.push_back(center);
+      axis_.mesh.radii.push_back(own);
+    }
+  }
+
+  Index corner(const Table& table, std::size_t row, double value) const {
+    if (!(value >= 0 && value < axis_.mesh.size()) || value != std::floor(value))
+      tables_.fail(table, row, "a vertex number that is none of 0 to " + std::to_string(axis_.mesh.size() - 1));
+    return static_cast<Index>(value);
+  }
+
+  void read_edges(const Table& table) {
+    const Column *first = number(table, {"vertex1", "v1"}), *second = number(table, {"vertex2", "v2"});
+    if (table.rows() == 0) return;
+    if (first == nullptr || second == nullptr) tables_.fail(table, 0, "the edges have no numbers vertex1 and vertex2");
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const Index a = corner(table, row, first->numbers[row]), b = corner(table, row, second->numbers[row]);
+      if (a == b) tables_.fail(table, row, "an edge from a vertex to itself");
+      axis_.mesh.edges.push_back({a, b});
+    }
+  }
+
+  void read_faces(const Table& table) {
+    if (table.rows() == 0) return;
+    const Column* column = table.find("vertex_indices");
+    if (column == nullptr) column = table.find("vertex_index");
+    if (column == nullptr || !column->list) tables_.fail(table, 0, "the faces have no list vertex_indices");
+    std::vector<Index> corners;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      corners.clear();
+      for (std::size_t i = column->begin(row); i < column->ends[row]; ++i)
+        corners.push_back(corner(table, row, column->numbers[i]));
+      add_face(table, row, corners);
+    }
+  }
+
+  // A face of two corners is an edge, a polygon a fan.
+  void add_face(const Table& table, std::size_t row, const std::vector<Index>& corners) {
+    if (corners.size() < 2) tables_.fail(table, row, "a face of fewer than two corners");
+    std::vector<Index> sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+      tables_.fail(table, row, "a vertex number twice in a face");
+    if (corners.size() == 2) axis_.mesh.edges.push_back({corners[0], corners[1]});
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+      axis_.mesh.triangles.push_back({corners[0], corners[i], corners[i + 1]});
+  }
+
+  const PlyTables& tables_;
+  const std::string& name_;
+  ForeignAxis axis_;
+};
+
+}  // namespace
+
+ForeignAxis parse_ply_axis(std::string_view bytes, const std::string& name) {
+  const PlyTables tables(name, std::string(bytes));
+  return PlyAxisReader(tables, name).run();
+}
+
+}  // namespace orchard::detail
