@@ -31,8 +31,8 @@ class HalfSpaces {
                       std::span<const Motion> motions, double time_step, double slack, std::vector<BodyPair>& pairs);
   // Whether the promise that the body's next update relies on is kept by where it is now.
   bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
-  // Whether that is about the body's middle: see BodyTable::goes_by_middle().
-  bool goes_by_middle(BodyIndex body) const noexcept { return body < promises_.size() && promises_[body].by_middle; }
+  // Whether that is about the body's middle: see BodyTable::relies_on_middle().
+  bool relies_on_middle(BodyIndex body) const noexcept { return body < promises_.size() && promises_[body].by_middle; }
   std::size_t memory_bytes() const noexcept;
 
  private:

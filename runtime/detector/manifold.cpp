@@ -37,16 +37,18 @@ Manifold tree_contacts(Workspace& workspace, const PartPair& pair, const Contact
 // The places of the last step are still known.
 Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions& with) noexcept {
   Manifold result;
-  if (event.verdict.answer != Answer::yes || !contains(event.a) || !contains(event.b) || queries.jobs() == 0) {
+  if (event.verdict.answer != Answer::yes || !contains(event.a) || !contains(event.b) ||
+      scheduler.workspace() == nullptr) {
     return result;
   }
+  const detail::ShapePlacements& places = world.places;
   if (event.part_a >= places.parts(event.a.index) || event.part_b >= places.parts(event.b.index)) return result;
   PartPair pair;
   places.place(event.a.index, event.part_a, pair.a);
   places.place(event.b.index, event.part_b, pair.b);
   const bool half = is_half_space(event.b.index);
   if (half) pair.half = places.half_space(event.b.index);
-  Workspace& workspace = queries.scratch(0).workspace;
+  Workspace& workspace = *scheduler.workspace();
   if (!pair.simple()) {
     result = tree_contacts(workspace, pair, with);
     if (result.answer == Answer::yes) return result;

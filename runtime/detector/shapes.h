@@ -38,6 +38,7 @@ class ShapeTable {
   ShapeId add_round(const runtime::Vec3& p, const runtime::Vec3& q, double radius);
   ShapeId add_box(const runtime::Vec3& half_lengths);
 
+  std::size_t size() const noexcept { return shapes_.size(); }
   bool contains(ShapeId shape) const noexcept { return shape < shapes_.size(); }
   const Shape& operator[](ShapeId shape) const noexcept { return shapes_[shape]; }
   void changed(ShapeId shape) noexcept;  // the places of its tree's vertices
