@@ -1,4 +1,4 @@
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 #include <cmath>
 

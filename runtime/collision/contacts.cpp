@@ -16,12 +16,10 @@ namespace orchard::runtime {
 
 using detail::along;
 using detail::cross;
-using detail::dot;
 using detail::kSameLine;
 using detail::minus;
 using detail::PlacedPair;
 using detail::SolidBox;
-using detail::Vec3;
 using detail::WayOut;
 using detail::WayOutSearch;
 
@@ -149,7 +147,7 @@ double least_nudge(const PairQuery& narrow, double size) noexcept {
 bool add_piece_inside(const WayOutSearch& search, const Pose& world, Manifold& manifold) noexcept {
   const PreparedTree &first = search.pair.first, &second = search.pair.second;
   for (const SolidBox& solid : search.solids) {
-    const runtime::Vec3* const piece = detail::piece_inside(search, solid);
+    const Vec3* const piece = detail::piece_inside(search, solid);
     if (piece == nullptr) continue;
     const Vec3 local =
         solid.is_first

@@ -126,9 +126,8 @@ SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, co
   return search_outward(tree, pose, is_rigid(pose), p, q, limit, false);
 }
 
-detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose,
-                                                    const std::array<double, 3>& p, const std::array<double, 3>& q,
-                                                    double limit, std::uint32_t guess) noexcept {
+detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose, const Vec3& p,
+                                                    const Vec3& q, double limit, std::uint32_t guess) noexcept {
   NearestToSegment result;
   result.point = search_outward(tree, pose, true, p, q, limit, false, guess, &result.beyond);
   return result;

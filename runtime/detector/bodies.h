@@ -14,9 +14,9 @@ inline constexpr Step kNotAsked = -2;  // not the step before any step
 struct PartPlace {
   bool at_origin = true;  // `local` changes nothing
   Pose local{};
-  runtime::Vec3 center{};  // of a sphere around it,
-  double off = 0;          // which is so far from the origin,
-  double reach = 0;        // and its radius
+  Vec3 center{};     // of a sphere around it,
+  double off = 0;    // which is so far from the origin,
+  double reach = 0;  // and its radius
 };
 
 struct PartRecord : PartPlace {
@@ -31,12 +31,12 @@ struct PartBefore {
 
 // A sphere in the world around a part or a body.
 struct BoundingSphere {
-  runtime::Vec3 center{};
+  Vec3 center{};
   double reach = std::numeric_limits<double>::infinity();  // its radius; infinite until it is known where it is
   double size = std::numeric_limits<double>::infinity();   // no point of it is farther from the world's origin
 
   BoundingSphere() = default;
-  BoundingSphere(const runtime::Vec3& middle, double radius) noexcept
+  BoundingSphere(const Vec3& middle, double radius) noexcept
       : center(middle),
         reach(radius),
         size(std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius) {}
@@ -87,13 +87,13 @@ struct alignas(64) Body {
 
   // A sphere around the parts in the body's frame, where they stay as they are and it is smaller than that around the
   // origin; else its radius is infinite.
-  runtime::Vec3 middle{};
+  Vec3 middle{};
   double middle_reach = std::numeric_limits<double>::infinity();
   double off_middle = 0;        // from the origin to the middle
   bool told_by_middle = false;  // what the broad phase relies on
   bool parts_moved = false;     // since their spheres were placed
 
-  runtime::Vec3 first_center{};          // of the first part's sphere,
+  Vec3 first_center{};                   // of the first part's sphere,
   double first_reach = 0;                // and its radius
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
   // Around each part, if there are several, at the pose that is known.

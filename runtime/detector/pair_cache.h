@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "detector/shape_placements.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime::detail {
 
@@ -37,9 +37,9 @@ struct CachedPair {
   Step answered = -1;              // the step of `verdict`, if that is certain
   std::uint32_t part_a = 0, part_b = 0;
   Verdict verdict;
-  runtime::Vec3 apart_by{};  // from centre to centre,
-  Step apart_at = -1;        // at that step
-  runtime::Vec3 along{};     // of the answer of the step under way, if that is "no": Clearance::along
+  Vec3 apart_by{};     // from centre to centre,
+  Step apart_at = -1;  // at that step
+  Vec3 along{};        // of the answer of the step under way, if that is "no": Clearance::along
   double impact_from = 0, impact_to = 0;
   TreePair trees;
 };
@@ -48,7 +48,7 @@ struct CachedPair {
 // have turned so far; see BoundingSphereCache.
 struct RelativePlacement {
   double slack = 0;
-  runtime::Vec3 way{};
+  Vec3 way{};
   double turned = 0;
   std::uint32_t changes = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 #include "detector/static_spheres.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime::detail {
 

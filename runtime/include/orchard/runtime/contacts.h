@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdint>
 
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 // Where two bodies touch and how they come apart: for a response to a contact.
 namespace orchard::runtime {

@@ -10,7 +10,7 @@
 
 #include "orchard/runtime/broad_phase.h"
 #include "orchard/runtime/contacts.h"
-#include "orchard/runtime/executor.h"
+#include "orchard/runtime/execution.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/tree_file.h"
 

@@ -1,6 +1,6 @@
 /* The run-time for programs in C and for languages that call C. A thin cover of the C++ headers beside it, which say
- * more: tree_file.h, narrow_phase.h, collide.h, distance.h, shape_query.h, body_pair.h, contacts.h, time_of_impact.h,
- * shape_trees.h, batch.h, self_collision.h. Many bodies: orchard_broad_phase.h, orchard_detector.h.
+ * more: tree_file.h, narrow_phase.h, collide.h, distance.h, shape_query.h, contacts.h, time_of_impact.h, packed_tree.h,
+ * self_collision.h. Many bodies: orchard_broad_phase.h, orchard_detector.h.
  *
  * Link orchard::runtime and the C++ standard library. No function throws or exits. Pointers must not be null unless it
  * says so. Trees are only read by queries: any number of pairs in any number of threads may share one; a pair belongs
