@@ -190,6 +190,18 @@ int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, co
   return near.distance == 0 ? -1 : 0;
 }
 
+int orchard_signed_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3],
+                                 double limit, double* distance, double point[3], double normal[3],
+                                 uint32_t* triangle) {
+  const rt::SignedPoint found = rt::signed_nearest_point(tree->view, pose_of(*pose), vector_of(center), limit);
+  if (distance != nullptr) *distance = found.surface.distance;
+  if (point != nullptr) std::copy_n(found.surface.point.begin(), 3, point);
+  if (normal != nullptr) std::copy_n(found.normal.begin(), 3, normal);
+  if (triangle != nullptr) *triangle = found.surface.triangle;
+  if (found.surface.triangle != rt::kNoTriangle) return 1;
+  return found.surface.distance == 0 ? -1 : 0;
+}
+
 int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, const double half[3],
                         const orchard_pose* box) {
   return in_c(rt::touches_box(tree->view, pose_of(*pose), vector_of(half), pose_of(*box)).answer);

@@ -56,6 +56,7 @@ inline orchard_manifold manifold_of(const Manifold& m) noexcept {
   for (std::uint32_t i = 0; i < m.count; ++i) {
     std::copy_n(m.points[i].place.begin(), 3, result.points[i]);
     result.triangles[i][0] = m.points[i].triangle_a, result.triangles[i][1] = m.points[i].triangle_b;
+    result.depths[i] = m.points[i].depth;
   }
   std::copy_n(m.normal.begin(), 3, result.normal);
   result.depth = m.depth;

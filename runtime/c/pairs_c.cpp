@@ -68,6 +68,22 @@ int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, con
   return in_c(rt::closer_than(workspace->workspace, pair, pose_of(*pose_a), pose_of(*pose_b), margin));
 }
 
+int orchard_closer_with_points(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
+                               const orchard_tree* b, const orchard_pose* pose_b, double margin,
+                               orchard_distance* distance) {
+  const rt::Closeness found = rt::closer_with_points(workspace->workspace, {a->prepared, b->prepared}, pose_of(*pose_a),
+                                                     pose_of(*pose_b), margin);
+  *distance = distance_of(found.distance);
+  return in_c(found.answer);
+}
+
+orchard_manifold orchard_contacts_within(orchard_workspace* workspace, const orchard_tree* a,
+                                         const orchard_pose* pose_a, const orchard_tree* b, const orchard_pose* pose_b,
+                                         double margin) {
+  return manifold_of(rt::contacts(workspace->workspace, {a->prepared, b->prepared}, pose_of(*pose_a), pose_of(*pose_b),
+                                  {.margin = margin}));
+}
+
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
                                   const orchard_tree* b, const orchard_pose* pose_b) {
   return rt::detail::manifold_of(

@@ -53,4 +53,17 @@ Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, con
   return {query.lower(), query.upper(), query.points()};
 }
 
+Closeness closer_with_points(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                             double margin) noexcept {
+  constexpr double kFirst = 0.01, kClosest = 1e-9;  // relative tolerances: the second one where the first leaves doubt
+  Closeness result;
+  result.answer = closer_than(workspace, pair, a, b, margin);
+  if (result.answer != Answer::yes) return result;
+  result.distance = distance(workspace, pair, a, b, {.relative = kFirst, .absolute = 0});
+  if (result.distance.upper > margin) {
+    result.distance = distance(workspace, pair, a, b, {.relative = kClosest, .absolute = 0});
+  }
+  return result;
+}
+
 }  // namespace orchard::runtime

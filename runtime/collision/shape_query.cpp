@@ -197,4 +197,26 @@ bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inn
   return contains(solid, pose, transform(inner_pose, point));
 }
 
+SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const std::array<double, 3>& center,
+                                 double limit) noexcept {
+  SignedPoint result;
+  result.surface = nearest_point(solid, pose, center, limit);
+  if (result.surface.triangle == kNoTriangle) return result;
+  Vec3 way = detail::minus(center, result.surface.point);
+  double size = std::sqrt(dot(way, way));
+  const bool inside = size > 0 && contains(solid, pose, center);
+  if (!(size > 0)) {
+    const auto& t = solid.triangles[result.surface.triangle];
+    const auto corner = [&](std::size_t k) {
+      const auto& v = solid.vertices[t[k]];
+      return Vec3{double{v[0]}, double{v[1]}, double{v[2]}};
+    };
+    way = rotate(pose, detail::cross(corner(1) - corner(0), corner(2) - corner(0)));
+    size = std::sqrt(dot(way, way));
+  }
+  if (inside) result.surface.distance = -result.surface.distance;
+  for (std::size_t i = 0; i < 3 && size > 0; ++i) result.normal[i] = (inside ? -way[i] : way[i]) / size;
+  return result;
+}
+
 }  // namespace orchard::runtime

@@ -206,6 +206,10 @@ class BodyTable {
   // jobs of `executor`.
   void ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor = {});
   void ask_everyone(Step step, double time, const Executor& executor);
+  // The states of these bodies at another time, which changes nothing here.
+  void look(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const {
+    source_(time, bodies, states);
+  }
   // As the broad phase wants it. Not valid if the state is not.
   Motion motion_of(BodyIndex body, double time_step) const noexcept {
     return motion_of(body, time_step, relies_on_middle(body, time_step));

@@ -34,6 +34,7 @@ bool Detector::State::acceptable(std::span<const BodyPart> parts) const noexcept
 Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with) {
   Body& body = world.bodies.add(id, parts.size());
   ++world.body_count;
+  ++world.changes;
   body.set_filter(with.filter);
   world.any_filters = world.any_filters || detail::PartPairs::broad_filter(body) != BodyFilter{};
   body.importance = with.importance;
@@ -131,6 +132,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
     s.world.halves.body(index).moved = s.world.answered + 1;
     s.world.halves.update_all(s.world.bodies.slots());
     ++s.world.body_count;
+    ++s.world.changes;
     return s.world.halves.body(index).id;
   });
 }
@@ -138,6 +140,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
 // To change it.
 Body* Detector::State::find(BodyId body) noexcept {
   if (stepping || !contains(body)) return nullptr;
+  ++world.changes;
   return is_half_space(body.index) ? &world.halves.body(body.index) : &world.bodies[body.index];
 }
 
@@ -278,6 +281,7 @@ bool Detector::shape_changed(ShapeId shape) {
   State& s = *state_;
   if (s.stepping || !s.world.shapes.contains(shape)) return false;
   s.world.shapes.changed(shape);
+  ++s.world.changes;
   for (BodyIndex i = 0; i < s.world.bodies.slots(); ++i) {
     Body& body = s.world.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };

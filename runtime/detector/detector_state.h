@@ -2,6 +2,7 @@
 #include "detector/match_pairs.h"
 #include "detector/report_events.h"
 #include "detector/schedule_pairs.h"
+#include "detector/world_queries.h"
 
 namespace orchard::runtime {
 
@@ -66,6 +67,7 @@ struct Detector::State {
   detail::PairScheduler scheduler;
   detail::EventReporter reporter;
   detail::LoadModel load_model;
+  detail::WorldQueries queries;
   bool valid;                       // the options are
   bool stepping = false;            // step() is under way, from within which the application's functions are called
   bool failed = false;              // out of memory

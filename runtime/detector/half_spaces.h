@@ -17,6 +17,12 @@ class HalfSpaces {
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
   std::size_t size() const noexcept { return alive_; }
+  template <typename Visit>
+  void each(Visit&& visit) const {  // visit(body, half-space)
+    for (const Plane& plane : planes_) {
+      if (plane.alive) visit(plane.body, plane.half);
+    }
+  }
 
   void update_again(BodyIndex body);            // at the next step: it is new, or its promise holds no longer
   void update_all(std::size_t bodies);          // a half-space is new

@@ -58,7 +58,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   result.answer = verdict.answer;
   if (verdict.answer != Answer::yes) return result;
   result.count = 1;
-  result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b};
+  result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b, 0};
   result.normal = verdict.contact.normal;
   if (half) {
     detail::half_space_contact(*pair.a.shape, pair.a.pose(), pair.half, result);
@@ -67,6 +67,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   } else {  // contacts need more memory than there is
     result.complete = false;
   }
+  if (!half) result.points[0].depth = result.depth;
   return result;
 }
 

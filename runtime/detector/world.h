@@ -35,6 +35,7 @@ struct World {
   PairFilter filter;
   std::uint32_t filter_version = 0;
   std::size_t body_count = 0;   // half-spaces included
+  std::uint64_t changes = 0;    // of bodies, shapes and states between steps
   Step answered = -1;           // up to which steps have been answered
   bool any_continuous = false;  // bodies, ever
   bool any_static = false;      // bodies, ever

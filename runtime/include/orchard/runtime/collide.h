@@ -129,6 +129,15 @@ struct Distance {
 Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                   const DistanceQuery::Tolerance& tolerance = {}) noexcept;
 
+// closer_than() with witnesses: where the answer is "yes", a point of each surface, at most `margin` apart but for
+// rounding. Costs a distance query more there.
+struct Closeness {
+  Answer answer = Answer::maybe;
+  Distance distance;  // for "yes"
+};
+Closeness closer_with_points(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                             double margin) noexcept;
+
 // Many questions in one call, on as many threads as the executor has. Every answer is the one that the single call
 // gives: it depends neither on the executor nor on the other questions. `workspaces`: at least one; as many jobs run as
 // there are workspaces, so give executor.concurrency of them. Spans of results are as long as those of questions.

@@ -94,6 +94,16 @@ ShapeContact touches_box(const TreeView& tree, const Pose& pose, const std::arra
 // triangles' angles where sixteen rays all meet an edge. Points of the surface may count either way.
 bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept;
 
+// The surface point nearest to `center`, with a sign: `distance` is negative inside the solid, as contains() decides.
+// `normal` is the unit vector in which the distance grows: out of the solid; on the surface the triangle's. Zero, and
+// no triangle, where nothing could be asked or nothing is within `limit`. Precondition: as contains().
+struct SignedPoint {
+  SurfacePoint surface;
+  std::array<double, 3> normal{};
+};
+SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const std::array<double, 3>& center,
+                                 double limit = std::numeric_limits<double>::infinity()) noexcept;
+
 // The question that NarrowPhase leaves open: whether `inner` lies wholly inside `solid`. Precondition: their surfaces
 // do not touch, and inner's surface is connected; so one of its points decides.
 bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept;
