@@ -39,8 +39,6 @@ constexpr int kReachPasses = 3;      // of reaching for what is left open and ev
 constexpr int kDentRounds = 3;       // of looking for these, once nothing is open: some stay where no ball fits
 constexpr double kApart = 0.5;       // spacings, between two that are reached for at once
 constexpr double kMinAim = 0.125;    // of the edge length asked for: no shorter ones are aimed at
-constexpr double kGuarded =
-    0.7;  // of what borders may leave open: what evening out may leave of the places it asks after
 constexpr int kEvenRounds = 6;
 constexpr std::size_t kFineMesh = 2;  // vertices for each surface point: with more, the points stand for them
 constexpr double kDegree = std::numbers::pi / 180;
@@ -135,7 +133,7 @@ void Refiner::even_out() {
   const RemeshOptions options{.max_length = length,
                               .min_length = kMinAim * length,
                               .tolerance = options_.tolerance * diagonal_,
-                              .limit = kGuarded * left_open_by_borders(options_) * diagonal_,
+                              .limit = left_open_by_borders(options_) * diagonal_,
                               .merging = kMerging * level_,
                               .features = &features_,
                               .rounds = kEvenRounds};

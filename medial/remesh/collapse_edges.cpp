@@ -107,8 +107,7 @@ bool Remesher::draw(Index a, Index b, const ExactBall& ball) {
   const TriangleShape now = worst_shape(mesh_, made);
   if (longest_side(mesh_, made) > std::max(kLong * target_[b], longest)) return false;
   const bool one_place = is_one_place(length_before);
-  if (!one_place &&
-      (now.quality < std::min(shape.quality, kFairQuality) || now.flatness < std::min(shape.flatness, kFlat)))
+  if (!one_place && (now.quality < std::min(shape.quality, kFairQuality) || !now.flatness.keeps(shape.flatness)))
     return false;
   if (!is_covered(change, made, touched)) return false;
   if (errors_.of_cells_at(made, b, options_.tolerance) > options_.tolerance) return false;

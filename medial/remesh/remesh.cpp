@@ -89,12 +89,6 @@ void Remesher::pin_corners() {
   for (const Index v : corners) mesh_.pin(v);
 }
 
-std::vector<Remesher::Edge> Remesher::open_edges() const {
-  std::vector<Edge> edges = mesh_.edges();
-  std::erase_if(edges, [&](const Edge& edge) { return open_[edge[0]] == 0 || open_[edge[1]] == 0; });
-  return edges;
-}
-
 std::vector<Index> Remesher::cells_at_edge(Index a, Index b) const {
   std::vector<Index> cells;
   for (const Index c : mesh_.cells_at(a)) {

@@ -30,10 +30,10 @@ class Remesher {
   using Cell = SheetMesh::Cell;
   using Edge = SheetMesh::Edge;
 
-  static constexpr double kFlat = 0.3;         // cosine of what two triangles may turn by at an edge, or as before
   static constexpr double kGoodQuality = 0.4;  // a change may make triangles worse that stay above
-  // Of the length aimed at: longer edges are split, shorter ones drawn together (Botsch, Kobbelt 2004).
-  static constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;
+  // Of the length aimed at: longer edges are split, shorter ones drawn together (as Botsch and Kobbelt 2004, in a
+  // narrower band, for triangles come out more even).
+  static constexpr double kLong = 5.0 / 4, kShort = 0.85;
   static constexpr double kOnePlace = 0.5;  // of the least length: what is nearer is one place
 
   // remesh.cpp
@@ -44,7 +44,7 @@ class Remesher {
   bool on_surface(Index v) const { return !(mesh_.ball(v).radius > 0); }
   bool is_bare(Index a, Index b) const { return mesh_.stratum(a, b) == Stratum::curve; }
   bool is_open(const Cell& cell) const { return open_[cell[0]] != 0 && open_[cell[1]] != 0 && open_[cell[2]] != 0; }
-  std::vector<Edge> open_edges() const;
+  std::vector<Edge> open_edges() const { return mesh_.edges(open_); }
   std::vector<Index> cells_at(Index v) const { return {mesh_.cells_at(v).begin(), mesh_.cells_at(v).end()}; }
   std::vector<Index> cells_at_edge(Index a, Index b) const;
   ExactBall middle(Index a, Index b);
@@ -85,6 +85,7 @@ class Remesher {
   bool smooth_along(Index v);
   bool slide(Index v);
   bool move(Index v, const Vector& step, const Vector* normal);
+  int contacts_wanted(Index v) const;
   std::vector<ClosestPoint> contacts_near(Index v, const Vector* normal) const;
   bool put(Index v, const ExactBall& ball);
   bool stays_well_shaped(std::span<const Index> cells, Index v, const ExactBall& ball_before);

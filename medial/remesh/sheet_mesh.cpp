@@ -132,18 +132,16 @@ void SheetMesh::opposite(Index a, Index b, std::vector<Index>& out) const {
   }
 }
 
-std::vector<SheetMesh::Edge> SheetMesh::edges() const {
+std::vector<SheetMesh::Edge> SheetMesh::edges(std::span<const std::uint8_t> of) const {
   std::vector<Edge> edges;
-  for (const Cell& cell : cells_) {
-    if (cell[0] == kNone || cell[0] == cell[1]) continue;
-    const std::size_t sides = is_triangle(cell) ? 3 : 1;
-    for (std::size_t i = 0; i < sides; ++i) {
-      const Index a = cell[i], b = cell[(i + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b)});
+  std::vector<Index> around;
+  for (Index v = 0; v < vertices(); ++v) {
+    if (!of.empty() && of[v] == 0) continue;
+    neighbors(v, around);
+    for (auto other = std::upper_bound(around.begin(), around.end(), v); other != around.end(); ++other) {
+      if (of.empty() || of[*other] != 0) edges.push_back({v, *other});
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
 

@@ -53,8 +53,8 @@ class SheetMesh {
   void neighbors_along(Index v, std::vector<Index>& out) const;
   // The corners of the triangles at an edge that are not on it.
   void opposite(Index a, Index b, std::vector<Index>& out) const;
-  // Edges of cells, ascending, each once.
-  std::vector<Edge> edges() const;
+  // Edges of cells, ascending, each once: all, or those between vertices that are marked.
+  std::vector<Edge> edges(std::span<const std::uint8_t> of = {}) const;
 
   // Whether drawing an edge together to a point changes no topology: what both ends' cells meet is on the edge (the
   // link condition; Attali, Lieutier and Salinas 2012).

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kAside = 0.5;          // of a step: how far the exact ball may be from where it was looked for
 constexpr double kSlack = 0.1;          // of the length aimed at: so far in any case
-constexpr double kNothing = 0.03;       // of that length: shorter steps change nothing
+constexpr double kNothing = 0.01;       // of that length: shorter steps change nothing
 constexpr std::array kParts{1.0, 0.4};  // of a step that are tried
 
 // The two contacts that lie farthest apart along a normal.
@@ -125,18 +125,29 @@ std::vector<ClosestPoint> Remesher::contacts_near(Index v, const Vector* normal)
   } else {
     add(ball.touching());
   }
+  if (contacts_wanted(v) > ball.count) {
+    std::vector<Index> along;
+    mesh_.neighbors_along(v, along);
+    for (const Index other : along) add(mesh_.ball(other).touching());
+  }
   return contacts;
+}
+
+// A ball of a seam touches in three places. One that has less has left its seam.
+int Remesher::contacts_wanted(Index v) const {
+  return mesh_.stratum(v) == Stratum::seam ? std::max(3, mesh_.ball(v).count) : 0;
 }
 
 bool Remesher::move(Index v, const Vector& step, const Vector* normal) {
   const double size = step.norm();
-  if (!(size > kNothing * target_[v])) return false;
+  if (!(size > kNothing * target_[v]) && mesh_.ball(v).count >= contacts_wanted(v)) return false;
   const std::vector<ClosestPoint> contacts = contacts_near(v, normal);
   const Point from = mesh_.center(v);
   return std::any_of(kParts.begin(), kParts.end(), [&](double part) {
     const Point start = from + part * step;
     const ExactBall found = solver_.solve(start, contacts);
     const bool near = found.exact && (found.center - start).norm() <= kAside * part * size + kSlack * target_[v];
+    if (found.count < contacts_wanted(v)) return false;
     return near && surface_.inside(found.center) && put(v, found);
   });
 }
@@ -161,12 +172,12 @@ bool Remesher::put(Index v, const ExactBall& ball) {
 // Whether the cells at a vertex are well shaped, or as well as before.
 bool Remesher::stays_well_shaped(std::span<const Index> cells, Index v, const ExactBall& ball_before) {
   const TriangleShape now = worst_shape(mesh_, cells);
-  if (now.quality >= kGoodQuality && now.flatness >= kFlat) return true;
+  if (now.quality >= kGoodQuality && now.flatness.keeps({})) return true;
   const ExactBall ball = mesh_.ball(v);
   mesh_.set_ball(v, ball_before);
   const TriangleShape before = worst_shape(mesh_, cells);
   mesh_.set_ball(v, ball);
-  return now.quality >= std::min(before.quality, kGoodQuality) && now.flatness >= std::min(before.flatness, kFlat);
+  return now.quality >= std::min(before.quality, kGoodQuality) && now.flatness.keeps(before.flatness);
 }
 
 // Whether the cells at a vertex are off by no more than the tolerance, or than before.

@@ -33,7 +33,7 @@ bool Remesher::split(Index a, Index b) {
   if (is_bare(a, b) && errors_.leads_outside(a, b, 2 * options_.tolerance)) return false;
   const ExactBall ball = middle(a, b);
   const std::vector<Index> old = cells_at_edge(a, b);
-  const double flatness = worst_flatness(mesh_, old);
+  const Flatness flatness = worst_flatness(mesh_, old);
   MeshChange change(mesh_, old);
   const Index v = mesh_.add_vertex(ball);
   target_.push_back(0.5 * (target_[a] + target_[b]));
@@ -52,7 +52,7 @@ bool Remesher::split(Index a, Index b) {
     }
   }
   const std::vector<Index> made = change.made();
-  if (worst_flatness(mesh_, made) < std::min(flatness, kFlat)) return false;
+  if (!worst_flatness(mesh_, made).keeps(flatness)) return false;
   if (!is_covered(change, made, std::array{a, b})) return false;
   keep(change, made);
   return true;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kErrorPart = 0.4;   // of the tolerance, at an edge of the length aimed at
 constexpr double kFine = 0.05;       // of the tolerance: smaller errors ask for no length below the most
 constexpr double kBorderLength = 1;  // radii
-constexpr double kGrading = 0.3;     // by which the length may grow along a way
+constexpr double kGrading = 0.25;    // by which the length may grow along a way
 constexpr double kShortest = 0.5;    // of the least length: shorter edges tell nothing
 
 // What is wanted at a vertex is wanted around it, a little longer.

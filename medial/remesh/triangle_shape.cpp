@@ -7,9 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-double flatness_at(const SheetMesh& mesh, Index a, Index b, std::vector<Index>& opposite,
+// The vectors to the opposite corners of the triangles at an edge, across the edge, are its heights.
+double flatness_at(const SheetMesh& mesh, Index a, Index b, std::span<const Index> opposite,
                    std::vector<Vector>& heights) {
-  mesh.opposite(a, b, opposite);
   const Vector along = (mesh.center(b) - mesh.center(a)).normalized();
   heights.clear();
   for (const Index c : opposite) {
@@ -44,15 +44,19 @@ double worst_quality(const SheetMesh& mesh, std::span<const Index> cells) {
   return worst;
 }
 
-double worst_flatness(const SheetMesh& mesh, std::span<const Index> cells) {
+Flatness worst_flatness(const SheetMesh& mesh, std::span<const Index> cells) {
   std::vector<Index> opposite;
   std::vector<Vector> heights;
-  double worst = 1;
+  Flatness worst;
   for (const Index c : cells) {
     const SheetMesh::Cell& cell = mesh.corners(c);
     if (!is_triangle(cell)) continue;
-    for (std::size_t i = 0; i < 3; ++i)
-      worst = std::min(worst, flatness_at(mesh, cell[i], cell[(i + 1) % 3], opposite, heights));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = cell[i], b = cell[(i + 1) % 3];
+      mesh.opposite(a, b, opposite);
+      double& kind = opposite.size() > 2 ? worst.at_seams : worst.in_sheets;
+      kind = std::min(kind, flatness_at(mesh, a, b, opposite, heights));
+    }
   }
   return worst;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 
 #include "sheet_mesh.h"
@@ -10,14 +11,29 @@ namespace orchard::detail {
 double triangle_quality(const Point& a, const Point& b, const Point& c);
 double triangle_quality(const SheetMesh& mesh, const SheetMesh::Cell& cell);
 
-// What cells are like: the worst triangle among them, and the worst edge of these triangles.
+// How much triangles turn at their edges, as cosines: 1 flat, -1 folded onto each other. Where three or more meet, the
+// two that are nearest to each other count.
+struct Flatness {
+  double in_sheets = 1, at_seams = 1;
+
+  // Whether nothing folds that did not before. Sheets may meet at any angle that their solid asks for, but for one at
+  // which they lie on each other.
+  bool keeps(const Flatness& before) const {
+    return in_sheets >= std::min(before.in_sheets, kFlat) && at_seams >= std::min(before.at_seams, kApart);
+  }
+
+ private:
+  static constexpr double kFlat = 0.3;    // 73 degrees
+  static constexpr double kApart = -0.9;  // 26 degrees between two sheets
+};
+
+// What cells are like: the worst triangle among them, and the worst edges of these triangles.
 struct TriangleShape {
-  double quality = 1;   // see triangle_quality()
-  double flatness = 1;  // the cosine of what two triangles turn by at an edge: 1 flat, -1 folded; where sheets meet, of
-                        // the two that are nearest to each other
+  double quality = 1;  // see triangle_quality()
+  Flatness flatness;
 };
 double worst_quality(const SheetMesh& mesh, std::span<const Index> cells);
-double worst_flatness(const SheetMesh& mesh, std::span<const Index> cells);
+Flatness worst_flatness(const SheetMesh& mesh, std::span<const Index> cells);
 inline TriangleShape worst_shape(const SheetMesh& mesh, std::span<const Index> cells) {
   return {worst_quality(mesh, cells), worst_flatness(mesh, cells)};
 }

@@ -92,7 +92,7 @@ void Descent::contract(Stage& stage, Index count) const {
 }
 
 void Descent::refine(Stage& stage, std::span<const FitOptions> passes) const {
-  for (const FitOptions& pass : passes) fit(surface_, stage.mesh, stage.samples, stage.feet, pass);
+  for (const FitOptions& pass : passes) fit(surface_, stage.mesh, stage.samples, stage.feet, options_.balls, pass);
 }
 
 Stage Descent::finished(Stage stage) const {

@@ -17,6 +17,9 @@ constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
 constexpr double kExact = 0.5;       // of the largest distance: smaller ones need not be exact
 constexpr double kHardly = 0.02;     // of the largest distance: balls that protrude by no more are left alone
+constexpr double kVolume = 0.01;     // of the solid's volume: what may be missing, or too much
+constexpr double kVolumeWeight = 1;  // of all other costs at the beginning: what that much counts
+constexpr double kInside = 1e-7;     // bounding radii: so far inside the surface centres are put that were outside
 constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
 
 LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
@@ -28,25 +31,30 @@ LookOptions look_options(const Surface& surface, std::span<const FitSample> samp
 class Fitter {
  public:
   Fitter(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
-         const FitOptions& options)
+         SimplifiedBalls balls, const FitOptions& options)
       : surface_(surface),
         mesh_(mesh),
         samples_(samples),
         feet_(feet),
+        medial_(balls == SimplifiedBalls::medial),
         options_(options),
         walker_(mesh),
         places_(places_to_look(mesh, look_options(surface, samples, options))),
         inside_(places_.size()),
-        equations_(mesh) {}
+        equations_(mesh),
+        volume_factor_(surface.report().area / (kVolume * surface.report().volume)) {}
 
   void run() {
     const bool known = feet_.feet.size() == samples_.size();
+    if (known && medial_) make_medial();
     if (known) feet_.walk(samples_, walker_);
     if (options_.search || !known) feet_.find_off(mesh_, samples_, kExact * feet_.max);
     negligible_ = kHardly * feet_.max;
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
+    volume_weight_ = 0;
+    if (medial_) volume_weight_ = kVolumeWeight * total();
     double cost = total();
     double damping = kFirstDamping;
     for (int step = 0; step < options_.steps && damping < kMaxDamping; ++step) {
@@ -86,7 +94,16 @@ class Fitter {
     double sum = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) sum += samples_[i].weight * cost_of(feet_.feet[i].value);
     for (const Protrusion& protrusion : protrusions_) sum += ball_weight() * cost_of(protrusion.value);
+    if (volume_weight_ > 0) sum += volume_weight_ * volume_error() * volume_error();
     return sum;
+  }
+  // What is missing to the solid's volume, as far as samples tell: over what may be missing.
+  double volume_error() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (samples_[i].depth == 0) sum += samples_[i].weight * feet_.feet[i].value;
+    }
+    return sum * volume_factor_;
   }
   double ball_weight() const { return kProtrusionWeight * samples_[0].weight; }
 
@@ -111,6 +128,8 @@ class Fitter {
         block.topLeftCorner<3, 3>() += bend * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
       }
       equations_.add(foot.corners, foot.weights, weight * block, weight * foot.value * row);
+      if (samples_[i].depth == 0)
+        equations_.add_to_vector(foot.corners, foot.weights, samples_[i].weight * volume_factor_ * row);
     }
     for (const Protrusion& protrusion : protrusions_) {
       const double weight = ball_weight() * weight_at(protrusion.value);
@@ -119,6 +138,16 @@ class Fitter {
       equations_.add(protrusion.corners, protrusion.weights, weight * (options_.power - 1) * row * row.transpose(),
                      -weight * protrusion.value * row);
     }
+    // As the other sums, over power / scale^2.
+    if (volume_weight_ > 0)
+      equations_.add_square(2 * volume_weight_ * scale_ * scale_ / options_.power, volume_error());
+  }
+
+  void make_medial() {
+    for (Index v = 0; v < mesh_.size(); ++v) {
+      if (mesh_.alive(v)) mesh_.set_ball(v, medial_ball(surface_, mesh_.ball(v), feet_.max));
+    }
+    walker_.follow_mesh();
   }
 
   // Radii stay at 0 that would fall below.
@@ -131,7 +160,7 @@ class Fitter {
       if (!mesh_.alive(v)) continue;
       Ball4 ball = before[v] + step[v];
       ball[3] = std::max(ball[3], 0.0);
-      mesh_.set_ball(v, ball);
+      mesh_.set_ball(v, medial_ ? medial_ball(surface_, ball, scale_) : ball);
     }
     walker_.follow_mesh();
   }
@@ -149,6 +178,7 @@ class Fitter {
   ContractibleMesh& mesh_;
   const std::span<const FitSample> samples_;
   Assignment& feet_;
+  const bool medial_;
   const FitOptions options_;
   FootWalker walker_;
   const std::vector<Protrusion> places_;  // values not known
@@ -156,6 +186,8 @@ class Fitter {
   NormalEquations equations_;
   std::vector<Protrusion> protrusions_;
   double scale_ = 1, negligible_ = 0;
+  const double volume_factor_;  // of weighted sums of distances, to what is missing over what may be missing
+  double volume_weight_ = 0;    // of the square of what is missing over what may be, in the sum; 0: it does not count
 };
 
 }  // namespace
@@ -205,8 +237,21 @@ void Assignment::find_max() {
 }
 
 void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
-         const FitOptions& options) {
-  Fitter(surface, mesh, samples, feet, options).run();
+         SimplifiedBalls balls, const FitOptions& options) {
+  Fitter(surface, mesh, samples, feet, balls, options).run();
+}
+
+Ball4 medial_ball(const Surface& surface, const Ball4& ball, double error) {
+  ClosestPoint nearest;
+  Ball4 result = ball;
+  double depth = -surface.signed_distance(ball.head<3>(), nearest);
+  if (depth < 0) {
+    const double least = kInside * surface.bounding_radius();
+    result.head<3>() = nearest.position - least * surface.pseudonormal(nearest.triangle, nearest.feature);
+    depth = 0;
+  }
+  result[3] = std::clamp(ball[3], std::max(0.0, depth - error), depth + error);
+  return result;
 }
 
 }  // namespace orchard::detail

@@ -5,6 +5,7 @@
 
 #include "fit_samples.h"
 #include "foot.h"
+#include "orchard/medial/simplify.h"
 
 namespace orchard::detail {
 
@@ -39,9 +40,14 @@ struct FitOptions {
 
 // Moves the balls of a medial mesh, which keeps its cells, so that the boundary of its envelope comes to the samples,
 // and no vertex' ball protrudes: Levenberg-Marquardt steps with every sample held by its foot; powers above 2 by
-// reweighting. `feet` are cells of the mesh, or none; they are searched for if there are none, or options.search, and
-// followed. Deterministic; parallel.
+// reweighting. Balls that are to be medial are brought back to what they may be after each step, and what all samples
+// together say of the volume counts, too. `feet` are cells of the mesh, or none; they are searched for if there are
+// none, or options.search, and followed. Deterministic; parallel.
 void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
-         const FitOptions& options);
+         SimplifiedBalls balls, const FitOptions& options);
+
+// The nearest ball, or next to it, whose centre is not outside and whose radius is off its distance to the surface by
+// `error` at most.
+Ball4 medial_ball(const Surface& surface, const Ball4& ball, double error);
 
 }  // namespace orchard::detail

@@ -30,6 +30,20 @@ NormalEquations::NormalEquations(const ContractibleMesh& mesh) : number_(mesh.si
 void NormalEquations::clear() {
   blocks_.assign(columns_.size(), Eigen::Matrix4d::Zero());
   side_.assign(vertices_.size(), Ball4::Zero());
+  vector_.assign(vertices_.size(), Ball4::Zero());
+  factor_ = 0;
+}
+
+void NormalEquations::add_to_vector(const std::array<Index, 3>& corners, const std::array<double, 3>& weights,
+                                    const Ball4& part) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (weights[i] != 0) vector_[number_[corners[i]]] += weights[i] * part;
+  }
+}
+
+void NormalEquations::add_square(double factor, double value) {
+  factor_ = factor;
+  for (std::size_t i = 0; i < side_.size(); ++i) side_[i] += factor * value * vector_[i];
 }
 
 Index NormalEquations::entry(Index row, Index column) const {
@@ -82,8 +96,9 @@ std::vector<Ball4> NormalEquations::solve(double damping, const std::vector<std:
   double product = dot(residual, preconditioned);
   const double first = product;
   for (int step = 0; step < kMaxSteps && product > kSmall * kSmall * first && product > 0; ++step) {
+    const double along = factor_ > 0 ? factor_ * dot(vector_, direction) : 0;
     for (Index i = 0; i < count; ++i) {
-      Ball4 sum = added[i].cwiseProduct(direction[i]);
+      Ball4 sum = added[i].cwiseProduct(direction[i]) + along * vector_[i];
       for (Index k = offsets_[i]; k < offsets_[i + 1]; ++k) sum += blocks_[k] * direction[columns_[k]];
       image[i] = sum;
     }

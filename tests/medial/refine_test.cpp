@@ -130,7 +130,7 @@ TEST(RefineAxis, LiesOnTheClosedFormOfABoxAndReachesItsEdges) {
   // All of the closed form is there, but for the width of what is coalesced at its seams.
   const Surface built(test::as_triangles(medial_mesh(build.axis)));
   for (const Point& place : test::points_on(known.axis, 0.05))
-    EXPECT_LT(built.distance(place), 1e-5 * diagonal(surface));
+    EXPECT_LT(built.distance(place), 1e-5 * diagonal(surface)) << place.transpose();
 }
 
 // Between its parallel faces the points are farther apart than it is thick.

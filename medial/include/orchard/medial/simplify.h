@@ -12,12 +12,21 @@ namespace orchard {
 
 // The medial mesh in as few balls as you like: its envelope, the union of the balls, cones and slabs of its vertices,
 // edges and triangles, stays as near to the surface as so many can.
+// What balls of a simplified axis may be. Free ones are those that fit best: a part too thin for so few balls is given
+// some whose centres lie outside.
+enum class SimplifiedBalls : std::uint8_t {
+  medial,  // centres in the solid, or on its surface; radii off the centre's distance to the surface by no more than the
+           // two-sided distance; and the solid's volume is aimed at
+  free
+};
+
 struct SimplifyOptions {
   Index vertices = 0;        // at most so many; 0: as few as `error` allows, to a fiftieth
   double error = 0;          // where vertices is 0: the two-sided distance allowed, over the diagonal, proved; above 0
   Index samples = 10'000;    // places of the surface that balls are fitted to
   Index check = 20'000;      // places from which the distance is measured at the end
   Index search = 1'000'000;  // parts at most in which dents and what protrudes are searched, each time
+  SimplifiedBalls balls = SimplifiedBalls::medial;
   int rounds = 4;            // at most, of moving vertices from where they are spared to where the distance is largest
   std::uint64_t seed = 1;
 };
