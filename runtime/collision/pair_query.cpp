@@ -1,5 +1,3 @@
-// One query from its start to its end, hence more than 300 lines; its roots, levels and exact tests have files of their
-// own.
 #include "collision/pair_query.h"
 
 #include <algorithm>
