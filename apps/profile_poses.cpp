@@ -4,7 +4,7 @@
 
 #include "orchard/geometry/random.h"
 #include "orchard/runtime/narrow_phase.h"
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
 
 namespace orchard::apps {
 namespace {

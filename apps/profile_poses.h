@@ -4,7 +4,6 @@
 
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
-#include "orchard/runtime/vec3.h"
 
 namespace orchard::apps {
 

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "bodies.h"
-#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "simd/machine.h"
 #include "support.h"

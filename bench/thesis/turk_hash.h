@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
 
 namespace orchard::bench {
 

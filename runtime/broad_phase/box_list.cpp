@@ -23,70 +23,7 @@ alignas(64) constexpr std::array<std::uint8_t, 2 * kLast> kBefore = [] {
 }  // namespace
 
 // Of a group's boxes, in the high bits of bytes, which meet one box whose ends are in all bytes of `lower` and `upper`.
-struct BoxList::PlainLanes {
-  using Bits = Words;
-  static constexpr Bits kNone{};
-  static Words at(const std::uint8_t* from) noexcept {
-    Words result;
-    std::memcpy(&result, from, sizeof result);
-    return result;
-  }
-  static Bits meeting(const Group& group, const std::array<std::uint64_t, 3>& lower,
-                      const std::array<std::uint64_t, 3>& upper) noexcept {
-    Bits bits;
-    bits.fill(kHighBits);
-    for (std::size_t d = 0; d < 3; ++d) {
-      const Words begins = at(group.lower[d].data()), ends = at(group.upper[d].data());
-      for (std::size_t i = 0; i < bits.size(); ++i) bits[i] &= (ends[i] - lower[d]) & (upper[d] - begins[i]);
-    }
-    return bits;
-  }
-  static Bits before(const Bits& bits, std::size_t end) noexcept {  // of the first ones only
-    Bits result = at(kBefore.data() + kLast - end);
-    for (std::size_t i = 0; i < bits.size(); ++i) result[i] &= bits[i];
-    return result;
-  }
-  static void include(Bits& bits, const Bits& more) noexcept {
-    for (std::size_t i = 0; i < bits.size(); ++i) bits[i] |= more[i];
-  }
-  static bool any(const Bits& bits) noexcept {
-    std::uint64_t all = 0;
-    for (const std::uint64_t word : bits) all |= word;
-    return all != 0;
-  }
-};
-
-#ifdef ORCHARD_VECTORS
-struct BoxList::VectorLanes {
-  using Bits __attribute__((vector_size(64))) = std::uint64_t;
-  using Half __attribute__((vector_size(32))) = std::uint64_t;
-  static constexpr Bits kNone{};
-  ORCHARD_INLINE static Bits at(const std::uint8_t* from) noexcept {
-    Bits result;
-    std::memcpy(&result, from, sizeof result);
-    return result;
-  }
-  ORCHARD_INLINE static Bits meeting(const Group& group, const std::array<std::uint64_t, 3>& lower,
-                                     const std::array<std::uint64_t, 3>& upper) noexcept {
-    Bits bits = Bits{} + kHighBits;
-    for (std::size_t d = 0; d < 3; ++d) {  // numbers are spread
-      bits &= (at(group.upper[d].data()) - lower[d]) & (upper[d] - at(group.lower[d].data()));
-    }
-    return bits;
-  }
-  ORCHARD_INLINE static Bits before(const Bits& bits, std::size_t end) noexcept {
-    return bits & at(kBefore.data() + kLast - end);
-  }
-  ORCHARD_INLINE static void include(Bits& bits, const Bits& more) noexcept { bits |= more; }
-  ORCHARD_INLINE static bool any(const Bits& bits) noexcept {
-    const auto parts = std::bit_cast<std::array<Half, 2>>(bits);
-    const Half sum = parts[0] | parts[1];
-    return ((sum[0] | sum[1]) | (sum[2] | sum[3])) != 0;
-  }
-};
-
-// The same as two vectors of four, or four of two, for machines that have no wider ones: of the others GCC keeps parts
-// in memory.
+// In parts of as many words as the machine's vectors have, or one: of wider ones GCC keeps parts in memory.
 template <typename Part>
 struct BoxList::PartLanes {
   static constexpr std::size_t kParts = sizeof(Words) / sizeof(Part);
@@ -124,14 +61,18 @@ struct BoxList::PartLanes {
   ORCHARD_INLINE static bool any(const Bits& bits) noexcept {
     Part sum = bits.parts[0];
     for (std::size_t k = 1; k < kParts; ++k) sum |= bits.parts[k];
-    std::uint64_t all = sum[0];
-    for (std::size_t i = 1; i < sizeof(Part) / 8; ++i) all |= sum[i];
+    const auto words = std::bit_cast<std::array<std::uint64_t, sizeof(Part) / 8>>(sum);
+    std::uint64_t all = words[0];
+    for (std::size_t i = 1; i < words.size(); ++i) all |= words[i];
     return all != 0;
   }
 };
+
+#ifdef ORCHARD_VECTORS
 namespace {
 using TwoWords __attribute__((vector_size(16))) = std::uint64_t;
 using FourWords __attribute__((vector_size(32))) = std::uint64_t;
+using EightWords __attribute__((vector_size(64))) = std::uint64_t;
 }  // namespace
 #endif
 
@@ -251,22 +192,22 @@ void BoxList::put(std::span<const BodyIndex> bodies, const Group& coarse) noexce
 
 void BoxList::insert(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
   const Machine chosen = machine();
-  if (chosen == Machine::portable) return insert_all<PlainLanes>(bodies, block, pairs);
+  if (chosen == Machine::portable) return insert_all<PartLanes<std::uint64_t>>(bodies, block, pairs);
 #if defined(ORCHARD_MACHINES)
   switch (chosen) {
     case Machine::avx512:
-      return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { insert_all<VectorLanes>(bodies, block, pairs); });
+      return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { insert_all<PartLanes<EightWords>>(bodies, block, pairs); });
     case Machine::avx2:
       return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { insert_all<PartLanes<FourWords>>(bodies, block, pairs); });
     default:
       return insert_all<PartLanes<TwoWords>>(bodies, block, pairs);
   }
 #elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
-  insert_all<VectorLanes>(bodies, block, pairs);
+  insert_all<PartLanes<EightWords>>(bodies, block, pairs);
 #elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
   insert_all<PartLanes<FourWords>>(bodies, block, pairs);
 #else
-  insert_all<PlainLanes>(bodies, block, pairs);
+  insert_all<PartLanes<std::uint64_t>>(bodies, block, pairs);
 #endif
 }
 

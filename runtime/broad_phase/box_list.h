@@ -47,8 +47,6 @@ class BoxList {
       return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
     }
   };
-  struct PlainLanes;
-  struct VectorLanes;
   template <typename Part>
   struct PartLanes;
 

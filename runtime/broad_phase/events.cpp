@@ -1,4 +1,3 @@
-// More than 300 lines: what a step does, and when all is made anew, is one thought.
 #include "broad_phase/events.h"
 
 #include <cmath>

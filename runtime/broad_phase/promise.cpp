@@ -1,4 +1,4 @@
-#include "orchard/runtime/promise.h"
+#include "orchard/runtime/motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,3 @@
-// More than 300 lines: one inner loop, compiled for each machine.
 #include "broad_phase/swept_grid.h"
 
 #include <bit>

@@ -3,7 +3,7 @@
 
 #include "broad_phase/body_pool.h"
 #include "broad_phase/box_lattice.h"
-#include "orchard/runtime/executor.h"
+#include "orchard/runtime/execution.h"
 
 namespace orchard::runtime::detail {
 

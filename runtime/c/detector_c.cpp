@@ -21,9 +21,8 @@ struct orchard_detector {
 
 namespace {
 
-using rt::detail::pose_of;
+using rt::detail::pose_of, rt::detail::vector_of;
 
-rt::Vec3 vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
 rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
 orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
 
@@ -68,6 +67,19 @@ std::span<const rt::BodyPart> parts_of(orchard_detector& detector, const orchard
   detector.parts.clear();
   for (std::size_t i = 0; i < count; ++i) detector.parts.push_back({parts[i].shape, pose_of(parts[i].local)});
   return detector.parts;
+}
+
+rt::QueryFilter filter_of(const orchard_query_filter* from) noexcept {
+  return from == nullptr ? rt::QueryFilter{} : rt::QueryFilter{from->category, from->mask};
+}
+
+int given(const std::optional<rt::WorldPoint>& from, orchard_world_point* to) noexcept {
+  if (!from) return 0;
+  to->body = body_of(from->body);
+  to->part = from->part, to->triangle = from->triangle;
+  to->distance = from->distance;
+  std::copy(from->point.begin(), from->point.end(), to->point);
+  return 1;
 }
 
 // What `make` gives, or `otherwise` if there is no memory for it.
@@ -271,6 +283,27 @@ orchard_pair_event orchard_detector_event(const orchard_detector* detector, size
 orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t index) {
   const rt::PairEvent event = detector->frame.events[index];
   return rt::detail::manifold_of(detector->detector->manifold(event));
+}
+
+int orchard_detector_cast_ray(orchard_detector* detector, const double origin[3], const double direction[3],
+                              double longest, const orchard_query_filter* filter, orchard_world_point* found) {
+  return guarded(0, [&] {
+    const rt::Ray ray{vector_of(origin), vector_of(direction), longest};
+    return given(detector->detector->cast_ray(ray, filter_of(filter)), found);
+  });
+}
+int orchard_detector_nearest(orchard_detector* detector, const double point[3], double limit,
+                             const orchard_query_filter* filter, orchard_world_point* found) {
+  return guarded(0,
+                 [&] { return given(detector->detector->nearest(vector_of(point), limit, filter_of(filter)), found); });
+}
+size_t orchard_detector_touching_sphere(orchard_detector* detector, const double center[3], double radius,
+                                        const orchard_query_filter* filter, orchard_body* bodies, size_t room) {
+  return guarded(std::size_t{0}, [&] {
+    const auto touching = detector->detector->touching_sphere(vector_of(center), radius, filter_of(filter));
+    for (std::size_t i = 0; i < std::min(room, touching.size()); ++i) bodies[i] = body_of(touching[i]);
+    return touching.size();
+  });
 }
 
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index) {

@@ -1,4 +1,3 @@
-// The C interface, function after function as orchard.h has them: hence more than 300 lines.
 #include <algorithm>
 #include <memory>
 #include <new>
@@ -7,12 +6,9 @@
 
 #include "c/orchard_c.h"
 #include "execution/guarded.h"
-#include "execution/share_among.h"
-#include "orchard/runtime/batch.h"
-#include "orchard/runtime/contacts.h"
+#include "orchard/runtime/collide.h"
+#include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/shape_query.h"
-#include "orchard/runtime/shape_trees.h"
-#include "orchard/runtime/time_of_impact.h"
 
 namespace rt = orchard::runtime;
 
@@ -30,38 +26,7 @@ struct orchard_pair {
 
 namespace {
 
-using rt::detail::pose_of;
-
-orchard_distance distance_of(const rt::Distance& measured) noexcept {
-  orchard_distance result{};
-  result.lower = measured.lower;
-  result.upper = measured.upper;
-  std::copy_n(measured.points.on_a.begin(), 3, result.on_a);
-  std::copy_n(measured.points.on_b.begin(), 3, result.on_b);
-  result.triangle_a = measured.points.triangle_a;
-  result.triangle_b = measured.points.triangle_b;
-  return result;
-}
-
-// Question i in the workspace of the job that it falls to: ask(workspace, pair, pose of a, pose of b, i).
-struct CBatch {
-  orchard_workspace* const* workspaces;
-  size_t workspace_count;
-  const orchard_executor* executor;
-  const orchard_tree* const* a;
-  const orchard_pose* poses_a;
-  const orchard_tree* const* b;
-  const orchard_pose* poses_b;
-
-  template <typename Ask>
-  void run(size_t count, Ask&& ask) const noexcept {
-    const rt::Executor on{executor->run, executor->context, executor->concurrency};
-    rt::share_among(on, workspace_count, count, [&](size_t job, size_t i) {
-      ask(workspaces[job]->workspace, rt::TreePair(a[i]->prepared, b[i]->prepared), pose_of(poses_a[i]),
-          pose_of(poses_b[i]), i);
-    });
-  }
-};
+using namespace rt::detail;
 
 int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
   if (!from) return 0;
@@ -69,25 +34,6 @@ int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
   std::copy_n(from->translation.begin(), 3, to->translation);
   to->scale = from->scale;
   return 1;
-}
-
-std::array<double, 3> vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
-
-rt::Budget budget_of(const orchard_budget& from) noexcept {
-  rt::Budget budget;
-  budget.work = from.tests;
-  budget.time = rt::detail::time_of(from.nanoseconds);
-  return budget;
-}
-
-// 1, 0, or -1 for "maybe".
-int in_c(rt::Answer answer) noexcept { return answer == rt::Answer::yes ? 1 : answer == rt::Answer::no ? 0 : -1; }
-
-orchard_verdict verdict_of(const rt::NarrowPhase& pair) noexcept {
-  orchard_verdict result = rt::detail::verdict_of(pair.verdict());
-  result.finished = pair.finished();
-  result.refused = pair.refused();
-  return result;
 }
 
 // A tree made here, or null where `make` gives none or there is no memory for it.
@@ -104,26 +50,6 @@ orchard_tree* made(Make&& make) noexcept {
   };
   return rt::detail::guarded(work, []() -> orchard_tree* { return nullptr; });
 }
-
-// A motion that a C function gives, as one that a C++ function gives.
-struct CTravel {
-  explicit CTravel(const orchard_travel& from) noexcept : travel_in_c(from) {
-    travel.start = pose_of(from.start);
-    travel.velocity = vector_of(from.velocity), travel.spin = vector_of(from.spin);
-    travel.center = vector_of(from.center);
-    travel.speed = from.speed, travel.turning = from.turning;
-    if (from.pose_at == nullptr) return;
-    travel.context = &travel_in_c;
-    travel.pose_at = [](const void* context, double time) {
-      const auto& own = *static_cast<const orchard_travel*>(context);
-      orchard_pose pose{};  // of zeros, which no query answers for
-      if (own.pose_at(own.context, time, &pose) == 0) pose = {};
-      return pose_of(pose);
-    };
-  }
-  const orchard_travel& travel_in_c;
-  rt::Travel travel;
-};
 
 orchard_tree* opened(orchard_tree* tree, rt::LoadStatus status, const char** error) noexcept {
   if (tree != nullptr && status == rt::LoadStatus::ok) {
@@ -264,6 +190,18 @@ int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, co
   return near.distance == 0 ? -1 : 0;
 }
 
+int orchard_signed_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3],
+                                 double limit, double* distance, double point[3], double normal[3],
+                                 uint32_t* triangle) {
+  const rt::SignedPoint found = rt::signed_nearest_point(tree->view, pose_of(*pose), vector_of(center), limit);
+  if (distance != nullptr) *distance = found.surface.distance;
+  if (point != nullptr) std::copy_n(found.surface.point.begin(), 3, point);
+  if (normal != nullptr) std::copy_n(found.normal.begin(), 3, normal);
+  if (triangle != nullptr) *triangle = found.surface.triangle;
+  if (found.surface.triangle != rt::kNoTriangle) return 1;
+  return found.surface.distance == 0 ? -1 : 0;
+}
+
 int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, const double half[3],
                         const orchard_pose* box) {
   return in_c(rt::touches_box(tree->view, pose_of(*pose), vector_of(half), pose_of(*box)).answer);
@@ -300,120 +238,6 @@ orchard_tree* orchard_hull_tree(const double* points, size_t count) {
     for (size_t i = 0; i < count; ++i) copy.push_back(vector_of(points + 3 * i));
     return rt::hull_tree(copy);
   });
-}
-
-orchard_workspace* orchard_workspace_new(void) { return new (std::nothrow) orchard_workspace; }
-void orchard_workspace_free(orchard_workspace* workspace) { delete workspace; }
-
-int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                        const orchard_tree* b, const orchard_pose* pose_b, double margin) {
-  const rt::TreePair pair(a->prepared, b->prepared);
-  return in_c(rt::closer_than(workspace->workspace, pair, pose_of(*pose_a), pose_of(*pose_b), margin));
-}
-
-orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                                  const orchard_tree* b, const orchard_pose* pose_b) {
-  return rt::detail::manifold_of(
-      rt::contacts(workspace->workspace, rt::TreePair(a->prepared, b->prepared), pose_of(*pose_a), pose_of(*pose_b)));
-}
-
-orchard_signed_distance orchard_measure_signed(orchard_workspace* workspace, const orchard_tree* a,
-                                               const orchard_pose* pose_a, const orchard_tree* b,
-                                               const orchard_pose* pose_b, double tolerance) {
-  const rt::SignedDistance measured = rt::signed_distance(workspace->workspace, rt::TreePair(a->prepared, b->prepared),
-                                                          pose_of(*pose_a), pose_of(*pose_b), tolerance);
-  orchard_signed_distance result{};
-  result.lower = measured.lower;
-  result.upper = measured.upper;
-  std::copy_n(measured.on_a.begin(), 3, result.on_a);
-  std::copy_n(measured.on_b.begin(), 3, result.on_b);
-  std::copy_n(measured.normal.begin(), 3, result.normal);
-  return result;
-}
-
-orchard_travel orchard_travel_between(const orchard_pose* from, const orchard_pose* to, const double center[3]) {
-  const rt::Travel travel = rt::travel_between(pose_of(*from), pose_of(*to), vector_of(center));
-  orchard_travel result{};
-  result.start = *from;
-  std::copy_n(travel.velocity.begin(), 3, result.velocity);
-  std::copy_n(travel.spin.begin(), 3, result.spin);
-  std::copy_n(travel.center.begin(), 3, result.center);
-  return result;
-}
-
-orchard_impact orchard_time_of_impact(orchard_workspace* workspace, const orchard_tree* a,
-                                      const orchard_travel* travel_a, const orchard_tree* b,
-                                      const orchard_travel* travel_b, double begin, double end, double tolerance,
-                                      double margin, orchard_budget budget) {
-  const CTravel of_a(*travel_a), of_b(*travel_b);
-  const rt::Impact impact = rt::time_of_impact(
-      workspace->workspace, rt::TreePair(a->prepared, b->prepared), of_a.travel, of_b.travel,
-      {.begin = begin, .end = end, .tolerance = tolerance, .margin = margin, .budget = budget_of(budget)});
-  orchard_impact result{};
-  result.answer = static_cast<orchard_answer>(impact.answer);
-  result.t0 = impact.t0, result.t1 = impact.t1;
-  result.distance = impact.distance;
-  std::copy_n(impact.on_a.begin(), 3, result.on_a);
-  std::copy_n(impact.on_b.begin(), 3, result.on_b);
-  result.triangle_a = impact.triangle_a, result.triangle_b = impact.triangle_b;
-  result.finished = impact.finished, result.refused = impact.refused;
-  result.work = impact.work;
-  return result;
-}
-
-void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const double* origins,
-                       const double* directions, double longest, size_t count, int* hit, double* along) {
-  constexpr size_t kPortion = 64;
-  std::array<rt::Ray, kPortion> rays;
-  std::array<std::optional<rt::RayHit>, kPortion> hits;
-  const rt::Pose placed = pose_of(*pose);
-  for (size_t begin = 0; begin < count; begin += kPortion) {
-    const size_t some = std::min(kPortion, count - begin);
-    for (size_t i = 0; i < some; ++i) {
-      rays[i] = {vector_of(origins + 3 * (begin + i)), vector_of(directions + 3 * (begin + i)), longest};
-    }
-    const auto portion = std::span(rays).first(some);
-    if (tree->rays.empty()) {
-      rt::cast_rays(tree->view, placed, portion, hits);
-    } else {
-      rt::cast_rays(tree->rays, placed, portion, hits);
-    }
-    for (size_t i = 0; i < some; ++i) {
-      hit[begin + i] = !hits[i] ? 0 : hits[i]->triangle == rt::kNoTriangle ? -1 : 1;
-      along[begin + i] = hits[i] ? hits[i]->along : 0;
-    }
-  }
-}
-
-void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts) {
-  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
-  batch.run(count, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a,
-                       const rt::Pose& pose_b, size_t i) {
-    rt::collide(workspace, pair, pose_a, pose_b);
-    verdicts[i] = verdict_of(workspace.narrow);
-  });
-}
-
-void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances) {
-  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
-  batch.run(count, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a,
-                       const rt::Pose& pose_b, size_t i) {
-    distances[i] = distance_of(rt::distance(workspace, pair, pose_a, pose_b, {.relative = tolerance, .absolute = 0}));
-  });
-}
-
-void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t workspace_count,
-                             const orchard_executor* executor, const orchard_tree* const* a,
-                             const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
-                             size_t count, double margin, int* closer) {
-  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
-  batch.run(count,
-            [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a, const rt::Pose& pose_b,
-                size_t i) { closer[i] = in_c(rt::closer_than(workspace, pair, pose_a, pose_b, margin)); });
 }
 
 }  // extern "C"

@@ -1,13 +1,13 @@
 #pragma once
 #include <algorithm>
 
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 #include "orchard/runtime/contacts.h"
-#include "orchard/runtime/mapped_tree.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/orchard.h"
-#include "orchard/runtime/prepared_tree.h"
-#include "orchard/runtime/ray_index.h"
+#include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/shape_query.h"
+#include "orchard/runtime/tree_file.h"
 
 // What both C interfaces share.
 struct orchard_tree {
@@ -56,6 +56,7 @@ inline orchard_manifold manifold_of(const Manifold& m) noexcept {
   for (std::uint32_t i = 0; i < m.count; ++i) {
     std::copy_n(m.points[i].place.begin(), 3, result.points[i]);
     result.triangles[i][0] = m.points[i].triangle_a, result.triangles[i][1] = m.points[i].triangle_b;
+    result.depths[i] = m.points[i].depth;
   }
   std::copy_n(m.normal.begin(), 3, result.normal);
   result.depth = m.depth;
@@ -74,5 +75,35 @@ inline orchard_verdict verdict_of(const Verdict& v) noexcept {
   result.work = v.work;
   return result;
 }
+
+inline orchard_verdict verdict_of(const NarrowPhase& pair) noexcept {
+  orchard_verdict result = verdict_of(pair.verdict());
+  result.finished = pair.finished();
+  result.refused = pair.refused();
+  return result;
+}
+
+inline orchard_distance distance_of(const Distance& measured) noexcept {
+  orchard_distance result{};
+  result.lower = measured.lower;
+  result.upper = measured.upper;
+  std::copy_n(measured.points.on_a.begin(), 3, result.on_a);
+  std::copy_n(measured.points.on_b.begin(), 3, result.on_b);
+  result.triangle_a = measured.points.triangle_a;
+  result.triangle_b = measured.points.triangle_b;
+  return result;
+}
+
+inline std::array<double, 3> vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
+
+inline Budget budget_of(const orchard_budget& from) noexcept {
+  Budget budget;
+  budget.work = from.tests;
+  budget.time = time_of(from.nanoseconds);
+  return budget;
+}
+
+// 1, 0, or -1 for "maybe".
+inline int in_c(Answer answer) noexcept { return answer == Answer::yes ? 1 : answer == Answer::no ? 0 : -1; }
 
 }  // namespace orchard::runtime::detail

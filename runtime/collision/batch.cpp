@@ -1,4 +1,4 @@
-#include "orchard/runtime/batch.h"
+#include "orchard/runtime/collide.h"
 
 #include "execution/share_among.h"
 

@@ -1,4 +1,4 @@
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 #include <cmath>
 
@@ -51,6 +51,19 @@ Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, con
   query.start(a, b, tolerance);
   query.refine();
   return {query.lower(), query.upper(), query.points()};
+}
+
+Closeness closer_with_points(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                             double margin) noexcept {
+  constexpr double kFirst = 0.01, kClosest = 1e-9;  // relative tolerances: the second one where the first leaves doubt
+  Closeness result;
+  result.answer = closer_than(workspace, pair, a, b, margin);
+  if (result.answer != Answer::yes) return result;
+  result.distance = distance(workspace, pair, a, b, {.relative = kFirst, .absolute = 0});
+  if (result.distance.upper > margin) {
+    result.distance = distance(workspace, pair, a, b, {.relative = kClosest, .absolute = 0});
+  }
+  return result;
 }
 
 }  // namespace orchard::runtime

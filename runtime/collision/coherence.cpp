@@ -14,9 +14,7 @@
 
 namespace orchard::runtime {
 
-using detail::dot;
 using detail::minus;
-using detail::Vec3;
 
 namespace {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime {
 

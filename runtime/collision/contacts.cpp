@@ -16,12 +16,10 @@ namespace orchard::runtime {
 
 using detail::along;
 using detail::cross;
-using detail::dot;
 using detail::kSameLine;
 using detail::minus;
 using detail::PlacedPair;
 using detail::SolidBox;
-using detail::Vec3;
 using detail::WayOut;
 using detail::WayOutSearch;
 
@@ -149,7 +147,7 @@ double least_nudge(const PairQuery& narrow, double size) noexcept {
 bool add_piece_inside(const WayOutSearch& search, const Pose& world, Manifold& manifold) noexcept {
   const PreparedTree &first = search.pair.first, &second = search.pair.second;
   for (const SolidBox& solid : search.solids) {
-    const runtime::Vec3* const piece = detail::piece_inside(search, solid);
+    const Vec3* const piece = detail::piece_inside(search, solid);
     if (piece == nullptr) continue;
     const Vec3 local =
         solid.is_first
@@ -179,8 +177,44 @@ void add_points(std::span<const Cut> cuts, const PlacedPair& pair, const Vec3& n
     const Cut& cut = cuts[chosen[i] / 2];
     manifold.points[i] = {transform(world, along(end(chosen[i]), pair.first.tree.origin, 1)),
                           exchanged ? cut.triangle_second : cut.triangle_first,
-                          exchanged ? cut.triangle_first : cut.triangle_second};
+                          exchanged ? cut.triangle_first : cut.triangle_second, 0};
   }
+}
+
+// Of the two triangles that meet at each point, until they are apart along the way; in the first tree's units.
+void add_depths(const PlacedPair& pair, const Vec3& normal, bool exchanged, double most, double scale,
+                Manifold& manifold) noexcept {
+  for (std::uint32_t i = 0; i < manifold.count; ++i) {
+    ContactPoint& point = manifold.points[i];
+    const std::uint32_t first = exchanged ? point.triangle_b : point.triangle_a;
+    const std::uint32_t second = exchanged ? point.triangle_a : point.triangle_b;
+    const auto corner = [](const TreeView& tree, std::uint32_t triangle, std::size_t k) {
+      const auto& v = tree.vertices[tree.triangles[triangle][k]];
+      return Vec3{double{v[0]}, double{v[1]}, double{v[2]}};
+    };
+    double high = -std::numeric_limits<double>::infinity(), low = -high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      high = std::max(high, dot(normal, corner(pair.first.tree, first, k)));
+      low = std::min(low, dot(normal, transform(pair.relative, corner(pair.second.tree, second, k))));
+    }
+    point.depth = std::clamp(scale * (high - low), 0.0, most);
+  }
+}
+
+// The nearest points of surfaces that do not meet.
+void add_point_before(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
+                      Manifold& manifold) noexcept {
+  const Closeness near = closer_with_points(workspace, pair, poses.a, poses.b, margin);
+  const double apart = near.distance.upper;
+  if (near.answer != Answer::yes || !(apart > 0)) return;
+  const Vec3 way = minus(near.distance.points.on_b, near.distance.points.on_a);
+  if (!(length(way) > 0)) return;  // nearer than rounding can tell
+  manifold.count = 1;
+  manifold.points[0] = {along(near.distance.points.on_a, way, 0.5), near.distance.points.triangle_a,
+                        near.distance.points.triangle_b, -apart};
+  manifold.normal = unit(way);
+  manifold.depth = -apart;
+  manifold.error = apart - near.distance.lower;
 }
 
 // Where the way ends close beside triangles, as those of faces that slide along each other, they may touch by rounding
@@ -205,7 +239,7 @@ Manifold by_spheres(PairQuery& narrow) noexcept {
   if (result.answer == Answer::no || narrow.refused()) return result;
   const Contact contact = narrow.contact();
   result.count = 1;
-  result.points[0] = {contact.center, contact.triangle_a, contact.triangle_b};
+  result.points[0] = {contact.center, contact.triangle_a, contact.triangle_b, 0};
   result.normal = contact.normal;
   result.error = contact.radius;
   return result;
@@ -259,6 +293,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   result.error = narrow.exact_error();
   if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
   if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);
+  if (!cuts.empty()) add_depths(both, out.direction, exchanged, result.depth, world.scale, result);
   return result;
 }
 
@@ -266,7 +301,11 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
 
 Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                   const ContactOptions& options) noexcept {
-  return detail::contacts_of_solids(workspace, pair, a, b, options, {});
+  Manifold result = detail::contacts_of_solids(workspace, pair, a, b, options, {});
+  if (result.answer == Answer::no && options.margin > 0) {
+    add_point_before(workspace, pair, {a, b}, options.margin, result);
+  }
+  return result;
 }
 
 SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,

@@ -144,7 +144,7 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
     }
   }
   best.point = frame.leave(deepest);
-  best.distance = (detail::dot(scaled.value, best.point) - height_of_plane) / size;
+  best.distance = (dot(scaled.value, best.point) - height_of_plane) / size;
   return best;
 }
 

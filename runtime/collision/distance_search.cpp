@@ -283,7 +283,7 @@ void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t
                                        std::uint32_t row, bool may_meet) noexcept {
   const detail::TrianglePoints a = detail::points_of(lanes, lane),
                                b = detail::moved_points_of(rows, row, pair_.relative_);
-  detail::Vec3 common{};
+  Vec3 common{};
   const bool meet = may_meet && detail::triangles_intersect(a, b, &common);
   const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
   const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));

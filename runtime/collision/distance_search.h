@@ -63,7 +63,7 @@ class DistanceSearch {
   // In the first tree's units, of the stored triangles.
   double nearest_ = std::numeric_limits<double>::infinity();    // the least distance found
   double min_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
-  std::array<double, 3> on_first_{}, on_second_{};
+  Vec3 on_first_{}, on_second_{};
   std::array<float, 3> direction_{};  // unit, from the nearest point of the first one to that of the second one
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
   double lower_ = 0, upper_ = std::numeric_limits<double>::infinity();

@@ -17,7 +17,6 @@ namespace orchard::runtime {
 
 using detail::BoxAxes;
 using detail::LeafAxis;
-using detail::Vec3;
 
 namespace {
 
@@ -27,7 +26,7 @@ constexpr float kFarSteps = 16;  // last motions: what is farther than these is 
 constexpr std::uint32_t kMostOpen = 64;  // more to look at than that, and the roots are the shorter way
 constexpr double kAxisError = 4e-6;      // of a motion
 
-double size_of(const Vec3& v) noexcept { return std::sqrt(detail::dot(v, v)); }
+double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 }  // namespace
 

@@ -1,5 +1,3 @@
-// One query from its start to its end, hence more than 300 lines; its roots, levels and exact tests have files of their
-// own.
 #include "collision/pair_query.h"
 
 #include <algorithm>
@@ -283,7 +281,7 @@ void PairQuery::finish(Answer answer) noexcept {
 Contact PairQuery::contact() const noexcept {
   if (answer_ == Answer::no || refused_) return {};
   Contact contact;
-  std::array<double, 3> normal{};
+  Vec3 normal{};
   if (answer_ == Answer::yes) {
     contact.center = witness_;
     normal = triangle_normal();
@@ -304,12 +302,12 @@ Contact PairQuery::contact() const noexcept {
 
 // The ball around the common part of the best pair's spheres, unless triangles meet, and the direction from one to the
 // other.
-void PairQuery::add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept {
+void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
   const auto [a, b] = best_.pair;
   const auto p = detail::center_of(first_->tree, a);
   const Pose relative = placed_ ? relative_ : relative_pose();
   const auto q = transform(relative, detail::center_of(second_->tree, b));
-  const std::array<double, 3> way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+  const Vec3 way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
   const double distance = length(way);
   normal = {1, 0, 0};
   for (std::size_t i = 0; i < 3 && distance > 0; ++i) normal[i] = way[i] / distance;
@@ -331,20 +329,18 @@ void PairQuery::add_ball(Contact& contact, std::array<double, 3>& normal) const 
 }
 
 // From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.
-std::array<double, 3> PairQuery::triangle_normal() const noexcept {
+Vec3 PairQuery::triangle_normal() const noexcept {
   const auto normal_of = [](const detail::TrianglePoints& t) {
-    const auto minus = [](const detail::Vec3& p, const detail::Vec3& q) -> detail::Vec3 {
-      return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-    };
+    const auto minus = [](const Vec3& p, const Vec3& q) -> Vec3 { return {p[0] - q[0], p[1] - q[1], p[2] - q[2]}; };
     const auto u = minus(t[1], t[0]), v = minus(t[2], t[0]);
-    detail::Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     const double size = length(n);
     for (double& component : n) component = size > 0 ? component / size : 0;
     return n;
   };
   const auto of_first = normal_of(detail::points_of(first_->tree, triangle_first_));
   const auto of_second = rotate(relative_, normal_of(detail::points_of(second_->tree, triangle_second_)));
-  std::array<double, 3> way{};
+  Vec3 way{};
   for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
   const double size = length(way);
   for (double& component : way) component = size > kMinOpposition ? component / size : 0;

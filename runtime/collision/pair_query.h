@@ -8,7 +8,7 @@
 #include "collision/pair_budget.h"
 #include "orchard/runtime/collide.h"
 #include "orchard/runtime/narrow_phase.h"
-#include "orchard/runtime/prepared_tree.h"
+#include "orchard/runtime/packed_tree.h"
 
 namespace orchard::runtime {
 
@@ -92,9 +92,9 @@ class PairQuery {
   void say_no(double lower) noexcept;
   // After a "no" of the roots: the direction from a to b along which the bodies are lower_bound() apart, of length 1
   // but for rounding. Else 0.
-  std::array<double, 3> apart_along() const noexcept {
+  Vec3 apart_along() const noexcept {
     const auto& u = apart_along_;
-    return arguments_exchanged_ ? std::array<double, 3>{-u[0], -u[1], -u[2]} : u;
+    return arguments_exchanged_ ? Vec3{-u[0], -u[1], -u[2]} : u;
   }
   void add_work(std::uint64_t work) noexcept { work_ += work; }
   bool has_triangles() const noexcept { return !first_->tree.ball_slabs.empty() && !second_->tree.ball_slabs.empty(); }
@@ -157,8 +157,7 @@ class PairQuery {
   Answer refuse(const Pose& a, const Pose& b) noexcept;
   struct Probe;
   bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
-  double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
-                   std::array<double, 3>& u) const noexcept;
+  double hulls_gap(const Pose& first, const Pose& second, const Vec3& way, Vec3& u) const noexcept;
   Pose relative_pose() const noexcept;
   bool in_range() const noexcept;
   void finish(Answer answer) noexcept;
@@ -177,8 +176,8 @@ class PairQuery {
   bool test_triangles(const NodePair& pair) noexcept;
   bool triangles_meet(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept;
   bool say_yes_if(bool meet) noexcept;
-  void add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept;
-  std::array<double, 3> triangle_normal() const noexcept;
+  void add_ball(Contact& contact, Vec3& normal) const noexcept;
+  Vec3 triangle_normal() const noexcept;
   static NodePair pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit, bool lanes_are_second) noexcept {
     const NodePair pair{row + bit / kBlockWidth, lane + bit % kBlockWidth};
     return lanes_are_second ? pair : NodePair{pair.b, pair.a};
@@ -214,7 +213,7 @@ class PairQuery {
   Best level_best_, leaf_best_, best_;
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
   Place meeting_{};
-  std::array<double, 3> witness_{};
+  Vec3 witness_{};
 
   Answer answer_ = Answer::no;
   bool finished_ = true;
@@ -226,7 +225,7 @@ class PairQuery {
   double separation_bound_ = std::numeric_limits<double>::infinity();
   double lower_bound_ = 0;
   double pruned_gap_ = std::numeric_limits<double>::infinity();
-  std::array<double, 3> apart_along_{};  // from the first one to the second one, where the roots decided; in the world
+  Vec3 apart_along_{};  // from the first one to the second one, where the roots decided; in the world
 };
 
 // The query that a NarrowPhase, or a workspace's, is a cover of.

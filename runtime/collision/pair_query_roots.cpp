@@ -13,9 +13,7 @@
 // need no order yet.
 namespace orchard::runtime {
 
-using detail::dot;
 using detail::minus;
-using detail::Vec3;
 
 namespace {
 

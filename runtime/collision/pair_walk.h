@@ -8,7 +8,7 @@
 
 #include "collision/kernels/ball_slab_block.h"
 #include "collision/kernels/node_box.h"
-#include "orchard/runtime/prepared_tree.h"
+#include "orchard/runtime/packed_tree.h"
 
 // Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
 namespace orchard::runtime::detail {

@@ -1,4 +1,4 @@
-#include "orchard/runtime/ray_index.h"
+#include "orchard/runtime/shape_query.h"
 
 #include "collision/kernels/ray_block.h"
 

@@ -6,7 +6,6 @@
 #include "collision/ray_walk.h"
 #include "collision/segment_meets.h"
 #include "math/exact_sign.h"
-#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 
 namespace orchard::runtime {

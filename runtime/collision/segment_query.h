@@ -11,7 +11,7 @@ struct NearestToSegment {
 
 // `guess`, a triangle of the tree or kNoTriangle, is looked at first: where it is near, the nearest one is found
 // sooner. Of several that meet the segment, the guess is named. Precondition: the pose is rigid.
-NearestToSegment nearest_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
-                                    const std::array<double, 3>& q, double limit, std::uint32_t guess) noexcept;
+NearestToSegment nearest_to_segment(const TreeView& tree, const Pose& pose, const Vec3& p, const Vec3& q, double limit,
+                                    std::uint32_t guess) noexcept;
 
 }  // namespace orchard::runtime::detail

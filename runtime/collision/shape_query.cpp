@@ -126,9 +126,8 @@ SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, co
   return search_outward(tree, pose, is_rigid(pose), p, q, limit, false);
 }
 
-detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose,
-                                                    const std::array<double, 3>& p, const std::array<double, 3>& q,
-                                                    double limit, std::uint32_t guess) noexcept {
+detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose, const Vec3& p,
+                                                    const Vec3& q, double limit, std::uint32_t guess) noexcept {
   NearestToSegment result;
   result.point = search_outward(tree, pose, true, p, q, limit, false, guess, &result.beyond);
   return result;
@@ -196,6 +195,28 @@ bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inn
   std::array<double, 3> point{};
   for (std::size_t i = 0; i < 3; ++i) point[i] = double{corner[i]} + inner.origin[i];
   return contains(solid, pose, transform(inner_pose, point));
+}
+
+SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const std::array<double, 3>& center,
+                                 double limit) noexcept {
+  SignedPoint result;
+  result.surface = nearest_point(solid, pose, center, limit);
+  if (result.surface.triangle == kNoTriangle) return result;
+  Vec3 way = detail::minus(center, result.surface.point);
+  double size = std::sqrt(dot(way, way));
+  const bool inside = size > 0 && contains(solid, pose, center);
+  if (!(size > 0)) {
+    const auto& t = solid.triangles[result.surface.triangle];
+    const auto corner = [&](std::size_t k) {
+      const auto& v = solid.vertices[t[k]];
+      return Vec3{double{v[0]}, double{v[1]}, double{v[2]}};
+    };
+    way = rotate(pose, detail::cross(corner(1) - corner(0), corner(2) - corner(0)));
+    size = std::sqrt(dot(way, way));
+  }
+  if (inside) result.surface.distance = -result.surface.distance;
+  for (std::size_t i = 0; i < 3 && size > 0; ++i) result.normal[i] = (inside ? -way[i] : way[i]) / size;
+  return result;
 }
 
 }  // namespace orchard::runtime

@@ -9,9 +9,7 @@ namespace orchard::runtime {
 
 using detail::along;
 using detail::cross;
-using detail::dot;
 using detail::minus;
-using detail::Vec3;
 
 namespace {
 

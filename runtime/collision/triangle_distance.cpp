@@ -120,7 +120,7 @@ struct Near {
   ORCHARD_INLINE void face(const Three& point, const TrianglePoints& t, const TrianglePoints& edge,
                            Put&& put) noexcept {
     const Vec3 n = detail::cross(edge[0], edge[1]);
-    const double size = detail::dot(n, n);
+    const double size = runtime::dot(n, n);
     if (!(size > 0)) return;
     const Three normal = all(n);
     const auto area = [&](std::size_t i)

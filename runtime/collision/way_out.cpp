@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "collision/least_reaching.h"
 #include "collision/support_map.h"
 #include "collision/triangle_cut.h"
 #include "math/vector_functions.h"
@@ -16,41 +17,34 @@ namespace {
 using Cut = Workspace::Scratch::Cut;
 
 constexpr int kMaxAdvances = 64;       // along one direction
-constexpr double kNudge = 1e-12;       // of the bodies' size: what counts as reaching a plane
 constexpr double kClear = 0.25;        // of a nudge: more than what rounding does to poses
 constexpr double kGain = 1e-6;         // less is no gain
 constexpr double kSame = 1 - 1e-9;     // cosine of directions that count as one
 constexpr std::size_t kObstacles = 8;  // kept at most
 
-// Half-spaces that the way out has to reach: normal . x >= height.
-struct Obstacle {
-  Vec3 normal;
-  double height;
-};
-
 // A point of a piece in the frame of a box, and how it moves there for each unit of the way of the second body.
 struct MovingPoint {
-  runtime::Vec3 start, velocity;
+  Vec3 start, velocity;
 
   MovingPoint(const WayOutSearch& search, const SolidBox& solid, const Pose& back, const Vec3& u,
-              const runtime::Vec3& piece) noexcept {
+              const Vec3& piece) noexcept {
     const PlacedPair& pair = search.pair;
-    const runtime::Vec3 first_origin = pair.first.tree.origin, second_origin = pair.second.tree.origin;
+    const Vec3 first_origin = pair.first.tree.origin, second_origin = pair.second.tree.origin;
     if (solid.is_first) {
-      start = runtime::Vec3(transform(pair.relative, piece - second_origin)) + first_origin;
+      start = Vec3(transform(pair.relative, piece - second_origin)) + first_origin;
       velocity = u;
     } else {
-      start = runtime::Vec3(transform(back, piece - first_origin)) + second_origin;
-      velocity = -back.scale * runtime::Vec3(rotate(back, u));
+      start = Vec3(transform(back, piece - first_origin)) + second_origin;
+      velocity = -back.scale * Vec3(rotate(back, u));
     }
   }
-  bool is_inside(const runtime::Vec3& half, double at) const noexcept {
+  bool is_inside(const Vec3& half, double at) const noexcept {
     for (std::size_t i = 0; i < 3; ++i) {
       if (!(std::fabs(start[i] + at * velocity[i]) <= half[i])) return false;
     }
     return true;
   }
-  double leaves(const runtime::Vec3& half) const noexcept {
+  double leaves(const Vec3& half) const noexcept {
     double first = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
       if (velocity[i] == 0) continue;
@@ -66,7 +60,7 @@ double leaves_boxes(const WayOutSearch& search, const Vec3& u, double at) noexce
   double last = -std::numeric_limits<double>::infinity();
   for (const SolidBox& solid : search.solids) {
     const Pose back = inverse(search.pair.relative);
-    for (const runtime::Vec3& piece : solid.pieces) {
+    for (const Vec3& piece : solid.pieces) {
       const MovingPoint point(search, solid, back, u, piece);
       if (point.is_inside(solid.half, at)) last = std::max(last, point.leaves(solid.half));
     }
@@ -142,47 +136,7 @@ WayOut way_past(const WayOutSearch& search, const Vec3& direction) noexcept {
   const double reach = reach_along(search.pair.first.tree.supports, way.u) +
                        reach_along(search.pair.second.tree.supports, back) * relative.scale;
   const double past = reach - dot(way.u, relative.translation);
-  return {way.u, std::max(0.0, past) + kNudge * search.size + search.nudge, way.u, false};
-}
-
-bool outside(const Vec3& x, std::span<const Obstacle> obstacles, double size) noexcept {
-  return std::all_of(obstacles.begin(), obstacles.end(),
-                     [&](const Obstacle& o) { return dot(o.normal, x) >= o.height - kNudge * size; });
-}
-
-// The least vectors that reach one, two or three planes.
-Vec3 reaching(const Obstacle& p) noexcept { return along({0, 0, 0}, p.normal, p.height); }
-
-Vec3 reaching(const Obstacle& p, const Obstacle& q) noexcept {
-  const double c = dot(p.normal, q.normal), det = 1 - c * c;
-  if (!(det > 1e-9)) return {};
-  const double s = (p.height - c * q.height) / det, t = (q.height - c * p.height) / det;
-  return along(along({0, 0, 0}, p.normal, s), q.normal, t);
-}
-
-Vec3 reaching(const Obstacle& p, const Obstacle& q, const Obstacle& r) noexcept {
-  const Vec3 qr = cross(q.normal, r.normal), rp = cross(r.normal, p.normal), pq = cross(p.normal, q.normal);
-  const double det = dot(p.normal, qr);
-  if (!(std::fabs(det) > 1e-6)) return {};
-  return along(along(along({0, 0, 0}, qr, p.height / det), rp, q.height / det), pq, r.height / det);
-}
-
-// The least vector that reaches all of them, or zero if there is none.
-Vec3 min_reaching(std::span<const Obstacle> obstacles, double size) noexcept {
-  Vec3 best{};
-  double least = std::numeric_limits<double>::infinity();
-  const auto offer = [&](const Vec3& x) {
-    const double square = dot(x, x);
-    if (square > 0 && square < least && outside(x, obstacles, size)) least = square, best = x;
-  };
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    offer(reaching(obstacles[i]));
-    for (std::size_t j = 0; j < i; ++j) {
-      offer(reaching(obstacles[i], obstacles[j]));
-      for (std::size_t k = 0; k < j; ++k) offer(reaching(obstacles[i], obstacles[j], obstacles[k]));
-    }
-  }
-  return best;
+  return {way.u, std::max(0.0, past) + kReaches * search.size + search.nudge, way.u, false};
 }
 
 // From one direction to a local minimum.
@@ -380,9 +334,9 @@ bool is_doubtful(const WayOutSearch& search, double way) noexcept {
 
 }  // namespace
 
-const runtime::Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept {
+const Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept {
   const Pose back = inverse(search.pair.relative);
-  for (const runtime::Vec3& piece : solid.pieces) {
+  for (const Vec3& piece : solid.pieces) {
     if (MovingPoint(search, solid, back, {0, 0, 0}, piece).is_inside(solid.half, 0)) return &piece;
   }
   return nullptr;

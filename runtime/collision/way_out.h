@@ -4,7 +4,7 @@
 
 #include "collision/pair_walk.h"
 #include "collision/workspace_scratch.h"
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
 
 namespace orchard::runtime::detail {
 
@@ -12,8 +12,8 @@ namespace orchard::runtime::detail {
 // frame: a piece that lies wholly inside meets no triangle, and still is in the way.
 struct SolidBox {
   bool is_first;
-  runtime::Vec3 half;
-  std::span<const runtime::Vec3> pieces;
+  Vec3 half;
+  std::span<const Vec3> pieces;
 };
 
 // What a way out is looked for in. The second tree is moved, in the first tree's frame and units.
@@ -37,7 +37,7 @@ struct WayOut {
 };
 
 // The first of the points of pieces that are inside a box where the second tree is now, or null.
-const runtime::Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept;
+const Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept;
 
 // The shortest way out that is found from `directions` on, at least one of them, by following what is in the way: where
 // the last triangles part at a face or two edges, the way across these is tried next, or the shortest one that leaves

@@ -5,7 +5,7 @@
 #include <new>
 
 #include "collision/pair_walk.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime {
 
@@ -16,7 +16,7 @@ struct Workspace::Scratch {
   // Pairs of triangles that meet, and what they have in common, in the first tree's frame.
   struct Cut {
     detail::TrianglePoints first, second;
-    detail::Vec3 p, q;  // the ends of the common segment
+    Vec3 p, q;  // the ends of the common segment
     std::uint32_t triangle_first, triangle_second;
   };
   static constexpr std::size_t kCuts = 512;

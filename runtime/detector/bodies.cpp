@@ -15,22 +15,19 @@ StateSource states_of(const std::vector<BodyState>& values) {
 }
 
 namespace detail {
-namespace {
 
 // In floats a coordinate is off by 2^-24 of itself, a difference by that of both and 2^-24 of itself, a square of a way
 // or of a sum of radii by less than 2^-21 of itself.
-NearSphere near_sphere_of(const Whereabouts& where) noexcept {
-  constexpr double kMost = 1e30;  // whose squares no float holds: nothing is told then
-  const Vec3& m = where.middle;
-  const double size = std::fabs(m[0]) + std::fabs(m[1]) + std::fabs(m[2]);
-  const double radius = (where.reach + kRoundingOfGaps * where.slack + 0x1p-23 * size) * (1 + 0x1p-18);
+FloatSphere FloatSphere::around(const BoundingSphere& sphere, double slack) noexcept {
+  constexpr double kMost = 1e30;    // whose squares no float holds: nothing is known then
   constexpr double kLeast = 1e-17;  // whose square floats hold with all digits
-  if (!(size + radius < kMost)) return {};
+  const Vec3& m = sphere.center;
+  const double length = std::fabs(m[0]) + std::fabs(m[1]) + std::fabs(m[2]);
+  const double enlarged = (sphere.reach + kRoundingOfGaps * slack + 0x1p-23 * length) * (1 + 0x1p-18);
+  if (!(length + enlarged < kMost)) return {};
   const auto rounded = [](double value) { return static_cast<float>(value); };
-  return {rounded(m[0]), rounded(m[1]), rounded(m[2]), rounded(std::max(radius, kLeast))};
+  return {rounded(m[0]), rounded(m[1]), rounded(m[2]), rounded(std::max(enlarged, kLeast))};
 }
-
-}  // namespace
 
 bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept {
   if (!is_rigid(local)) return false;
@@ -83,47 +80,46 @@ void find_middle(Body& body) noexcept {
   body.off_middle = length(middle) * (1 + 1e-11);
 }
 
-Body& BodyTable::take_in(BodyId id, std::size_t count) {
+Body& BodyTable::add(BodyId id, std::size_t count) {
   const std::size_t slots = std::size_t{id.index} + 1;
   grow(bodies_, slots);
-  grow(before_, slots);
-  grow(whereabouts_, slots);
-  grow(near_spheres_, slots);
-  grow(disturbed_, slots);
-  disturb(id.index);
-  whereabouts_[id.index].generation = id.generation;
+  grow(sphere_caches_, slots);
+  grow(float_spheres_, slots);
+  grow(invalidated_, slots);
+  invalidate(id.index);
+  sphere_caches_[id.index].generation = id.generation;
   make_room(asking_, slots);  // for asking everyone
   Body& body = bodies_[id.index];
   body.parts.clear();
   body.parts.reserve(count);
   const std::size_t several = count > 1 ? count : 0;
-  body.part_spheres.assign(several, PlacedSphere{});
-  body.near_part_spheres.assign(several, NearSphere{});  // nothing throws from here on
+  body.part_spheres.assign(several, BoundingSphere{});
+  body.float_part_spheres.assign(several, FloatSphere{});  // nothing throws from here on
   std::vector<PartRecord> parts = std::move(body.parts);
   std::vector<PartBefore> parts_before = std::move(body.parts_before);
-  std::vector<PlacedSphere> part_spheres = std::move(body.part_spheres);
-  std::vector<NearSphere> near_part_spheres = std::move(body.near_part_spheres);
+  std::vector<BoundingSphere> part_spheres = std::move(body.part_spheres);
+  std::vector<FloatSphere> float_part_spheres = std::move(body.float_part_spheres);
   body = Body{};
   body.parts = std::move(parts);
   body.parts_before = std::move(parts_before);
   body.parts_before.clear();
   body.part_spheres = std::move(part_spheres);
-  body.near_part_spheres = std::move(near_part_spheres);
+  body.float_part_spheres = std::move(float_part_spheres);
   any_parts_ = any_parts_ || count > 1;
   body.id = id;
   return body;
 }
 
-void BodyTable::disturb(BodyIndex body) noexcept {
-  ++whereabouts_[body].changes;
-  disturbed_[body] = 1;
-  any_disturbed_.store(true, std::memory_order_relaxed);
+void BodyTable::invalidate(BodyIndex body) noexcept {
+  ++sphere_caches_[body].changes;
+  invalidated_[body] = 1;
+  any_invalidated_.store(true, std::memory_order_relaxed);
 }
 
-void BodyTable::forget_disturbed() noexcept {
-  if (!any_disturbed()) return;
-  std::fill(disturbed_.begin(), disturbed_.end(), std::uint8_t{0});
-  any_disturbed_.store(false, std::memory_order_relaxed);
+void BodyTable::forget_invalidated() noexcept {
+  if (!any_invalidated()) return;
+  std::fill(invalidated_.begin(), invalidated_.end(), std::uint8_t{0});
+  any_invalidated_.store(false, std::memory_order_relaxed);
 }
 
 void BodyTable::parts_changed(BodyIndex index) noexcept {
@@ -140,26 +136,24 @@ void BodyTable::parts_changed(BodyIndex index) noexcept {
 void BodyTable::add_turn(BodyIndex body, double way) noexcept {
   constexpr double kUp = 1 + 0x1p-52;
   if (way == 0) return;
-  Whereabouts& where = whereabouts_[body];
+  BoundingSphereCache& where = sphere_caches_[body];
   where.turned = (where.turned + way * (1 + 1e-9)) * kUp;
   if (std::isfinite(where.turned)) return;
   where.turned = 0;
-  disturb(body);
+  invalidate(body);
 }
 
 // Its sphere, where there are several.
 void BodyTable::place_part(Body& body, std::size_t part) noexcept {
   const Pose& pose = body.state.pose;
   const PartRecord& record = body.parts[part];
-  PlacedSphere& sphere = body.part_spheres[part];
-  sphere = PlacedSphere(transform(pose, record.center), record.reach * pose.scale);
+  BoundingSphere& sphere = body.part_spheres[part];
+  sphere = BoundingSphere(transform(pose, record.center), record.reach * pose.scale);
   double size = record.off * pose.scale + sphere.size;
   for (std::size_t k = 0; k < 3; ++k) size += std::fabs(pose.translation[k]);
-  Whereabouts where;
-  where.middle = sphere.center;
-  where.slack = 1e-14 * size;
-  if (body.valid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
-  body.near_part_spheres[part] = near_sphere_of(where);
+  BoundingSphere near = sphere;
+  if (!body.valid || body.continuous_speed > 0) near.reach = std::numeric_limits<double>::infinity();
+  body.float_part_spheres[part] = FloatSphere::around(near, 1e-14 * size);
 }
 
 void BodyTable::place_parts(Body& body) noexcept {
@@ -167,32 +161,30 @@ void BodyTable::place_parts(Body& body) noexcept {
   body.parts_moved = false;
 }
 
-NearSphere BodyTable::sphere_around(BodyIndex index) const noexcept {
+FloatSphere BodyTable::sphere_around(BodyIndex index) const noexcept {
   const Body& body = bodies_[index];
   const Pose& pose = body.state.pose;
-  Whereabouts where;
-  where.middle = body.has_middle() ? transform(pose, body.middle) : Vec3(pose.translation);
-  where.slack = whereabouts_[index].slack;
-  where.reach = std::min(body.reach, body.middle_reach) * pose.scale;
-  return near_sphere_of(where);
+  const Vec3 middle = body.has_middle() ? transform(pose, body.middle) : Vec3(pose.translation);
+  return FloatSphere::around({middle, std::min(body.reach, body.middle_reach) * pose.scale},
+                             sphere_caches_[index].slack);
 }
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   Body& body = bodies_[index];
   const Pose& now = bodies_[index].state.pose;
-  Whereabouts& where = whereabouts_[index];
+  BoundingSphereCache& where = sphere_caches_[index];
   const double reach = body.one ? body.first_reach : body.reach;
-  where.middle = body.one ? transform(now, body.first_center) : Vec3(now.translation);
+  const Vec3 center = body.one ? transform(now, body.first_center) : Vec3(now.translation);
   double size = reach * now.scale;
-  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
+  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(center[i]);
   where.slack = 1e-14 * size;
-  const bool tells = body.one && body.valid && !(body.continuous_speed > 0);
-  where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
-  near_spheres_[index] = near_sphere_of(where);
+  const bool known = body.one && body.valid && !(body.continuous_speed > 0);
+  where.sphere = BoundingSphere(center, known ? reach * now.scale : std::numeric_limits<double>::infinity());
+  float_spheres_[index] = FloatSphere::around(where.sphere, where.slack);
   place_parts(body);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
-  if (!body.valid || !std::isfinite(size)) disturb(index);
+  if (!body.valid || !std::isfinite(size)) invalidate(index);
 }
 
 // Whoever is asked at each step is placed then.
@@ -268,7 +260,7 @@ void BodyTable::take_answers(Step step, std::span<const BodyIndex> bodies, const
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       if (i + kAhead < end) {
         const BodyIndex ahead = bodies[i + kAhead];
-        prefetch_all(bodies_[ahead]), prefetch_whereabouts(ahead);
+        prefetch_all(bodies_[ahead]), prefetch_sphere_cache(ahead);
       }
       take_answer(step, bodies[i], answers_[i]);
     }
@@ -281,7 +273,7 @@ void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer)
   BodyState& state = bodies_[index].state;
   if (body.asked != step) mark_asked(body, step);
   const Pose before = state.pose;
-  if (keeps_before_) before_[index] = before;
+  if (keeps_before_) body.before = before;
   const bool valid = is_valid(answer);
   const bool same = body.moved >= 0 && before == answer.pose && body.valid == valid;
   if (!same) body.moved = step;
@@ -331,11 +323,11 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {
-  std::size_t bytes = bytes_of(bodies_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_) +
-                      bytes_of(whereabouts_) + bytes_of(near_spheres_) + bytes_of(disturbed_);
+  std::size_t bytes = bytes_of(bodies_) + bytes_of(asking_) + bytes_of(answers_) + bytes_of(sphere_caches_) +
+                      bytes_of(float_spheres_) + bytes_of(invalidated_);
   for (const Body& body : bodies_)
     bytes += bytes_of(body.parts) + bytes_of(body.parts_before) + bytes_of(body.part_spheres) +
-             bytes_of(body.near_part_spheres);
+             bytes_of(body.float_part_spheres);
   return bytes;
 }
 

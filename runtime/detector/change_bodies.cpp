@@ -24,84 +24,71 @@ bool are_valid(const BodyOptions& options) noexcept {
 }  // namespace
 
 bool Detector::State::acceptable(std::span<const BodyPart> parts) const noexcept {
-  if (!valid || failed || stepping || parts.empty()) return false;
+  if (!takes_changes() || parts.empty()) return false;
   return std::all_of(parts.begin(), parts.end(), [this](const BodyPart& part) {
     PartRecord trial;
-    return shapes.contains(part.shape) && detail::set_local(trial, shapes[part.shape], part.local);
+    return world.shapes.contains(part.shape) && detail::set_local(trial, world.shapes[part.shape], part.local);
   });
 }
 
-bool Detector::State::acceptable(const BodyOptions& with) const noexcept {
-  return are_valid(with) && (watches || !with.suggest);
-}
-
-Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with) {
-  Body& body = bodies.take_in(id, parts.size());
-  ++count;
+Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with) {
+  Body& body = world.bodies.add(id, parts.size());
+  ++world.body_count;
+  ++world.changes;
   body.set_filter(with.filter);
-  filters_pairs = filters_pairs || broad_filter(body) != BodyFilter{};
+  world.any_filters = world.any_filters || detail::PartPairs::broad_filter(body) != BodyFilter{};
   body.importance = with.importance;
   body.suggest = with.suggest;
   body.continuous_speed = with.continuous_speed;
-  if (with.continuous_speed > 0 && !any_continuous) {
-    any_continuous = true;
-    bodies.keep_before();
-    go_by_origins();
+  if (with.continuous_speed > 0 && !world.any_continuous) {
+    world.any_continuous = true;
+    world.bodies.keep_before();
+    rely_on_origins();
   }
   body.min_reach = with.reach;
   for (const BodyPart& part : parts) {
-    PartRecord& taken = body.parts.emplace_back();
-    taken.shape = part.shape;
-    detail::set_local(taken, shapes[part.shape], part.local);
+    PartRecord& added = body.parts.emplace_back();
+    added.shape = part.shape;
+    detail::set_local(added, world.shapes[part.shape], part.local);
   }
-  bodies.parts_changed(id.index);
-  body.since = answered + 1;
+  world.bodies.parts_changed(id.index);
+  body.since = world.answered + 1;
   body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
-  if (!any_continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
+  if (!world.any_continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
   changed(body);
   body.moved = -1;
   return body;
 }
 
-// A sweep goes by what origins do between steps, and not by middles, nor by where parts are at a step.
-void Detector::State::go_by_origins() {
-  while (part_search.any()) search_by_parts(part_search.bodies().front(), false);
-  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
-    Body& body = bodies[i];
+// A sweep relies on what origins do between steps, and not on middles, nor on where parts are at a step.
+void Detector::State::rely_on_origins() {
+  part_pairs.choose_none();
+  for (BodyIndex i = 0; i < world.bodies.slots(); ++i) {
+    Body& body = world.bodies[i];
     if (body.id == kNoBody || body.is_static || !body.has_middle()) continue;
     detail::forget_middle(body);
-    update_again(body);
+    cancel(body);
   }
 }
 
 BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& options) {
   State& s = *state_;
-  if (!s.acceptable(parts) || !s.acceptable(options) || !s.bodies.has_source()) return kNoBody;
+  if (!s.acceptable(parts) || !are_valid(options) || (options.suggest && !s.sampler.watches()) ||
+      !s.world.bodies.has_source())
+    return kNoBody;
   return s.or_fail([&] {
     const BodyId id = s.broad.add(options.importance, options.filter);
     if (id == kNoBody) return id;
-    s.take_in(id, parts, options);
-    if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
-    if (s.watches) s.monitor.begin(id.index);
-    s.halves.update_again(id.index);
+    s.add(id, parts, options);
+    if (s.world.kept_states) s.world.kept_states->put(id.index, s.world.time_of_last_step(), {});
+    if (s.sampler.watches()) s.sampler.monitor().begin(id.index);
+    s.world.halves.update_again(id.index);
     return id;
   });
 }
 
-BodyFilter Detector::State::broad_filter(const Body& body) noexcept {
-  BodyFilter filter = body.filter();
-  filter.ignores_static = filter.ignores_static || body.by_parts;
-  return filter;
-}
-
-// It has rested up to the last step: where it was then is known.
-void Detector::State::stir(Body& body) noexcept {
-  if (body.frozen) body.asked = std::max(body.asked, answered);
-  body.frozen = false;
-}
-
 Motion Detector::State::place_of(const Body& body) const noexcept {
-  Motion place = bodies.motion_of(body.id.index, clock.time_step, body.has_middle());
+  Motion place = world.bodies.motion_of(body.id.index, world.clock.time_step, body.has_middle());
   place.drift = 0;
   return place;
 }
@@ -115,15 +102,15 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
   return s.or_fail([&] {
     const BodyId id = s.broad.add_static(somewhere, options.importance, options.filter);
     if (id == kNoBody) return id;
-    Body& body = s.take_in(id, parts, options);
+    Body& body = s.add(id, parts, options);
     body.is_static = true;
-    body.moved = s.answered + 1;
-    s.bodies.state(id.index).pose = pose;
-    s.bodies.moved(id.index, pose);
-    s.halves.forget(id.index);
+    body.moved = s.world.answered + 1;
+    s.world.bodies.state(id.index).pose = pose;
+    s.world.bodies.moved(id.index, pose);
+    s.world.halves.forget(id.index);
     if (s.broad.move_static(id, s.place_of(body))) {
-      s.any_static = true;
-      s.part_search.static_changed(id.index, s.bodies);
+      s.world.any_static = true;
+      s.part_pairs.static_changed(id.index);
       return id;
     }
     remove(id);  // too large
@@ -135,47 +122,44 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   State& s = *state_;
   const detail::ScaledVector scaled(normal);
   const double size = detail::length(Vec3(scaled.value)), height = std::ldexp(offset, scaled.power) / size;
-  if (!s.valid || s.failed || s.stepping || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber))
-    return kNoBody;
+  if (!s.takes_changes() || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
   body.set_filter(options.filter);
   body.importance = options.importance;
-  body.since = s.answered + 1;
+  body.since = s.world.answered + 1;
   return s.or_fail([&] {
-    const BodyIndex index = s.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
-    s.halves.body(index).moved = s.answered + 1;
-    s.halves.update_all(s.bodies.slots());
-    ++s.count;
-    return s.halves.body(index).id;
+    const BodyIndex index = s.world.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
+    s.world.halves.body(index).moved = s.world.answered + 1;
+    s.world.halves.update_all(s.world.bodies.slots());
+    ++s.world.body_count;
+    ++s.world.changes;
+    return s.world.halves.body(index).id;
   });
 }
 
 // To change it.
 Body* Detector::State::find(BodyId body) noexcept {
   if (stepping || !contains(body)) return nullptr;
-  return is_half_space(body.index) ? &halves.body(body.index) : &bodies[body.index];
+  ++world.changes;
+  return is_half_space(body.index) ? &world.halves.body(body.index) : &world.bodies[body.index];
 }
 
-void Detector::State::update_again(Body& body) {
-  if (is_half_space(body.id.index)) return;
-  body.told_radius = -1;
+void Detector::State::cancel(Body& body) {
   or_fail([&] {
-    if (watches) monitor.cancelled(body.id.index);
-    if (!body.is_static) halves.update_again(body.id.index);
-    return broad.cancel(body.id);
+    sampler.cancel(body);
+    return true;
   });
 }
 
 bool Detector::remove(BodyId body) {
   State& s = *state_;
   if (s.find(body) == nullptr) return false;
-  --s.count;
-  if (is_half_space(body.index)) return s.halves.remove(body.index);
-  if (s.bodies[body.index].by_parts) s.part_search.end(body.index);
-  if (s.bodies[body.index].is_static) s.part_search.static_gone(body.index);
-  s.bodies.leave(body.index);
+  --s.world.body_count;
+  if (is_half_space(body.index)) return s.world.halves.remove(body.index);
+  s.part_pairs.gone(s.world.bodies[body.index]);
+  s.world.bodies.leave(body.index);
   return s.or_fail([&] {
-    s.halves.forget(body.index);
+    s.world.halves.forget(body.index);
     return s.broad.remove(body);
   });
 }
@@ -183,7 +167,7 @@ bool Detector::remove(BodyId body) {
 bool Detector::cancel(BodyId body) {
   Body* found = state_->find(body);
   if (found == nullptr) return false;
-  state_->update_again(*found);
+  state_->cancel(*found);
   return true;
 }
 
@@ -193,9 +177,9 @@ bool Detector::teleport(BodyId body) {
   found->frozen = false;
   found->asked = found->known_before = detail::kNotAsked;
   ++found->jumps;
-  state_->any_jumped = true;
-  state_->monitor.forget(body.index);
-  state_->update_again(*found);
+  state_->world.any_jumped = true;
+  state_->sampler.monitor().forget(body.index);
+  state_->cancel(*found);
   return true;
 }
 
@@ -203,16 +187,16 @@ bool Detector::move_static(BodyId body, const Pose& pose) {
   State& s = *state_;
   Body* found = s.find(body);
   if (found == nullptr || !found->is_static || is_half_space(body.index) || !is_rigid(pose)) return false;
-  const Pose before = s.bodies.state(body.index).pose;
-  s.bodies.state(body.index).pose = pose;
+  const Pose before = s.world.bodies.state(body.index).pose;
+  s.world.bodies.state(body.index).pose = pose;
   if (!s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); })) {
-    s.bodies.state(body.index).pose = before;
+    s.world.bodies.state(body.index).pose = before;
     return false;
   }
-  s.bodies.moved(body.index, before);
+  s.world.bodies.moved(body.index, before);
   s.changed(*found);
   return s.or_fail([&] {
-    s.part_search.static_changed(body.index, s.bodies);
+    s.part_pairs.static_changed(body.index);
     return true;
   });
 }
@@ -223,7 +207,7 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   if (found == nullptr || part >= found->parts.size()) return false;
   const detail::PartRecord& record = found->parts[part];
   detail::PartPlace place;
-  if (!detail::set_local(place, s.shapes[record.shape], local)) return false;
+  if (!detail::set_local(place, s.world.shapes[record.shape], local)) return false;
   const double reach = detail::reach_of(place), reach_before = found->reach, middle_before = found->middle_reach;
   const bool stretches = reach > reach_before, grows = stretches || found->has_middle();
   if (stretches) found->reach = kStretchAhead * reach;
@@ -234,18 +218,18 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
     found->reach = reach_before, found->middle_reach = middle_before;
     return false;
   }
-  if (s.any_continuous) {
+  if (s.world.any_continuous) {
     found->parts_before.resize(found->parts.size());
     detail::PartBefore& before = found->parts_before[part];
-    if (before.until != s.answered) before = {record, s.answered};
+    if (before.until != s.world.answered) before = {record, s.world.answered};
   }
-  s.bodies.move_part(body.index, part, place, s.shapes[record.shape]);
+  s.world.bodies.move_part(body.index, part, place, s.world.shapes[record.shape]);
   s.changed(*found);
-  if (stretches) found->stretched = s.answered;
-  if (grows && !found->is_static) s.update_again(*found);
+  if (stretches) found->stretched = s.world.answered;
+  if (grows && !found->is_static) s.cancel(*found);
   if (!found->is_static) return true;
   return s.or_fail([&] {
-    s.part_search.static_changed(body.index, s.bodies);
+    s.part_pairs.static_changed(body.index);
     return true;
   });
 }
@@ -262,9 +246,9 @@ bool Detector::set_filter(BodyId body, const BodyFilter& filter) {
   if (found == nullptr) return false;
   found->set_filter(filter);
   ++found->filters;
-  state_->filters_pairs = true;
+  state_->world.any_filters = true;
   if (is_half_space(body.index)) return true;
-  return state_->or_fail([&] { return state_->broad.set_filter(body, State::broad_filter(*found)); });
+  return state_->or_fail([&] { return state_->broad.set_filter(body, detail::PartPairs::broad_filter(*found)); });
 }
 
 bool Detector::sleep(BodyId body) {
@@ -273,8 +257,8 @@ bool Detector::sleep(BodyId body) {
   if (found->asleep) return true;
   found->asleep = true;
   return state_->or_fail([&] {
-    if (state_->kept_states) state_->keep(*found, state(body));
-    state_->update_again(*found);
+    if (state_->world.kept_states) state_->keep_state(*found, state(body));
+    state_->cancel(*found);
     return true;
   });
 }
@@ -283,26 +267,27 @@ bool Detector::wake(BodyId body) {
   Body* found = state_->find(body);
   if (found == nullptr || found->is_static) return false;
   if (!found->asleep) return true;
-  state_->stir(*found);
+  state_->world.wake(*found);
   found->asleep = false;
-  state_->update_again(*found);
+  state_->cancel(*found);
   return true;
 }
 
 bool Detector::asleep(BodyId body) const noexcept {
-  return state_->contains(body) && state_->places.body(body.index).asleep;
+  return state_->contains(body) && state_->world.places.body(body.index).asleep;
 }
 
 bool Detector::shape_changed(ShapeId shape) {
   State& s = *state_;
-  if (s.stepping || !s.shapes.contains(shape)) return false;
-  s.shapes.changed(shape);
-  for (BodyIndex i = 0; i < s.bodies.slots(); ++i) {
-    Body& body = s.bodies[i];
+  if (s.stepping || !s.world.shapes.contains(shape)) return false;
+  s.world.shapes.changed(shape);
+  ++s.world.changes;
+  for (BodyIndex i = 0; i < s.world.bodies.slots(); ++i) {
+    Body& body = s.world.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
     if (body.id != kNoBody && std::any_of(body.parts.begin(), body.parts.end(), uses)) {
       s.changed(body);
-      s.bodies.deformed(i);
+      s.world.bodies.deformed(i);
       ++body.deformed;
     }
   }
@@ -312,9 +297,9 @@ bool Detector::shape_changed(ShapeId shape) {
 void Detector::set_pair_filter(PairFilter filter) {
   State& s = *state_;
   if (s.stepping) return;
-  ++s.filter_version;
+  ++s.world.filter_version;
   s.or_fail([&] {
-    s.filter = filter;
+    s.world.filter = filter;
     s.broad.set_pair_filter(std::move(filter));
     return true;
   });

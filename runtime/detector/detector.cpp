@@ -27,27 +27,31 @@ BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& 
 
 }  // namespace
 
-Detector::State::State(StateSource source, const DetectorOptions& wanted)
+detail::World::World(StateSource source, const DetectorOptions& wanted)
     : options(wanted),
-      watches(wanted.watch.value_or(true)),
-      valid(is_valid_option(wanted)),
-      clock{valid ? wanted.start : 0, valid ? wanted.time_step : 1},
-      bodies(std::move(source)),
-      places(shapes, bodies, halves),
-      broad([this](double time, std::span<const BodyIndex> asked,
-                   std::span<Motion> answers) { motions(time, asked, answers); },
-            broad_options(wanted, {run_for_broad, this, 1})),
-      monitor({.position_slack = wanted.position_slack}),
-      fronts(wanted.max_fronts),
-      rounds(places, queries, options.executor, wanted.max_unfinished, fronts) {}
+      clock{is_valid_option(wanted) ? wanted.start : 0, is_valid_option(wanted) ? wanted.time_step : 1},
+      bodies(std::move(source)) {}
 
 // Jobs of the broad phase ask for motions; they may do so at once where all answers are there already.
-void Detector::State::run_for_broad(void* context, std::size_t count, Executor::Job job, void* data) {
-  const State& state = *static_cast<const State*>(context);
-  const Executor& executor = state.options.executor;
-  if (state.all_asked && executor.run != nullptr) return executor.run(executor.context, count, job, data);
-  for (std::size_t i = 0; i < count; ++i) job(data, i);
-}
+Detector::State::State(StateSource source, const DetectorOptions& wanted)
+    : world(std::move(source), wanted),
+      broad([this](double time, std::span<const BodyIndex> asked,
+                   std::span<Motion> answers) { sampler.answer_broad_phase(time, asked, answers); },
+            broad_options(wanted, {[](void* context, std::size_t count, Executor::Job job, void* data) {
+                                     const State& state = *static_cast<const State*>(context);
+                                     const Executor& executor = state.world.options.executor;
+                                     if (state.sampler.sampled_all() && executor.run != nullptr)
+                                       return executor.run(executor.context, count, job, data);
+                                     for (std::size_t i = 0; i < count; ++i) job(data, i);
+                                   },
+                                   this, 1})),
+      sampler(world, broad),
+      part_pairs(world, broad, sampler),
+      matcher(world, sampler, part_pairs),
+      skipper(world),
+      scheduler(world),
+      reporter(world, skipper),
+      valid(is_valid_option(wanted)) {}
 
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
@@ -58,67 +62,55 @@ Detector::Detector(const DetectorOptions& options) {
   DetectorOptions with = options;
   with.watch = options.watch.value_or(false);
   state_ = std::make_unique<State>(fill, with);
-  state_->kept_states = std::move(kept);
+  state_->world.kept_states = std::move(kept);
 }
 Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 Detector::~Detector() = default;
 
-namespace {
-
-ShapeId counted(std::size_t& count, ShapeId shape) noexcept {
-  if (shape != kNoShape) ++count;
-  return shape;
-}
-
-}  // namespace
-
 ShapeId Detector::add_shape(const TreeView& tree) {
   if (state_->stepping) return kNoShape;
-  return counted(state_->shape_count, state_->shapes.add_tree(tree));
+  return state_->world.shapes.add_tree(tree);
 }
 ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
   PackedSphereTree tree;
   const LoadStatus loaded = load_file(path, tree);
   if (status != nullptr) *status = loaded;
-  return loaded == LoadStatus::ok && !state_->stepping
-             ? counted(state_->shape_count, state_->shapes.add_tree(std::move(tree)))
-             : kNoShape;
+  return loaded == LoadStatus::ok && !state_->stepping ? state_->world.shapes.add_tree(std::move(tree)) : kNoShape;
 }
 ShapeId Detector::add_sphere(double radius, const Vec3& center) { return add_capsule(center, center, radius); }
 ShapeId Detector::add_capsule(const Vec3& p, const Vec3& q, double radius) {
   if (state_->stepping) return kNoShape;
-  return counted(state_->shape_count, state_->shapes.add_round(p, q, radius));
+  return state_->world.shapes.add_round(p, q, radius);
 }
 ShapeId Detector::add_box(const Vec3& half_lengths) {
   if (state_->stepping) return kNoShape;
-  return counted(state_->shape_count, state_->shapes.add_box(half_lengths));
+  return state_->world.shapes.add_box(half_lengths);
 }
 
 void Detector::set_executor(const Executor& executor) noexcept {
-  if (!state_->stepping) state_->options.executor = executor;
+  if (!state_->stepping) state_->world.options.executor = executor;
 }
 bool Detector::contains(BodyId body) const noexcept { return state_->contains(body); }
 double Detector::reach(ShapeId shape) const noexcept {
-  const detail::ShapeTable& shapes = state_->shapes;
+  const detail::ShapeTable& shapes = state_->world.shapes;
   return shapes.contains(shape) ? (detail::length(shapes[shape].center) + shapes[shape].reach) * (1 + 1e-15) : 0;
 }
-std::size_t Detector::size() const noexcept { return state_->count; }
+std::size_t Detector::size() const noexcept { return state_->world.body_count; }
 bool Detector::valid() const noexcept { return state_->valid; }
-std::uint64_t Detector::promises_broken() const noexcept { return state_->monitor.broken(); }
+std::uint64_t Detector::promises_broken() const noexcept { return state_->sampler.monitor().broken(); }
 std::uint64_t Detector::promises_broken(BodyId body) const noexcept {
-  return state_->contains(body) ? state_->monitor.broken(body.index) : 0;
+  return state_->contains(body) ? state_->sampler.monitor().broken(body.index) : 0;
 }
 
 std::size_t Detector::memory_bytes() const noexcept {
   const State& s = *state_;
-  const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
-  return sizeof(State) + (s.kept_states ? s.kept_states->memory_bytes() : 0) + s.shapes.memory_bytes() +
-         s.bodies.memory_bytes() + s.halves.memory_bytes() + s.broad.memory_bytes() + s.monitor.memory_bytes() +
-         s.records.memory_bytes() + s.part_search.memory_bytes() + s.pairs.memory_bytes() + s.queries.memory_bytes() +
-         s.fronts.memory_bytes() + s.rounds.memory_bytes() +
-         bytes(s.due, s.involved, s.is_involved, s.active, s.active_of_job, s.everyone, s.refused, s.broken,
-               s.static_pairs, s.searches_to_change, s.open, s.events, s.ended, s.marks, s.tallies);
+  const detail::World& world = s.world;
+  return sizeof(State) + (world.kept_states ? world.kept_states->memory_bytes() : 0) + world.shapes.memory_bytes() +
+         world.bodies.memory_bytes() + world.halves.memory_bytes() + s.broad.memory_bytes() + s.sampler.memory_bytes() +
+         s.part_pairs.memory_bytes() + s.matcher.memory_bytes() + s.skipper.memory_bytes() +
+         s.scheduler.memory_bytes() + s.reporter.memory_bytes() + s.queries.memory_bytes() + detail::bytes_of(s.open) +
+         detail::bytes_of(s.marks);
 }
 
 }  // namespace orchard::runtime

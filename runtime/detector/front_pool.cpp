@@ -26,7 +26,7 @@ void FrontPool::prepare(std::size_t large_pairs) {
   }
 }
 
-bool FrontPool::wants(Record& record, std::uint64_t work) noexcept {
+bool FrontPool::wants(CachedPair& record, std::uint64_t work) noexcept {
   if (record.front != kNoFront || !record.large) return false;
   if (work >= kMinWork) {
     record.costly = static_cast<std::uint8_t>(std::min<int>(record.costly + 1, kSearches));
@@ -36,7 +36,7 @@ bool FrontPool::wants(Record& record, std::uint64_t work) noexcept {
   return record.costly >= kSearches;
 }
 
-std::uint32_t FrontPool::take(RecordTable& records, Step now) {
+std::uint32_t FrontPool::take(PairCache& records, Step now) {
   const auto unused = std::find(owners_.begin(), owners_.end(), kNoOwner);
   if (unused != owners_.end()) return static_cast<std::uint32_t>(unused - owners_.begin());
   const auto idlest = std::min_element(owners_.begin(), owners_.end(), [&](std::uint32_t p, std::uint32_t q) {
@@ -48,7 +48,7 @@ std::uint32_t FrontPool::take(RecordTable& records, Step now) {
   return front;
 }
 
-void FrontPool::give(RecordTable& records, std::span<const std::uint32_t> wanting, Step now) {
+void FrontPool::give(PairCache& records, std::span<const std::uint32_t> wanting, Step now) {
   for (const std::uint32_t index : wanting) {
     const std::uint32_t front = take(records, now);
     if (front == kNoFront) return;
@@ -58,7 +58,7 @@ void FrontPool::give(RecordTable& records, std::span<const std::uint32_t> wantin
   }
 }
 
-void FrontPool::give_back(Record& record) noexcept {
+void FrontPool::give_back(CachedPair& record) noexcept {
   if (record.front == kNoFront) return;
   owners_[record.front] = kNoOwner;
   record.front = kNoFront;

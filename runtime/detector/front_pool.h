@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "detector/pair_records.h"
+#include "detector/pair_cache.h"
 
 namespace orchard::runtime::detail {
 
@@ -19,16 +19,16 @@ class FrontPool {
   void prepare(std::size_t large_pairs);  // with so many there may be as many fronts, up to most()
 
   // Takes a search's work into account. True: the pair is to have a front.
-  static bool wants(Record& record, std::uint64_t work) noexcept;
+  static bool wants(CachedPair& record, std::uint64_t work) noexcept;
   // To those records, as far as there are fronts, or some of whoever has not searched for long.
-  void give(RecordTable& records, std::span<const std::uint32_t> wanting, Step now);
-  void give_back(Record& record) noexcept;  // whose pair is no more
+  void give(PairCache& records, std::span<const std::uint32_t> wanting, Step now);
+  void give_back(CachedPair& record) noexcept;  // whose pair is no more
   std::size_t memory_bytes() const noexcept {
     return fronts_.size() * sizeof(PairFront) + bytes_of(fronts_) + bytes_of(owners_);
   }
 
  private:
-  std::uint32_t take(RecordTable& records, Step now);
+  std::uint32_t take(PairCache& records, Step now);
   std::size_t most_;
   std::vector<std::unique_ptr<PairFront>> fronts_;
   std::vector<std::uint32_t> owners_;  // records, or kNoOwner

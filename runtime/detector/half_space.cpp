@@ -196,6 +196,18 @@ struct CutPoint {
   std::uint32_t triangle = kNoTriangle;
 };
 
+// How high the lowest corner of the point's triangle is along the normal, or the point itself.
+double lowest_of(const Shape& shape, const Pose& pose, const HalfSpace& half, const CutPoint& point) noexcept {
+  if (point.triangle == kNoTriangle) return dot(half.normal, point.place);
+  double low = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t v : shape.tree.triangles[point.triangle]) {
+    const auto& corner = shape.tree.vertices[v];
+    const Vec3 place = {double{corner[0]}, double{corner[1]}, double{corner[2]}};
+    low = std::min(low, dot(half.normal, transform(pose, place + Vec3(shape.tree.origin))));
+  }
+  return low;
+}
+
 // The outermost points of where the surface cuts the plane, seen along its normal; of a body that is wholly below it,
 // of all corners.
 std::uint32_t cut_points(const Shape& shape, const Pose& pose, const HalfSpace& half,
@@ -238,7 +250,10 @@ void half_space_contact(const Shape& a, const Pose& pose, const HalfSpace& b, Ma
       a.kind == ShapeKind::round ? end_points(a, pose, b, points) : cut_points(a, pose, b, points);
   if (count == 0) return;  // by rounding only the verdict's lowest point reaches the plane
   manifold.count = count;
-  for (std::uint32_t i = 0; i < count; ++i) manifold.points[i] = {points[i].place, points[i].triangle, kNoTriangle};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double deep = b.offset - lowest_of(a, pose, b, points[i]);
+    manifold.points[i] = {points[i].place, points[i].triangle, kNoTriangle, std::clamp(deep, 0.0, manifold.depth)};
+  }
 }
 
 double half_space_distance(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept {

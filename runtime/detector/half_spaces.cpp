@@ -104,7 +104,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
     const BodyIndex body = bodies[k];
     Motion motion = motions[k];
     motion.radius += 2 * slack;  // where it is, and where it was promised to be
-    promises_[body] = {clock.time(now), motion, table.goes_by_middle(body, time_step)};
+    promises_[body] = {clock.time(now), motion, table.relies_on_middle(body, time_step)};
     if (!is_valid(motion)) {
       set_due(body, now + 1);
       continue;

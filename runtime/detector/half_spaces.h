@@ -17,6 +17,12 @@ class HalfSpaces {
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
   std::size_t size() const noexcept { return alive_; }
+  template <typename Visit>
+  void each(Visit&& visit) const {  // visit(body, half-space)
+    for (const Plane& plane : planes_) {
+      if (plane.alive) visit(plane.body, plane.half);
+    }
+  }
 
   void update_again(BodyIndex body);            // at the next step: it is new, or its promise holds no longer
   void update_all(std::size_t bodies);          // a half-space is new
@@ -31,8 +37,8 @@ class HalfSpaces {
                       std::span<const Motion> motions, double time_step, double slack, std::vector<BodyPair>& pairs);
   // Whether the promise that the body's next update relies on is kept by where it is now.
   bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
-  // Whether that is about the body's middle: see BodyTable::goes_by_middle().
-  bool goes_by_middle(BodyIndex body) const noexcept { return body < promises_.size() && promises_[body].by_middle; }
+  // Whether that is about the body's middle: see BodyTable::relies_on_middle().
+  bool relies_on_middle(BodyIndex body) const noexcept { return body < promises_.size() && promises_[body].by_middle; }
   std::size_t memory_bytes() const noexcept;
 
  private:

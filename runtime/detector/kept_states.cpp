@@ -27,16 +27,14 @@ void KeptStates::fill(double time, std::span<const BodyIndex> bodies, std::span<
 
 }  // namespace detail
 
-double Detector::State::last_time() const noexcept { return clock.time(std::max<Step>(answered, 0)); }
-
 // What sleeps is at rest.
-void Detector::State::keep(const detail::Body& body, BodyState state) {
+void Detector::State::keep_state(const detail::Body& body, BodyState state) {
   if (body.asleep) state.velocity = {};
-  kept_states->put(body.id.index, last_time(), state);
+  world.kept_states->put(body.id.index, world.time_of_last_step(), state);
 }
 
 BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptions& options) {
-  if (!state_->kept_states || !detail::is_valid(state)) return kNoBody;
+  if (!state_->world.kept_states || !detail::is_valid(state)) return kNoBody;
   const BodyId id = add_body({{shape}}, options);
   if (id != kNoBody) set_state(id, state);
   return id;
@@ -45,11 +43,11 @@ BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptio
 bool Detector::set_state(BodyId body, const BodyState& state) {
   State& s = *state_;
   detail::Body* found = s.find(body);
-  if (found == nullptr || !s.kept_states || !moves(body) || !detail::is_valid(state)) return false;
-  s.stir(*found);
+  if (found == nullptr || !s.world.kept_states || !moves(body) || !detail::is_valid(state)) return false;
+  s.world.wake(*found);
   return s.or_fail([&] {
-    s.keep(*found, state);
-    if (!s.watches || found->asleep) s.update_again(*found);
+    s.keep_state(*found, state);
+    if (!s.sampler.watches() || found->asleep) s.cancel(*found);
     return true;
   });
 }
@@ -63,12 +61,13 @@ bool Detector::set_velocity(BodyId body, const Vec3& velocity) {
 BodyState Detector::state(BodyId body) const noexcept {
   const State& s = *state_;
   if (!s.contains(body) || detail::is_half_space(body.index)) return {};
-  if (s.kept_states && !s.bodies[body.index].is_static) return s.kept_states->at(s.last_time(), body.index);
-  return s.bodies.state(body.index);
+  if (s.world.kept_states && !s.world.bodies[body.index].is_static)
+    return s.world.kept_states->at(s.world.time_of_last_step(), body.index);
+  return s.world.bodies.state(body.index);
 }
 
 bool Detector::moves(BodyId body) const noexcept {
-  return state_->contains(body) && !detail::is_half_space(body.index) && !state_->bodies[body.index].is_static;
+  return state_->contains(body) && !detail::is_half_space(body.index) && !state_->world.bodies[body.index].is_static;
 }
 
 }  // namespace orchard::runtime

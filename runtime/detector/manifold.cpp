@@ -37,16 +37,18 @@ Manifold tree_contacts(Workspace& workspace, const PartPair& pair, const Contact
 // The places of the last step are still known.
 Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions& with) noexcept {
   Manifold result;
-  if (event.verdict.answer != Answer::yes || !contains(event.a) || !contains(event.b) || queries.jobs() == 0) {
+  if (event.verdict.answer != Answer::yes || !contains(event.a) || !contains(event.b) ||
+      scheduler.workspace() == nullptr) {
     return result;
   }
+  const detail::ShapePlacements& places = world.places;
   if (event.part_a >= places.parts(event.a.index) || event.part_b >= places.parts(event.b.index)) return result;
   PartPair pair;
   places.place(event.a.index, event.part_a, pair.a);
   places.place(event.b.index, event.part_b, pair.b);
   const bool half = is_half_space(event.b.index);
   if (half) pair.half = places.half_space(event.b.index);
-  Workspace& workspace = queries.scratch(0).workspace;
+  Workspace& workspace = *scheduler.workspace();
   if (!pair.simple()) {
     result = tree_contacts(workspace, pair, with);
     if (result.answer == Answer::yes) return result;
@@ -56,7 +58,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   result.answer = verdict.answer;
   if (verdict.answer != Answer::yes) return result;
   result.count = 1;
-  result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b};
+  result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b, 0};
   result.normal = verdict.contact.normal;
   if (half) {
     detail::half_space_contact(*pair.a.shape, pair.a.pose(), pair.half, result);
@@ -65,6 +67,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   } else {  // contacts need more memory than there is
     result.complete = false;
   }
+  if (!half) result.points[0].depth = result.depth;
   return result;
 }
 

@@ -1,88 +1,72 @@
-#include "detector/detector_state.h"
+#include "detector/match_pairs.h"
 
-// The pairs of a step beside those of the step before: records of those that stay, and what ends with those that go.
-namespace orchard::runtime {
+#include "detector/front_pool.h"
 
-using detail::Body;
-using detail::is_half_space;
-using detail::Record;
+namespace orchard::runtime::detail {
 
-// Its record, from the first time on that it is asked for.
-Record& Detector::State::record_of(detail::RecordTable::Known& known) noexcept {
-  if (records.is_begun(known)) return records[known.record];
-  Record& record = records.begin(known);
-  record.pair = known.pair;
-  record.a = id_of(known.pair.a), record.b = id_of(known.pair.b);
-  record.filter_version = filter_version - 1;
-  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
-  record.jumps = a.jumps + b.jumps;
-  record.deformed = a.deformed + b.deformed;
-  if (!a.one || !b.one) return record;
-  const detail::Shape &of_a = shapes[a.shape], &of_b = shapes[b.shape];
-  record.coherent = of_a.has_tree() && of_b.has_tree();
-  if (!record.coherent) return record;
-  record.trees = TreePair(of_a.prepared, of_b.prepared);
-  record.large = detail::FrontPool::are_large(record.trees);
-  return record;
+void PairMatcher::gather(Step step, const Advance& now) {
+  pairs_.clear();
+  gather_half_spaces(step);
+  if (now.incomplete_from != kNoClass) gather_left_out(step, now);
+  part_pairs_.find(step, cache_, pairs_.by_parts);
+  pairs_.merge(now.pairs);
+  sampler_.sample_pairs(step, pairs_.all());
 }
 
-// Of a held pair that is no more. True: its touch goes on for a while.
-bool Detector::State::parts(const detail::RecordTable::Known& known, Step step) {
-  Record& record = records[known.record];
-  // What the filters exclude is no pair of the broad phase's any more.
-  const bool there = contains(record.a) && contains(record.b) && allowed(record);
-  const bool jumped = there && record.jumps != places.body(record.pair.a).jumps + places.body(record.pair.b).jumps;
-  record.impact = false;
-  record.answered = -1;
-  record.verdict = Verdict{};
-  record.verdict.answer = there ? Answer::no : Answer::maybe;
-  record.verdict.separation_bound = std::numeric_limits<double>::infinity();
-  if (there && !jumped && record.touching && ++record.nos < options.steps_to_end) {
-    describe(record, step, PairChange::stay, ended.emplace_back());
-    return true;
+void PairMatcher::gather_half_spaces(Step step) {
+  due_.clear();
+  world_.halves.due(step, due_);
+  if (due_.empty()) return;
+  sampler_.sample(step, due_);
+  due_motions_.clear();
+  for (const BodyIndex body : due_) due_motions_.push_back(sampler_.promise_of(body, world_.clock.time(step)));
+  world_.halves.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
+                               world_.options.position_slack, pairs_.with_planes);
+}
+
+void PairMatcher::gather_left_out(Step step, const Advance& now) {
+  std::vector<BodyPair>& kept = pairs_.kept;
+  auto reported = now.pairs.begin();
+  for (std::size_t place = 0; place < cache_.size(); ++place) {
+    const BodyPair& pair = cache_.pair(place);
+    if (is_half_space(pair.b) || part_pairs_.finds(pair)) continue;
+    while (reported != now.pairs.end() && *reported < pair) ++reported;
+    if (reported != now.pairs.end() && *reported == pair) continue;
+    if (world_.bodies.are_there(pair, cache_.known(place).generations)) kept.push_back(pair);
   }
-  if (record.touching) describe(record, step, PairChange::end, ended.emplace_back());
-  fronts.give_back(record);
-  large_pairs -= record.large;
-  return false;
+  left_out_.clear();
+  for (const BodyPair& pair : kept) left_out_.push_back(pair.a), left_out_.push_back(pair.b);
+  sampler_.sample(step, left_out_);
+  std::erase_if(kept, [&](const BodyPair& pair) { return world_.bodies.surely_apart(pair, world_.clock.time_step); });
 }
 
-void Detector::State::match(Step step, Frame& frame) {
-  pairs_seen.known = records.size(), pairs_seen.fresh = 0;
-  const auto generations = [this](const BodyPair& pair) {
-    const std::uint32_t first = bodies.whereabouts(pair.a).generation;
-    return is_half_space(pair.b) ? first : first + bodies.whereabouts(pair.b).generation;
-  };
-  const bool any = bodies.any_disturbed();
-  const auto doubted = [&](const BodyPair& pair) {
-    return any && (bodies.disturbed(pair.a) || (!is_half_space(pair.b) && bodies.disturbed(pair.b)));
-  };
-  const auto same = [&](const detail::RecordTable::Known& known) {
-    return known.generations == generations(known.pair);
-  };
-  const auto gone = [&](const detail::RecordTable::Known& known) { return parts(known, step); };
-  const auto fresh = [&](const BodyPair& pair) {
-    ++pairs_seen.fresh;
-    return generations(pair);
-  };
-  const auto load = [this](const BodyPair& pair) ORCHARD_INLINE_LAMBDA { bodies.prefetch_whereabouts(pair.b); };
-  records.match(pairs.all(), doubted, same, gone, fresh, load);
-  pairs_seen.parted = pairs_seen.known + pairs_seen.fresh + records.kept().size() - records.size();
-  bodies.forget_disturbed();
-  find_active();
-  frame.pairs += pairs.all().size();
-  frame.certain += pairs.all().size() - active_count;
+CachedPair& PairMatcher::cached(PairCache::Known& known) {
+  if (cache_.is_begun(known)) return cache_[known.record];
+  CachedPair& pair = cache_.begin(known);
+  pair.bodies = known.pair;
+  const Body &a = world_.places.body(known.pair.a), &b = world_.places.body(known.pair.b);
+  pair.a = a.id, pair.b = b.id;
+  pair.filter_version = world_.filter_version - 1;
+  pair.jumps = a.jumps + b.jumps;
+  pair.deformed = a.deformed + b.deformed;
+  if (!a.one || !b.one) return pair;
+  const Shape &of_a = world_.shapes[a.shape], &of_b = world_.shapes[b.shape];
+  pair.coherent = of_a.has_tree() && of_b.has_tree();
+  if (!pair.coherent) return pair;
+  pair.trees = TreePair(of_a.prepared, of_b.prepared);
+  pair.large = FrontPool::are_large(pair.trees);
+  return pair;
 }
 
-bool Detector::State::allowed(Record& record) {
-  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
-  if (record.filter_version == filter_version && record.filters_a == a.filters && record.filters_b == b.filters) {
-    return record.allowed;
+bool PairMatcher::allowed(CachedPair& pair) const {
+  const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
+  if (pair.filter_version == world_.filter_version && pair.filters_a == a.filters && pair.filters_b == b.filters) {
+    return pair.allowed;
   }
-  record.filter_version = filter_version;
-  record.filters_a = a.filters, record.filters_b = b.filters;
-  record.allowed = detail::filters_allow(a, b) && (!filter || filter(record.a, record.b));
-  return record.allowed;
+  pair.filter_version = world_.filter_version;
+  pair.filters_a = a.filters, pair.filters_b = b.filters;
+  pair.allowed = filters_allow(a, b) && (!world_.filter || world_.filter(pair.a, pair.b));
+  return pair.allowed;
 }
 
-}  // namespace orchard::runtime
+}  // namespace orchard::runtime::detail

@@ -7,7 +7,7 @@ namespace orchard::runtime::detail {
 void PartSearch::begin(BodyIndex body, const BodyTable& table) {
   if (bodies_.empty()) {
     for (BodyIndex i = 0; i < table.slots(); ++i) {
-      if (table[i].id != kNoBody && table[i].is_static) spheres_.put(i, table.near_part_spheres(i));
+      if (table[i].id != kNoBody && table[i].is_static) spheres_.put(i, table.float_part_spheres(i));
     }
   }
   bodies_.insert(std::lower_bound(bodies_.begin(), bodies_.end(), body), body);
@@ -19,7 +19,7 @@ void PartSearch::end(BodyIndex body) noexcept {
 }
 
 void PartSearch::static_changed(BodyIndex body, const BodyTable& table) {
-  if (any()) spheres_.put(body, table.near_part_spheres(body));
+  if (any()) spheres_.put(body, table.float_part_spheres(body));
 }
 
 void PartSearch::static_gone(BodyIndex body) noexcept {
@@ -29,13 +29,13 @@ void PartSearch::static_gone(BodyIndex body) noexcept {
 std::span<const BodyIndex> PartSearch::touching(BodyIndex body, const BodyTable& table) {
   spheres_.prepare();
   found_.clear();
-  for (const NearSphere& sphere : table.near_part_spheres(body)) spheres_.append_touching(sphere, found_);
+  for (const FloatSphere& sphere : table.float_part_spheres(body)) spheres_.append_touching(sphere, found_);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
   return found_;
 }
 
-std::size_t PartSearch::count_touching(const NearSphere& sphere) {
+std::size_t PartSearch::count_touching(const FloatSphere& sphere) {
   spheres_.prepare();
   found_.clear();
   spheres_.append_touching(sphere, found_);

@@ -1,6 +1,6 @@
 #pragma once
 #include "detector/static_spheres.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime::detail {
 
@@ -22,7 +22,7 @@ class PartSearch {
   // The static bodies whose spheres touch those of the body's parts, in ascending order. Until the next call.
   std::span<const BodyIndex> touching(BodyIndex body, const BodyTable& table);
   // How many spheres of static bodies touch this one.
-  std::size_t count_touching(const NearSphere& sphere);
+  std::size_t count_touching(const FloatSphere& sphere);
   std::size_t memory_bytes() const noexcept;
 
  private:

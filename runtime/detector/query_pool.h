@@ -5,7 +5,7 @@
 
 #include "collision/pair_query.h"
 #include "detector/shapes.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime::detail {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "collision/support_box.h"
-#include "orchard/runtime/shape_trees.h"
+#include "orchard/runtime/packed_tree.h"
 
 namespace orchard::runtime::detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "orchard/runtime/detector.h"
-#include "orchard/runtime/prepared_tree.h"
+#include "orchard/runtime/packed_tree.h"
 
 namespace orchard::runtime::detail {
 
@@ -17,15 +17,15 @@ enum class ShapeKind : std::uint8_t {
 
 struct Shape {
   ShapeKind kind = ShapeKind::tree;
-  PackedSphereTree own;    // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
-  TreeView tree;           // the surface; of a round shape the segment, for sweeps
-  PreparedTree prepared;   // the same
-  runtime::Vec3 p{}, q{};  // of a box: p is half of its lengths, which its tree has rounded up to floats
-  double radius = 0;       // of round shapes
-  runtime::Vec3 center{};  // of a sphere around the shape,
-  double reach = 0;        // and its radius
-  runtime::Vec3 box_low{}, box_high{};        // of a box around the triangles, by the shape's axes; not of round shapes
-  std::vector<runtime::Vec3> pieces;          // of a tree: a vertex of each connected piece of its surface,
+  PackedSphereTree own;        // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
+  TreeView tree;               // the surface; of a round shape the segment, for sweeps
+  PreparedTree prepared;       // the same
+  Vec3 p{}, q{};               // of a box: p is half of its lengths, which its tree has rounded up to floats
+  double radius = 0;           // of round shapes
+  Vec3 center{};               // of a sphere around the shape,
+  double reach = 0;            // and its radius
+  Vec3 box_low{}, box_high{};  // of a box around the triangles, by the shape's axes; not of round shapes
+  std::vector<Vec3> pieces;    // of a tree: a vertex of each connected piece of its surface,
   std::vector<std::uint32_t> piece_vertices;  // and which these are
   bool has_tree() const noexcept { return kind != ShapeKind::round; }
 };
@@ -35,9 +35,10 @@ class ShapeTable {
  public:
   ShapeId add_tree(const TreeView& tree);
   ShapeId add_tree(PackedSphereTree&& tree);
-  ShapeId add_round(const runtime::Vec3& p, const runtime::Vec3& q, double radius);
-  ShapeId add_box(const runtime::Vec3& half_lengths);
+  ShapeId add_round(const Vec3& p, const Vec3& q, double radius);
+  ShapeId add_box(const Vec3& half_lengths);
 
+  std::size_t size() const noexcept { return shapes_.size(); }
   bool contains(ShapeId shape) const noexcept { return shape < shapes_.size(); }
   const Shape& operator[](ShapeId shape) const noexcept { return shapes_[shape]; }
   void changed(ShapeId shape) noexcept;  // the places of its tree's vertices
@@ -50,19 +51,18 @@ class ShapeTable {
 };
 
 // How far a point in the shape's frame is from the box around it, or from the segment of a round shape less its radius.
-double distance_to_bounds(const Shape& shape, const runtime::Vec3& point) noexcept;
+double distance_to_bounds(const Shape& shape, const Vec3& point) noexcept;
 
 // Everything with normal . point <= offset; the normal is a unit vector.
 struct HalfSpace {
-  runtime::Vec3 normal{1, 0, 0};
+  Vec3 normal{1, 0, 0};
   double offset = 0;
 };
 
-inline double length(const runtime::Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+inline double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
-inline runtime::Vec3 nearest_of_segment(const runtime::Vec3& p, const runtime::Vec3& q,
-                                        const runtime::Vec3& to) noexcept {
-  const runtime::Vec3 d = q - p;
+inline Vec3 nearest_of_segment(const Vec3& p, const Vec3& q, const Vec3& to) noexcept {
+  const Vec3 d = q - p;
   const double square = dot(d, d);
   return square > 0 ? p + std::clamp(dot(to - p, d) / square, 0.0, 1.0) * d : p;
 }

@@ -17,7 +17,7 @@ Verdict test_half_space(const Shape& a, const Pose& pose, const HalfSpace& b) no
 
 // How far the second one of a pair that touches has to move along the verdict's normal, until it does no more.
 double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
-                    const runtime::Vec3& normal) noexcept;
+                    const Vec3& normal) noexcept;
 
 // Of a pair with a half-space that touches: up to four points and the depth. Leaves the rest of the manifold, and its
 // point where there is no better one, as they are.

@@ -35,7 +35,7 @@ ORCHARD_INLINE void for_lanes(std::uint32_t bits, Use&& use) {
 }  // namespace
 
 // A sum of floats is off by 2^-24 of itself.
-StaticSpheres::Box StaticSpheres::box_around(const NearSphere& sphere) noexcept {
+StaticSpheres::Box StaticSpheres::box_around(const FloatSphere& sphere) noexcept {
   Box box;
   const std::array<float, 3> center = {sphere.x, sphere.y, sphere.z};
   for (std::size_t d = 0; d < 3; ++d) {
@@ -52,11 +52,11 @@ void StaticSpheres::take_away(BodyIndex body) noexcept {
   places_[body] = {places_[body].version + 1, 0};
 }
 
-void StaticSpheres::put(BodyIndex body, std::span<const NearSphere> spheres) {
+void StaticSpheres::put(BodyIndex body, std::span<const FloatSphere> spheres) {
   grow(places_, std::size_t{body} + 1);
   take_away(body);
   Place& place = places_[body];
-  for (const NearSphere& sphere : spheres) append(spheres_, {sphere, body, place.version});
+  for (const FloatSphere& sphere : spheres) append(spheres_, {sphere, body, place.version});
   place.spheres = static_cast<std::uint32_t>(spheres.size());
   if (gone_ > spheres_.size() / 2 + kFewChanges) sort();  // nobody may ask for long
 }
@@ -65,10 +65,10 @@ void StaticSpheres::put(BodyIndex body, std::span<const NearSphere> spheres) {
 // groups, and of groups of groups.
 void StaticSpheres::split(std::span<Sphere> spheres) {
   if (spheres.size() <= kGroup) return;
-  constexpr std::array kCoordinates = {&NearSphere::x, &NearSphere::y, &NearSphere::z, &NearSphere::radius};
-  float NearSphere::*widest = kCoordinates[0];
+  constexpr std::array kCoordinates = {&FloatSphere::x, &FloatSphere::y, &FloatSphere::z, &FloatSphere::radius};
+  float FloatSphere::*widest = kCoordinates[0];
   float most = -1;
-  for (float NearSphere::*const coordinate : kCoordinates) {
+  for (float FloatSphere::*const coordinate : kCoordinates) {
     const auto [low, high] = std::minmax_element(
         spheres.begin(), spheres.end(),
         [coordinate](const Sphere& p, const Sphere& q) { return p.at.*coordinate < q.at.*coordinate; });
@@ -135,7 +135,7 @@ ORCHARD_INLINE std::uint32_t StaticSpheres::meeting(const BoxGroup& boxes, const
   });
 }
 
-ORCHARD_INLINE std::uint32_t StaticSpheres::touching(const SphereGroup& spheres, const NearSphere& sphere) noexcept {
+ORCHARD_INLINE std::uint32_t StaticSpheres::touching(const SphereGroup& spheres, const FloatSphere& sphere) noexcept {
   return lanes_where<kGroup>([&](std::size_t lane) ORCHARD_INLINE_LAMBDA {
     const float x = spheres.at[0][lane] - sphere.x, y = spheres.at[1][lane] - sphere.y,
                 z = spheres.at[2][lane] - sphere.z, reach = spheres.at[3][lane] + sphere.radius;
@@ -144,7 +144,7 @@ ORCHARD_INLINE std::uint32_t StaticSpheres::touching(const SphereGroup& spheres,
 }
 
 template <std::size_t kLevel>
-ORCHARD_INLINE void StaticSpheres::append_in(std::size_t group, const NearSphere& sphere, const Box& box,
+ORCHARD_INLINE void StaticSpheres::append_in(std::size_t group, const FloatSphere& sphere, const Box& box,
                                              std::vector<BodyIndex>& bodies) const {
   for_lanes(meeting(levels_[kLevel][group], box), [&](std::size_t lane) ORCHARD_INLINE_LAMBDA {
     const std::size_t child = group * kGroup + lane;
@@ -162,7 +162,7 @@ ORCHARD_INLINE void StaticSpheres::append_in(std::size_t group, const NearSphere
 
 // From the first level on that has one group, or the last one.
 template <std::size_t kLevel>
-ORCHARD_INLINE void StaticSpheres::append_from(const NearSphere& sphere, const Box& box,
+ORCHARD_INLINE void StaticSpheres::append_from(const FloatSphere& sphere, const Box& box,
                                                std::vector<BodyIndex>& bodies) const {
   if constexpr (kLevel + 1 < kLevels) {
     if (levels_[kLevel].size() > 1) return append_from<kLevel + 1>(sphere, box, bodies);
@@ -170,7 +170,7 @@ ORCHARD_INLINE void StaticSpheres::append_from(const NearSphere& sphere, const B
   for (std::size_t group = 0; group < levels_[kLevel].size(); ++group) append_in<kLevel>(group, sphere, box, bodies);
 }
 
-void StaticSpheres::append_touching(const NearSphere& sphere, std::vector<BodyIndex>& bodies) const {
+void StaticSpheres::append_touching(const FloatSphere& sphere, std::vector<BodyIndex>& bodies) const {
   const Box box = box_around(sphere);
   per_machine([&]() ORCHARD_INLINE_LAMBDA { append_from<0>(sphere, box, bodies); });
 }

@@ -9,19 +9,19 @@ namespace orchard::runtime::detail {
 class StaticSpheres {
  public:
   // Where the body is from now on; anywhere else it is no more.
-  void put(BodyIndex body, std::span<const NearSphere> spheres);
+  void put(BodyIndex body, std::span<const FloatSphere> spheres);
   void take_away(BodyIndex body) noexcept;
   // Before append_touching(), if anything has changed. O(n log n) once a part of n spheres is new or gone.
   void prepare();
   // The bodies of spheres that touch it; one may come up for each of its spheres. O(log n) groups, and what they hold.
-  void append_touching(const NearSphere& sphere, std::vector<BodyIndex>& bodies) const;
+  void append_touching(const FloatSphere& sphere, std::vector<BodyIndex>& bodies) const;
   std::size_t size() const noexcept { return spheres_.size(); }  // and some that are gone
   std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::size_t kGroup = 32, kLevels = 5;  // kGroup^(kLevels + 1) spheres, and more in more groups
   struct Sphere {
-    NearSphere at;
+    FloatSphere at;
     BodyIndex body;
     std::uint32_t version;
   };
@@ -41,18 +41,18 @@ class StaticSpheres {
   struct BoxGroup {
     std::array<std::array<float, kGroup>, 3> low, high;
   };
-  static Box box_around(const NearSphere& sphere) noexcept;
+  static Box box_around(const FloatSphere& sphere) noexcept;
   static void split(std::span<Sphere> spheres);
   bool is_there(BodyIndex body, std::uint32_t version) const noexcept { return places_[body].version == version; }
   void sort();
   void enter(std::size_t place);
   // Lanes, as bits: whose boxes meet this one, whose spheres touch this one.
   static std::uint32_t meeting(const BoxGroup& boxes, const Box& box) noexcept;
-  static std::uint32_t touching(const SphereGroup& spheres, const NearSphere& sphere) noexcept;
+  static std::uint32_t touching(const SphereGroup& spheres, const FloatSphere& sphere) noexcept;
   template <std::size_t kLevel>
-  void append_in(std::size_t group, const NearSphere& sphere, const Box& box, std::vector<BodyIndex>& bodies) const;
+  void append_in(std::size_t group, const FloatSphere& sphere, const Box& box, std::vector<BodyIndex>& bodies) const;
   template <std::size_t kLevel>
-  void append_from(const NearSphere& sphere, const Box& box, std::vector<BodyIndex>& bodies) const;
+  void append_from(const FloatSphere& sphere, const Box& box, std::vector<BodyIndex>& bodies) const;
 
   std::vector<Place> places_;        // by body
   std::vector<Sphere> spheres_;      // in the order of groups

@@ -1,5 +1,5 @@
 #pragma once
-#include "detector/pair_tests.h"
+#include "detector/shape_placements.h"
 #include "orchard/runtime/time_of_impact.h"
 
 namespace orchard::runtime::detail {

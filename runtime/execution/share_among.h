@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstddef>
 
-#include "orchard/runtime/executor.h"
+#include "orchard/runtime/execution.h"
 
 namespace orchard::runtime {
 

@@ -3,13 +3,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "orchard/runtime/pose.h"
+
 // Signs of determinants of double coordinates. Exact if these are multiples of 2^-357, as all are that are 0 or at
 // least 2^-305, and at most 1e100: no product of three differences, and no part of one, then underflows or overflows.
 // The usual case costs one evaluation in double; close ones are repeated with twice the digits, ties in full.
 namespace orchard::runtime::detail {
-
-// Headers that mean runtime::Vec3 say so where this one may be seen as well.
-using Vec3 = std::array<double, 3>;
 
 // > 0 if a, b, c appear counterclockwise when seen from the side of their plane away from d, 0 if all four are
 // coplanar.

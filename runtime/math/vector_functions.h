@@ -5,11 +5,11 @@
 
 #include "math/exact_sign.h"
 
-// The few operations that exact tests, distances and the builder of triangle trees need on plain arrays.
+// The few operations that exact tests, distances and the builder of triangle trees need besides those of Vec3.
 namespace orchard::runtime::detail {
 
-inline Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+// Of arrays, too, which the operators of Vec3 do not take.
+inline Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return a - b; }
 inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }

@@ -1,4 +1,4 @@
-#include "orchard/runtime/mapped_tree.h"
+#include "orchard/runtime/tree_file.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "orchard/runtime/prepared_tree.h"
+#include "orchard/runtime/packed_tree.h"
 
 #include <cstring>
 

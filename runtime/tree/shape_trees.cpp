@@ -1,4 +1,4 @@
-#include "orchard/runtime/shape_trees.h"
+#include "orchard/runtime/packed_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,38 +12,37 @@
 namespace orchard::runtime {
 
 using detail::cross;
-using detail::dot;
 using detail::minus;
 using detail::orientation;
-using detail::Vec3;
 
 namespace {
 
+using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
 float above(double value) {
   return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
-double farthest(const PackedSphereTree& tree, const Vec3& from) {
+double farthest(const PackedSphereTree& tree, const Point& from) {
   double square = 0;
   for (const auto& v : tree.vertices) {
-    const Vec3 d = minus({double{v[0]}, double{v[1]}, double{v[2]}}, from);
+    const Point d = minus({double{v[0]}, double{v[1]}, double{v[2]}}, from);
     square = std::max(square, dot(d, d));
   }
   return std::sqrt(square);
 }
 
 // One sphere around everything, a leaf. `depth`: of the sphere's centre, an upper bound on its signed distance.
-PackedSphereTree tree_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double depth) {
+PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const Triangle> triangles, double depth) {
   PackedSphereTree tree;
   if (vertices.empty()) return tree;
-  Vec3 low = vertices[0], high = vertices[0];
-  for (const Vec3& v : vertices) {
+  Point low = vertices[0], high = vertices[0];
+  for (const Point& v : vertices) {
     for (std::size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], v[i]), high[i] = std::max(high[i], v[i]);
   }
   for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = low[i] + (high[i] - low[i]) / 2;
-  for (const Vec3& v : vertices) {
+  for (const Point& v : vertices) {
     std::array<float, 3> stored{};
     double square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -76,7 +75,7 @@ PackedSphereTree tree_of(std::span<const Vec3> vertices, std::span<const Triangl
 // edge. Points in a facet's plane do not see it, so that no facet is ever without area.
 class Hull {
  public:
-  explicit Hull(std::span<const Vec3> points) : points_(points) {}
+  explicit Hull(std::span<const Point> points) : points_(points) {}
 
   bool build() {
     if (!start()) return false;
@@ -130,35 +129,33 @@ class Hull {
     triangles_.swap(kept);
   }
 
-  std::span<const Vec3> points_;
+  std::span<const Point> points_;
   std::vector<Triangle> triangles_;
 };
 
 }  // namespace
 
-PackedSphereTree point_tree(const std::array<double, 3>& point) {
-  const Vec3 vertices[] = {point};
+PackedSphereTree point_tree(const Point& point) {
+  const Point vertices[] = {point};
   const Triangle triangles[] = {{0, 0, 0}};
   return tree_of(vertices, triangles, 0);
 }
 
-PackedSphereTree segment_tree(const std::array<double, 3>& p, const std::array<double, 3>& q) {
-  const Vec3 vertices[] = {p, q};
+PackedSphereTree segment_tree(const Point& p, const Point& q) {
+  const Point vertices[] = {p, q};
   const Triangle triangles[] = {{0, 1, 1}};
   return tree_of(vertices, triangles, 0);
 }
 
-PackedSphereTree box_tree(const std::array<double, 3>& half) {
-  return tree_of(detail::box_corners(half), detail::kBoxFacets, 0);
-}
+PackedSphereTree box_tree(const Point& half) { return tree_of(detail::box_corners(half), detail::kBoxFacets, 0); }
 
-PackedSphereTree triangles_tree(std::span<const std::array<double, 3>> vertices,
+PackedSphereTree triangles_tree(std::span<const Point> vertices,
                                 std::span<const std::array<std::uint32_t, 3>> triangles) {
   return tree_of(vertices, triangles, std::numeric_limits<double>::infinity());
 }
 
-std::optional<PackedSphereTree> hull_tree(std::span<const std::array<double, 3>> points) {
-  for (const Vec3& p : points) {
+std::optional<PackedSphereTree> hull_tree(std::span<const Point> points) {
+  for (const Point& p : points) {
     for (const double x : p) {
       if (!(std::fabs(x) <= double{kCoordinateLimit})) return std::nullopt;
     }
@@ -166,7 +163,7 @@ std::optional<PackedSphereTree> hull_tree(std::span<const std::array<double, 3>>
   Hull hull(points);
   if (!hull.build()) return std::nullopt;
   std::vector<std::uint32_t> place(points.size(), kNoTriangle);
-  std::vector<Vec3> corners;
+  std::vector<Point> corners;
   std::vector<Triangle> triangles = hull.triangles();
   for (Triangle& t : triangles) {
     for (std::uint32_t& v : t) {
@@ -178,7 +175,7 @@ std::optional<PackedSphereTree> hull_tree(std::span<const std::array<double, 3>>
   PackedSphereTree tree = tree_of(corners, triangles, 0);
   double depth = -std::numeric_limits<double>::infinity();
   for (const Triangle& t : triangles) {
-    const Vec3 n = cross(minus(corners[t[1]], corners[t[0]]), minus(corners[t[2]], corners[t[0]]));
+    const Point n = cross(minus(corners[t[1]], corners[t[0]]), minus(corners[t[2]], corners[t[0]]));
     const double size = std::sqrt(dot(n, n));
     if (size > 0) depth = std::max(depth, dot(n, minus(tree.origin, corners[t[0]])) / size);
   }

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "orchard/runtime/packed_tree.h"
+#include "tree/box_fitter.h"
 #include "tree/places_along.h"
-#include "tree/principal_axes.h"
 
 // The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
 // triangles. Where all leaves fit in one block (a box, a wall, a simple hull), triangles are few and large beside what
@@ -16,55 +16,15 @@
 namespace orchard::runtime {
 namespace {
 
-using detail::axes_of, detail::cross, detail::dot, detail::minus, detail::Vec3;
+using detail::as_doubles, detail::cross, detail::minus;
+using detail::BallSlab, detail::BoxFitter, detail::Extent, detail::Part, detail::Range, detail::Triangle;
 using detail::PlaceAlong, detail::sort_along;
 
-// To a float and back, through memory: where GCC 12 makes vectors of several such lines (-O2 and above) it leaves both
-// conversions out, and a ball slab would be measured from another centre than the one that is stored.
-double rounded(double value) {
-  const volatile float stored = static_cast<float>(value);
-  return double{stored};
-}
-
-// A unit vector rounded to float, or the x axis for one that has no direction.
-Vec3 direction(const Vec3& v) {
-  const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  if (!(largest > 0)) return {1, 0, 0};
-  const Vec3 w = {v[0] / largest, v[1] / largest, v[2] / largest};
-  const double length = std::sqrt(dot(w, w));
-  Vec3 result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = rounded(w[i] / length);
-  return result;
-}
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 float above(double value) {  // at least `value`, rounding of a few operations in double included
   return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
-
-Vec3 along(const Vec3& from, const Vec3& way, double by) {
-  return {from[0] + by * way[0], from[1] + by * way[1], from[2] + by * way[2]};
-}
-
-// As queries find it, in float.
-Vec3 float_cross(const Vec3& p, const Vec3& q) {
-  Vec3 result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    result[i] = rounded(rounded(p[j] * q[k]) - rounded(p[k] * q[j]));
-  }
-  return result;
-}
-
-// Cosines and sines of the directions tried for a box within its first plane, an eighth of a quarter turn from each
-// other: more make it hardly smaller. Written out, as libraries differ in last digits.
-constexpr std::array<std::array<double, 2>, 8> kBoxTurns = {{{1, 0},
-                                                             {0.9807852804032304, 0.19509032201612825},
-                                                             {0.9238795325112867, 0.3826834323650898},
-                                                             {0.8314696123025452, 0.5555702330196022},
-                                                             {0.7071067811865476, 0.7071067811865476},
-                                                             {0.5555702330196022, 0.8314696123025452},
-                                                             {0.3826834323650898, 0.9238795325112867},
-                                                             {0.19509032201612825, 0.9807852804032304}}};
 
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
@@ -74,31 +34,6 @@ constexpr std::size_t kFew = std::size_t{kBlockWidth} * kBlockWidth;
 // A cut of few triangles is worth a leaf if the boxes of both parts, times their triangles, are less than this share of
 // the whole part's. A smaller share would end too soon: of the four sides of a box, no single one is worth it.
 constexpr double kWorthCutting = 1 - 1e-3;
-
-struct Range {
-  std::size_t begin, end;
-  std::size_t size() const { return end - begin; }
-};
-
-// A range and what is measured of it, once.
-struct Part : Range {
-  Vec3 middle{};
-  double radius = 0;           // of a small ball around the middle
-  std::array<Vec3, 3> axes{};  // principal ones of the corners, the longest first
-};
-
-// A triangle as the order has it: what the loops over a part read lies side by side.
-struct Triangle {
-  std::array<std::array<float, 3>, 3> corners;
-  std::uint32_t number;
-};
-
-struct BallSlab {
-  Vec3 center, normal;
-  double radius, height;
-  Vec3 second, third;  // normals of the box
-  double width, length;
-};
 
 class Builder {
  public:
@@ -121,7 +56,7 @@ class Builder {
     tree_.triangle_blocks.clear();
     tree_.triangle_tree_depth = 0;
     if (order_.empty()) return;
-    std::vector<Part> level = {measured({0, order_.size()})}, next;
+    std::vector<Part> level = {fitter_.measured({0, order_.size()})}, next;
     add_block();
     place(0, 0, level[0]);
     std::vector<std::pair<std::size_t, std::uint32_t>> places = {{0, 0}}, next_places;
@@ -177,9 +112,9 @@ class Builder {
       if (widths[widest] < 0) break;
       const Part whole = parts[widest];
       const std::size_t middle = halve(whole);
-      parts[widest] = measured({whole.begin, middle});
+      parts[widest] = fitter_.measured({whole.begin, middle});
       const auto behind = static_cast<std::ptrdiff_t>(widest) + 1;
-      parts.insert(parts.begin() + behind, measured({middle, whole.end}));
+      parts.insert(parts.begin() + behind, fitter_.measured({middle, whole.end}));
       widths[widest] = width_of(parts[widest]);
       widths.insert(widths.begin() + behind, width_of(parts[widest + 1]));
     }
@@ -187,31 +122,6 @@ class Builder {
   }
 
   static double width_of(const Part& part) { return part.size() <= kBlockWidth ? -1 : part.radius; }
-
-  struct Extent {
-    Vec3 low, high;  // along the part's principal axes
-    void add(const Extent& other) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], other.low[i]), high[i] = std::max(high[i], other.high[i]);
-      }
-    }
-    double area() const {
-      const Vec3 e = minus(high, low);
-      return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
-    }
-  };
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr Extent kNothing = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-
-  static Extent extent_of(const Triangle& triangle, const std::array<Vec3, 3>& axes) {
-    Extent extent = kNothing;
-    for (const auto& corner : triangle.corners) {
-      const Vec3 p = as_doubles(corner), along = {dot(axes[0], p), dot(axes[1], p), dot(axes[2], p)};
-      extent.add({along, along});
-    }
-    return extent;
-  }
-  static Vec3 as_doubles(const std::array<float, 3>& p) { return {double{p[0]}, double{p[1]}, double{p[2]}}; }
 
   static std::size_t multiple_of_width(std::size_t count) {
     return (count + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
@@ -250,17 +160,17 @@ class Builder {
                 std::size_t step, Cut& best) {
     const std::size_t size = part.size();
     extents_.resize(size);
-    for (std::size_t i = 0; i < size; ++i) extents_[i] = extent_of(order_[part.begin + i], axes);
+    for (std::size_t i = 0; i < size; ++i) extents_[i] = Extent::of(order_[part.begin + i], axes);
     behind_.resize(size);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       find_places(part, axes[axis], axis);
       const std::vector<PlaceAlong>& places = places_[axis];
-      Extent extent = kNothing;
+      Extent extent;
       for (std::size_t i = size; i-- > 0;) {
         extent.add(extents_[places[i].from]);
         if (i % step == 0) behind_[i] = extent.area() * static_cast<double>(size - i);
       }
-      extent = kNothing;
+      extent = {};
       for (std::size_t i = 0; i < size; ++i) {
         if (i > 0 && i % step == 0) {
           const double cost = extent.area() * static_cast<double>(i) + behind_[i];
@@ -327,17 +237,11 @@ class Builder {
     });
   }
 
-  Extent extent_of(const Range& part, const std::array<Vec3, 3>& axes) const {
-    Extent extent = kNothing;
-    for (std::size_t i = part.begin; i < part.end; ++i) extent.add(extent_of(order_[i], axes));
-    return extent;
-  }
-
   Cut cut_of_few(const Part& part) {
     Cut best;
     double area = kInfinity;
     for (std::size_t f = 0; f < frames_.size(); ++f) {
-      area = std::min(area, extent_of(part, frames_[f]).area());
+      area = std::min(area, fitter_.extent_of(part, frames_[f]).area());
       find_cut(part, frames_[f], f, part.size() / 2, 1, best);
     }
     const double whole = area * static_cast<double>(part.size());
@@ -361,174 +265,16 @@ class Builder {
       find_places(whole, frames_[cuts[best].frame][cuts[best].axis], 0);
       put_in_order(places_[0], whole);
       const auto behind = static_cast<std::ptrdiff_t>(best) + 1;
-      parts[best] = measured({whole.begin, whole.begin + cuts[best].at});
-      parts.insert(parts.begin() + behind, measured({whole.begin + cuts[best].at, whole.end}));
+      parts[best] = fitter_.measured({whole.begin, whole.begin + cuts[best].at});
+      parts.insert(parts.begin() + behind, fitter_.measured({whole.begin + cuts[best].at, whole.end}));
       cuts[best] = cut_of_few(parts[best]);
       cuts.insert(cuts.begin() + behind, cut_of_few(parts[best + 1]));
     }
     return parts;
   }
 
-  Part measured(const Range& range) const {
-    Part part;
-    static_cast<Range&>(part) = range;
-    find_ball(part);
-    part.axes = axes_of(covariance(part));
-    return part;
-  }
-
-  // Of the corners, scaled to be free of overflow.
-  std::array<double, 6> covariance(const Part& part) const {
-    std::array<double, 6> m{};
-    if (!(part.radius > 0)) return m;
-    Vec3 mean{};
-    const double share = 1 / (3 * static_cast<double>(part.size()));
-    each_corner(part, [&](const Vec3& p) {
-      for (std::size_t i = 0; i < 3; ++i) mean[i] += (p[i] - part.middle[i]) / part.radius * share;
-    });
-    each_corner(part, [&](const Vec3& p) {
-      Vec3 d = minus(p, part.middle);
-      for (std::size_t i = 0; i < 3; ++i) d[i] = d[i] / part.radius - mean[i];
-      m[0] += d[0] * d[0], m[1] += d[1] * d[1], m[2] += d[2] * d[2];
-      m[3] += d[0] * d[1], m[4] += d[0] * d[2], m[5] += d[1] * d[2];
-    });
-    return m;
-  }
-
-  template <typename Visit>
-  void each_corner(const Range& part, Visit&& visit) const {
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-      for (const auto& corner : order_[i].corners) visit(as_doubles(corner));
-    }
-  }
-
-  // A small ball (Ritter's): from a long chord, grown to reach every corner.
-  void find_ball(Part& part) const {
-    const auto farthest = [&](const Vec3& from) {
-      Vec3 best = from;
-      double most = -1;
-      each_corner(part, [&](const Vec3& p) {
-        const Vec3 d = minus(p, from);
-        if (dot(d, d) > most) most = dot(d, d), best = p;
-      });
-      return best;
-    };
-    const Vec3 p = farthest(as_doubles(order_[part.begin].corners[0])), q = farthest(p), chord = minus(q, p);
-    Vec3 center = {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2};
-    double radius = std::sqrt(dot(chord, chord)) / 2;
-    each_corner(part, [&](const Vec3& x) {
-      const Vec3 d = minus(x, center);
-      const double distance = std::sqrt(dot(d, d));
-      if (distance <= radius) return;
-      const double grown = (radius + distance) / 2;
-      for (std::size_t i = 0; i < 3; ++i) center[i] += d[i] * ((grown - radius) / distance);
-      radius = grown;
-    });
-    part.middle = center;
-    part.radius = radius;
-  }
-
-  // Between the planes across `normal`, centred between them.
-  BallSlab ball_slab_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
-    double low = kInfinity, high = -kInfinity;
-    each_corner(part, [&](const Vec3& p) {
-      const double h = dot(normal, minus(p, middle));
-      low = std::min(low, h), high = std::max(high, h);
-    });
-    BallSlab slab{};
-    slab.normal = normal;
-    slab.center = along(middle, normal, (low + high) / 2);
-    slab.height = (high - low) / 2;
-    return slab;
-  }
-
-  // The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean
-  // normal.
-  BallSlab ball_slab_of(const Part& part) {
-    Vec3 mean{};
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-      const auto& corners = order_[i].corners;
-      const Vec3 a = as_doubles(corners[0]);
-      const Vec3 n = cross(minus(as_doubles(corners[1]), a), minus(as_doubles(corners[2]), a));
-      for (std::size_t k = 0; k < 3; ++k) mean[k] += n[k];
-    }
-    const BallSlab thin = ball_slab_across(part, part.middle, direction(part.axes[2]));
-    const BallSlab facing = ball_slab_across(part, part.middle, direction(mean));
-    BallSlab slab = facing.height <= thin.height ? facing : thin;
-    find_box(part, slab);
-    return slab;
-  }
-
-  // The other two pairs of planes: across the directions, among a few, that make the smallest box, which is centred
-  // between all of them. Everything is measured last, from what is stored.
-  void find_box(const Range& part, BallSlab& slab) {
-    std::size_t least = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-      if (std::fabs(slab.normal[i]) < std::fabs(slab.normal[least])) least = i;
-    }
-    Vec3 axis{};
-    axis[least] = 1;
-    const Vec3 u = direction(cross(slab.normal, axis)), v = cross(slab.normal, u);
-    across_.clear();
-    each_corner(part, [&](const Vec3& p) {
-      const Vec3 d = minus(p, slab.center);
-      across_.push_back({dot(u, d), dot(v, d)});
-    });
-    std::array<double, 2> turn{}, middle{};
-    double smallest = kInfinity;
-    for (const auto& [c, s] : kBoxTurns) {
-      std::array<double, 2> low = {kInfinity, kInfinity}, high = {-kInfinity, -kInfinity};
-      for (const auto& [x, y] : across_) {
-        const double p = c * x + s * y, q = c * y - s * x;
-        low = {std::min(low[0], p), std::min(low[1], q)}, high = {std::max(high[0], p), std::max(high[1], q)};
-      }
-      const double width = high[0] - low[0], length = high[1] - low[1];
-      const double area = width * length + 2 * slab.height * (width + length);
-      if (area >= smallest) continue;
-      smallest = area;
-      turn = {c, s}, middle = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
-    }
-    const auto in_plane = [&](double x, double y) { return along(along({}, u, x), v, y); };
-    const Vec3 second = in_plane(turn[0], turn[1]), third = in_plane(-turn[1], turn[0]);
-    slab.center = along(along(slab.center, second, middle[0]), third, middle[1]);
-    slab.second = direction(second);
-    if (is_few()) take_smaller_frame(part, smallest, slab);
-    measure_box(part, slab);
-  }
-
-  // The axes of one of the frames in place of those found, if the box is smaller then; the thinnest way comes first.
-  void take_smaller_frame(const Range& part, double smallest, BallSlab& slab) const {
-    for (const std::array<Vec3, 3>& frame : frames_) {
-      const Extent extent = extent_of(part, frame);
-      const Vec3 e = minus(extent.high, extent.low);
-      if (!(extent.area() < smallest)) continue;
-      smallest = extent.area();
-      std::array<std::size_t, 3> order = {0, 1, 2};
-      std::stable_sort(order.begin(), order.end(), [&e](std::size_t i, std::size_t k) { return e[i] < e[k]; });
-      slab.normal = direction(frame[order[0]]);
-      slab.second = direction(frame[order[1]]);
-      slab.center = {};
-      for (std::size_t i = 0; i < 3; ++i) {
-        slab.center = along(slab.center, frame[i], (extent.low[i] + extent.high[i]) / 2);
-      }
-    }
-  }
-
-  void measure_box(const Range& part, BallSlab& slab) const {
-    for (double& x : slab.center) x = rounded(x);
-    slab.third = float_cross(slab.normal, slab.second);
-    slab.radius = slab.height = slab.width = slab.length = 0;
-    each_corner(part, [&](const Vec3& p) {
-      const Vec3 d = minus(p, slab.center);
-      slab.radius = std::max(slab.radius, std::sqrt(dot(d, d)));
-      slab.height = std::max(slab.height, std::fabs(dot(slab.normal, d)));
-      slab.width = std::max(slab.width, std::fabs(dot(slab.second, d)));
-      slab.length = std::max(slab.length, std::fabs(dot(slab.third, d)));
-    });
-  }
-
   void place(std::size_t block_index, std::uint32_t lane, const Part& part) {
-    const BallSlab slab = ball_slab_of(part);
+    const BallSlab slab = fitter_.ball_slab_of(part);
     BallSlabBlock& block = tree_.ball_slabs[block_index];
     block.x[lane] = static_cast<float>(slab.center[0]);
     block.y[lane] = static_cast<float>(slab.center[1]);
@@ -548,6 +294,7 @@ class Builder {
 
   PackedSphereTree& tree_;
   std::vector<Triangle> order_;
+  BoxFitter fitter_{order_, frames_};
   std::vector<Vec3> centroids_;  // by the triangles' numbers
   // While a part is halved:
   std::vector<Triangle> before_;  // as it was ordered
@@ -555,8 +302,7 @@ class Builder {
   std::vector<double> behind_;    // what a cut costs behind it
   std::array<std::vector<PlaceAlong>, 3> places_;
   std::vector<PlaceAlong> sorted_;
-  std::vector<std::array<double, 2>> across_;  // corners, while a box is looked for
-  std::vector<std::array<Vec3, 3>> frames_;    // of few triangles: find_frames()
+  std::vector<std::array<Vec3, 3>> frames_;  // of few triangles: find_frames()
 };
 
 }  // namespace

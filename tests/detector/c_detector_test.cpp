@@ -184,4 +184,35 @@ TEST(CDetector, KeepsStatesWhereThereIsNoSource) {
   orchard_detector_free(detector);
 }
 
+TEST(CDetector, AnswersQuestionsAboutAllBodies) {
+  orchard_detector* const world = orchard_detector_new(nullptr, nullptr, nullptr);
+  ASSERT_NE(world, nullptr);
+  const double origin_of_shape[3] = {0, 0, 0};
+  const orchard_shape ball = orchard_detector_add_sphere(world, 1, origin_of_shape);
+  orchard_part part{};
+  part.shape = ball;
+  part.local = orchard_identity();
+  const orchard_body a = orchard_detector_add_body(world, &part, 1, nullptr);
+  orchard_pose there = orchard_identity();
+  there.translation[0] = 5;
+  const orchard_body b = orchard_detector_add_static(world, &part, 1, &there, nullptr);
+  const double origin[3] = {-4, 0, 0}, along[3] = {2, 0, 0}, point[3] = {2.4, 0, 0};
+  orchard_world_point found{};
+  ASSERT_EQ(orchard_detector_cast_ray(world, origin, along, 100, nullptr, &found), 1);
+  EXPECT_EQ(found.body.index, a.index);
+  EXPECT_NEAR(found.distance, 1.5, 1e-12);
+  EXPECT_NEAR(found.point[0], -1, 1e-12);
+  EXPECT_EQ(orchard_detector_cast_ray(world, origin, along, 1, nullptr, &found), 0);
+  ASSERT_EQ(orchard_detector_nearest(world, point, 100, nullptr, &found), 1);
+  EXPECT_EQ(found.body.index, a.index);
+  EXPECT_NEAR(found.distance, 1.4, 1e-12);
+  const orchard_query_filter none = {0, 0};
+  EXPECT_EQ(orchard_detector_nearest(world, point, 100, &none, &found), 0);
+  orchard_body touching[2];
+  ASSERT_EQ(orchard_detector_touching_sphere(world, point, 1.61, nullptr, touching, 2), 2u);
+  EXPECT_EQ(touching[1].index, b.index);
+  EXPECT_EQ(orchard_detector_touching_sphere(world, point, 1.5, nullptr, nullptr, 0), 1u);
+  orchard_detector_free(world);
+}
+
 }  // namespace

@@ -40,7 +40,7 @@ class Crowd {
     }
   }
 
-  void disturb() {
+  void invalidate() {
     for (Actor& actor : actors_) {
       const double luck = draw_.uniform(0, 1);
       if (luck < 0.01) return_anew(actor);
@@ -140,7 +140,7 @@ TEST(Clearances, HideNoContactAndInventNone) {
   for (std::uint64_t seed = 0; seed < 6 * orchard::test::more(); ++seed) {
     Crowd crowd(orchard::test::first_seed() + seed);
     for (int step = 0; step < 100; ++step) {
-      if (step > 0) crowd.disturb();
+      if (step > 0) crowd.invalidate();
       const Crowd::Pairs found = crowd.touching(step, work);
       touches += found.size();
       ASSERT_EQ(found, crowd.touching_without_memory(step, without)) << "seed " << seed << ", step " << step;

@@ -6,8 +6,8 @@
 
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/flexible_tree.h"
+#include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/shape_query.h"
-#include "orchard/runtime/shape_trees.h"
 #include "support.h"
 #include "support/effort.h"
 

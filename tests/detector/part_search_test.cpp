@@ -17,7 +17,7 @@ using Touching = std::set<std::pair<std::size_t, std::size_t>>;
 constexpr double kStep = 0.01;
 
 // Sizes from crumbs to what holds all others, some in one place, and some that are nowhere in particular.
-detail::NearSphere drawn_sphere(Draw& draw) {
+detail::FloatSphere drawn_sphere(Draw& draw) {
   if (draw.uniform(0, 1) < 0.01) return {};
   const Vec3 at = draw.uniform(0, 10) * Vec3(draw.direction());
   const double radius = std::exp(draw.uniform(-6, draw.uniform(0, 1) < 0.1 ? 2 : 0));
@@ -27,7 +27,7 @@ detail::NearSphere drawn_sphere(Draw& draw) {
 }
 
 // How far apart, relative to the sum of the radii, in the squares that are compared.
-double excess(const detail::NearSphere& a, const detail::NearSphere& b) {
+double excess(const detail::FloatSphere& a, const detail::FloatSphere& b) {
   const double x = double{b.x} - a.x, y = double{b.y} - a.y, z = double{b.z} - a.z, reach = double{b.radius} + a.radius;
   return std::isinf(reach) ? -1 : (x * x + y * y + z * z) / (reach * reach) - 1;
 }
@@ -38,7 +38,7 @@ TEST(StaticSpheres, FindWhatAScanFindsWhateverHasChanged) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     Draw draw(seed);
     const auto bodies = static_cast<std::size_t>(std::exp(draw.uniform(0, seed % 10 == 0 ? 10 : 6)));
-    std::vector<std::vector<detail::NearSphere>> now(bodies);
+    std::vector<std::vector<detail::FloatSphere>> now(bodies);
     detail::StaticSpheres spheres;
     const auto put = [&](BodyIndex body) {
       now[body].clear();
@@ -48,7 +48,7 @@ TEST(StaticSpheres, FindWhatAScanFindsWhateverHasChanged) {
     for (BodyIndex body = 0; body < bodies; ++body) put(body);
     for (int round = 0; round < 20; ++round) {
       spheres.prepare();
-      const detail::NearSphere sphere = drawn_sphere(draw);
+      const detail::FloatSphere sphere = drawn_sphere(draw);
       std::vector<BodyIndex> touching;
       spheres.append_touching(sphere, touching);
       const std::set<BodyIndex> found(touching.begin(), touching.end());
@@ -80,7 +80,7 @@ TEST(StaticSpheres, ForgetWhereBodiesHaveBeen) {
   Draw draw(1);
   detail::StaticSpheres spheres;
   for (int k = 0; k < 100'000; ++k) {
-    const detail::NearSphere sphere = drawn_sphere(draw);
+    const detail::FloatSphere sphere = drawn_sphere(draw);
     spheres.put(static_cast<BodyIndex>(k % 100), {&sphere, 1});
   }
   EXPECT_LT(spheres.size(), 1000u);

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "orchard/runtime/executor.h"
+#include "orchard/runtime/execution.h"
 
 namespace orchard::runtime::test {
 

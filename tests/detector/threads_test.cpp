@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "orchard/runtime/batch.h"
+#include "orchard/runtime/collide.h"
 #include "scene_run.h"
 #include "support/effort.h"
 #include "thread_pool.h"

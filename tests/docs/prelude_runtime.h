@@ -4,17 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "orchard/runtime/batch.h"
 #include "orchard/runtime/broad_phase.h"
 #include "orchard/runtime/collide.h"
 #include "orchard/runtime/contacts.h"
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/distance.h"
-#include "orchard/runtime/mapped_tree.h"
-#include "orchard/runtime/ray_index.h"
+#include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/self_collision.h"
 #include "orchard/runtime/shape_query.h"
-#include "orchard/runtime/shape_trees.h"
 #include "orchard/runtime/time_of_impact.h"
 #include "orchard/runtime/tree_file.h"
 

@@ -9,7 +9,6 @@
 
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/narrow_phase.h"
-#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
 

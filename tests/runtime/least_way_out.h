@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bodies.h"
-#include "orchard/runtime/body_pair.h"
 #include "orchard/runtime/collide.h"
 
 // A judge of contacts: the least way out along each of many directions, by whole queries of yes and no, which are

@@ -6,7 +6,6 @@
 
 #include "bodies.h"
 #include "orchard/runtime/contacts.h"
-#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/time_of_impact.h"
 #include "support/effort.h"

@@ -18,7 +18,7 @@ struct WideBox {
   explicit WideBox(const NodeBox& b) noexcept
       : center(wide(b.center)),
         axes({wide(b.n), wide(b.m), wide(third_normal(b))}),
-        half({double{b.height}, double{b.width}, double{b.length}}),
+        half(double{b.height}, double{b.width}, double{b.length}),
         radius(double{b.radius}) {}
 
   WideBox(const NodeBox& b, const Pose& pose) noexcept : WideBox(b) {

@@ -328,6 +328,39 @@ TEST(CInterface, SignsDistancesByWhetherTheSurfacesMeet) {
   orchard_workspace_free(workspace);
 }
 
+TEST(CInterface, HasContactsBeforeBodiesTouchAndSignedDistancesOfPoints) {
+  const Tree cube(box({0, 0, 0}, {1, 1, 1}));
+  orchard_workspace* const workspace = orchard_workspace_new();
+  const orchard_pose still = orchard_identity();
+  orchard_pose apart = still;
+  apart.translation[0] = 1.25;
+  orchard_distance near{};
+  EXPECT_EQ(orchard_closer_with_points(workspace, cube.tree, &still, cube.tree, &apart, 0.5, &near), 1);
+  EXPECT_NEAR(near.on_b[0] - near.on_a[0], 0.25, 1e-9);
+  EXPECT_EQ(orchard_closer_with_points(workspace, cube.tree, &still, cube.tree, &apart, 0.2, &near), 0);
+  EXPECT_EQ(orchard_contacts(workspace, cube.tree, &still, cube.tree, &apart).count, 0u);
+  orchard_manifold m = orchard_contacts_within(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
+  EXPECT_EQ(m.answer, ORCHARD_NO);
+  ASSERT_EQ(m.count, 1u);
+  EXPECT_NEAR(m.depth, -0.25, 1e-9);
+  EXPECT_EQ(m.depths[0], m.depth);
+  EXPECT_NEAR(m.normal[0], 1, 1e-9);
+  apart.translation[0] = 0.75;
+  m = orchard_contacts_within(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
+  EXPECT_EQ(m.answer, ORCHARD_YES);
+  ASSERT_GT(m.count, 0u);
+  for (std::uint32_t i = 0; i < m.count; ++i) EXPECT_LE(m.depths[i], m.depth);
+  orchard_workspace_free(workspace);
+  const double inside[3] = {0.5, 0.5, 0.9};
+  double distance = 0, point[3], normal[3];
+  EXPECT_EQ(orchard_signed_nearest_point(cube.tree, &still, inside, 9, &distance, point, normal, nullptr), 1);
+  EXPECT_NEAR(distance, -0.1, 1e-6);
+  EXPECT_NEAR(point[2], 1, 1e-6);
+  EXPECT_NEAR(normal[2], 1, 1e-9);
+  const double far[3] = {50, 0, 0};
+  EXPECT_EQ(orchard_signed_nearest_point(cube.tree, &still, far, 9, nullptr, nullptr, nullptr, nullptr), 0);
+}
+
 TEST(CInterface, TellsWhichPartsOfARobotTouch) {
   const Tree link(box({-1, -0.1, -0.1}, {1, 0.1, 0.1}));
   const std::vector<const orchard_tree*> parts(4, link.tree);

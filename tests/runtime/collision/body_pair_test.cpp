@@ -1,4 +1,4 @@
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "allocation.h"
 #include "bodies.h"
 #include "improper_poses.h"
-#include "orchard/runtime/batch.h"
 #include "orchard/runtime/self_collision.h"
 #include "support/effort.h"
 

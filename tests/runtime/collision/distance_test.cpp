@@ -131,11 +131,11 @@ TEST(TriangleDistance, IsTheSameOnEveryMachine) {
     const auto coordinate = [&]() -> double {
       return seed % 2 == 0 ? static_cast<double>(draw.bits() % 4) : draw.uniform(-1, 1);
     };
-    const auto point = [&]() -> detail::Vec3 { return {coordinate(), coordinate(), coordinate()}; };
+    const auto point = [&]() -> Vec3 { return {coordinate(), coordinate(), coordinate()}; };
     detail::TrianglePoints a = {point(), point(), point()}, b = {point(), point(), point()};
     if (seed % 8 == 2) b[1] = b[0];
     if (seed % 16 == 2) b[2] = b[0];
-    const detail::Vec3 p = point(), q = seed % 8 == 4 ? p : point();
+    const Vec3 p = point(), q = seed % 8 == 4 ? p : point();
     std::array<detail::NearestPoints, 3> first{};
     bool any = false;
     on_every_machine([&] {

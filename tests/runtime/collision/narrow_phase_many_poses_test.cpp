@@ -13,7 +13,6 @@ namespace {
 
 using namespace orchard::runtime::test;
 using detail::TrianglePoints;
-using detail::Vec3;
 
 struct Box {
   Vec3 low, high;

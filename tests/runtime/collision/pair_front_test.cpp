@@ -13,7 +13,7 @@
 #include "collision/coherent_pair.h"
 #include "collision/kernels/front_block.h"
 #include "every_machine.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 #include "placement.h"
 #include "support/effort.h"
 

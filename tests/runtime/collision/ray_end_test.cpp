@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "every_machine.h"
-#include "orchard/runtime/ray_index.h"
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
+#include "orchard/runtime/shape_query.h"
 #include "support.h"
 #include "support/effort.h"
 

@@ -1,5 +1,5 @@
 // Rays by the tree and by a ray index: the same bits from both, and what integers say of lattices.
-#include "orchard/runtime/ray_index.h"
+#include "orchard/runtime/shape_query.h"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "orchard/runtime/contacts.h"
+#include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/pose.h"
 #include "orchard/runtime/shape_query.h"
-#include "orchard/runtime/shape_trees.h"
 #include "orchard/runtime/time_of_impact.h"
-#include "orchard/runtime/vec3.h"
 #include "support.h"
 #include "support/effort.h"
 

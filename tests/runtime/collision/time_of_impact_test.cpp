@@ -8,7 +8,7 @@
 #include "allocation.h"
 #include "bodies.h"
 #include "improper_poses.h"
-#include "orchard/runtime/shape_trees.h"
+#include "orchard/runtime/packed_tree.h"
 #include "support/effort.h"
 
 namespace orchard::runtime {

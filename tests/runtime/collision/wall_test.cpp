@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "collision/kernels/node_box.h"  // private
-#include "orchard/runtime/body_pair.h"
-#include "orchard/runtime/shape_trees.h"
+#include "orchard/runtime/collide.h"
+#include "orchard/runtime/packed_tree.h"
 #include "support.h"
 #include "support/effort.h"
 

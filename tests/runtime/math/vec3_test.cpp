@@ -1,10 +1,9 @@
 // As a program of its own sees it: in no namespace of orchard's, without any using.
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
 
 #include <gtest/gtest.h>
 
 #include "orchard/runtime/motion.h"
-#include "orchard/runtime/pose.h"
 
 namespace user {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchard/runtime/shape_trees.h"
+#include "orchard/runtime/packed_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "bodies.h"
 #include "improper_poses.h"
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 #include "orchard/runtime/shape_query.h"
 
 namespace orchard::runtime {

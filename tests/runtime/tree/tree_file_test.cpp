@@ -7,7 +7,6 @@
 #include <fstream>
 #include <string>
 
-#include "orchard/runtime/mapped_tree.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "tree_file_support.h"
 

@@ -8,9 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "orchard/runtime/budget.h"
-#include "orchard/runtime/executor.h"
-#include "orchard/runtime/promise.h"
+#include "orchard/runtime/execution.h"
+#include "orchard/runtime/motion.h"
 
 namespace orchard::runtime {
 

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "orchard/runtime/broad_phase.h"
-#include "orchard/runtime/ray.h"
+#include "orchard/runtime/pose.h"
 
 // Questions about the bounding spheres of a broad phase's bodies: rays, segments, what touches a sphere or a box, the
 // nearest ones.

@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdint>
 
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 // Where two bodies touch and how they come apart: for a response to a contact.
 namespace orchard::runtime {
@@ -12,11 +12,15 @@ inline constexpr std::uint32_t kMaxContactPoints = 4;
 struct ContactPoint {
   std::array<double, 3> place{};  // common to both surfaces, in world coordinates
   std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;
+  // How far b has to move along the normal until these two triangles are surely apart: at most Manifold::depth.
+  // Negative: they are apart by so much (ContactOptions::margin).
+  double depth = 0;
 };
 
 struct Manifold {
   Answer answer = Answer::maybe;
-  std::uint32_t count = 0;  // of points: 0 for "no"; the outermost ones of all that were found, seen along the normal
+  std::uint32_t count =
+      0;  // of points: 0 for "no" without a margin; the outermost ones of all that were found, seen along the normal
   std::array<ContactPoint, kMaxContactPoints> points{};
   // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, rounding included, and moved
   // less than that by more than `error` it does. The direction is a local minimum of depth(direction), the best of
@@ -36,6 +40,10 @@ struct ContactOptions {
   // Directions tried at most from each direction that is begun with; 0: only the first normal's depth.
   std::uint32_t refinements = 12;
   bool depth = true;  // false: points and a first normal only, at a fraction of the cost
+  // Surfaces that do not meet, and are at most so far apart, have one point before they touch: the middle between the
+  // two nearest points, with the direction from a to b, and minus their distance as its depth and the manifold's. The
+  // answer is "no" all the same. World units; costs a distance query.
+  double margin = 0;
 };
 
 // All pairs of triangles that meet give the curves in which the surfaces cut each other; the points are on these. The

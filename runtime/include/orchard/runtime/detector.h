@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "orchard/runtime/broad_phase.h"
+#include "orchard/runtime/broad_queries.h"
 #include "orchard/runtime/contacts.h"
-#include "orchard/runtime/executor.h"
+#include "orchard/runtime/execution.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/tree_file.h"
 
@@ -209,6 +209,15 @@ struct StepLoad {
   double work = 0;            // expected, in units of Budget::work
 };
 
+// What a question about all bodies of a world has found.
+struct WorldPoint {
+  BodyId body;
+  std::uint32_t part = 0;
+  double distance = 0;  // from the point asked about, 0 inside a solid; along a ray, in lengths of its direction
+  Vec3 point{};         // of the body; of a ray that begins inside a solid, its origin
+  std::uint32_t triangle = kNoTriangle;  // of trees
+};
+
 // Which bodies touch, at every step, within a budget, always with a bound.
 //
 // At each step every pair of bodies whose spheres overlap, that the filters allow, is answered from
@@ -314,6 +323,20 @@ class Detector {
   // Without points, and "maybe", if the event's bodies are gone or its answer is not yes. For a contact between two
   // steps it tells of this step, at which it may be over: "no". Allocates nothing once warm; throws nothing.
   Manifold manifold(const PairEvent& event, const ContactOptions& options = {}) noexcept;
+
+  // All bodies, half-spaces included, as of the time of the last step (before the first one: of `start`). Trees are
+  // their surfaces, simple shapes are solid. The first question after a step or a change costs O(n log n) for n parts,
+  // and the source gives the states, for that time, of the bodies that the step has not asked for; the next ones cost
+  // O(log n) parts, and what each asks about. Answers are correct to rounding in double; bodies whose states are not
+  // valid are not found. Nothing is found if a number is not finite (a ray may be infinitely long), a direction 0, or a
+  // radius negative, nor from within a source or filter. Throws std::bad_alloc only, and changes nothing.
+  // The first point of any body that the ray meets; of equal ones that of the smallest index.
+  std::optional<WorldPoint> cast_ray(const Ray& ray, const QueryFilter& filter = {});
+  // The point of any body that is nearest, if it is no farther than `limit`.
+  std::optional<WorldPoint> nearest(const Vec3& point, double limit = std::numeric_limits<double>::infinity(),
+                                    const QueryFilter& filter = {});
+  // The bodies that a solid sphere touches, in ascending order of indices. Until the next question.
+  std::span<const BodyId> touching_sphere(const Vec3& center, double radius, const QueryFilter& filter = {});
 
   // What the steps after the last one will cost, as far as the broad phase knows now: loads[i] is that of the i-th step
   // after it. At most 254 are filled; returns how many.

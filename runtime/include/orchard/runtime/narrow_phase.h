@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "orchard/runtime/budget.h"
+#include "orchard/runtime/execution.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
-#include "orchard/runtime/prepared_tree.h"
 
 namespace orchard::runtime {
 

@@ -1,6 +1,6 @@
 /* The run-time for programs in C and for languages that call C. A thin cover of the C++ headers beside it, which say
- * more: tree_file.h, narrow_phase.h, collide.h, distance.h, shape_query.h, body_pair.h, contacts.h, time_of_impact.h,
- * shape_trees.h, batch.h, self_collision.h. Many bodies: orchard_broad_phase.h, orchard_detector.h.
+ * more: tree_file.h, narrow_phase.h, collide.h, distance.h, shape_query.h, contacts.h, time_of_impact.h, packed_tree.h,
+ * self_collision.h. Many bodies: orchard_broad_phase.h, orchard_detector.h.
  *
  * Link orchard::runtime and the C++ standard library. No function throws or exits. Pointers must not be null unless it
  * says so. Trees are only read by queries: any number of pairs in any number of threads may share one; a pair belongs
@@ -122,6 +122,9 @@ int orchard_index_rays(orchard_tree* tree);
 /* The point of the surface nearest to `center`, if it is within `limit`: 1, 0, or -1 as above. Null: not wanted. */
 int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3], double limit,
                           double* distance, double point[3], uint32_t* triangle);
+/* The same with a sign, negative inside the solid, and the direction in which the distance grows. */
+int orchard_signed_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3],
+                                 double limit, double* distance, double point[3], double normal[3], uint32_t* triangle);
 /* Whether a convex solid, its inside included, touches the surface: a box around its pose's origin of half the edges'
  * lengths `half`; or corners, three numbers each, and triangles outward around it, three corners each. */
 int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, const double half[3],
@@ -149,6 +152,11 @@ void orchard_workspace_free(orchard_workspace* workspace); /* null is fine */
 int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
                         const orchard_tree* b, const orchard_pose* pose_b, double margin);
 
+/* The same with witnesses, for 1: a point of each surface, at most `margin` apart. */
+int orchard_closer_with_points(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
+                               const orchard_tree* b, const orchard_pose* pose_b, double margin,
+                               orchard_distance* distance);
+
 typedef struct orchard_manifold {
   orchard_answer answer;
   uint32_t count; /* of points */
@@ -158,9 +166,15 @@ typedef struct orchard_manifold {
   double depth;             /* b moved so far along it touches a no more */
   double error;             /* maybe: the radius of a ball around the only point, which is a guess */
   int complete;
+  double depths[4]; /* of each point: how far b moves along the normal until its two triangles are apart */
 } orchard_manifold;
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
                                   const orchard_tree* b, const orchard_pose* pose_b);
+/* The same, and surfaces at most `margin` apart have a point before they touch: the answer is "no" then, and the depth
+ * minus the distance. */
+orchard_manifold orchard_contacts_within(orchard_workspace* workspace, const orchard_tree* a,
+                                         const orchard_pose* pose_a, const orchard_tree* b, const orchard_pose* pose_b,
+                                         double margin);
 
 typedef struct orchard_signed_distance {
   double lower, upper; /* lower <= distance <= upper; negative where the surfaces meet: minus the manifold's depth */

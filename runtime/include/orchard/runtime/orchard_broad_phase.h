@@ -49,7 +49,7 @@ typedef void (*orchard_motion_source)(void* context, double time, const uint32_t
 typedef int (*orchard_pair_filter)(void* context, orchard_body a, orchard_body b);
 
 /* A promise, given at promise_time, that what was given at `time` does not keep: by how much each bound is exceeded,
- * two lengths, two speeds, a length; 0: it holds. See promise.h. */
+ * two lengths, two speeds, a length; 0: it holds. See motion.h. */
 typedef struct orchard_broken_promise {
   orchard_body body;
   double promise_time, time;

@@ -151,6 +151,20 @@ orchard_pair_event orchard_detector_event(const orchard_detector* detector, size
 /* Where the two touch, at up to four points, and how they come apart: see Detector::manifold. Without points, and
  * "maybe", if the event's answer is not yes or its bodies are gone. */
 orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t index);
+/* All bodies as of the last step: see Detector::cast_ray. 1, or 0 where there is none. Null filter: all bodies. */
+typedef struct orchard_world_point {
+  orchard_body body;
+  uint32_t part, triangle;
+  double distance; /* along a ray: in lengths of its direction */
+  double point[3];
+} orchard_world_point;
+int orchard_detector_cast_ray(orchard_detector* detector, const double origin[3], const double direction[3],
+                              double longest, const orchard_query_filter* filter, orchard_world_point* found);
+int orchard_detector_nearest(orchard_detector* detector, const double point[3], double limit,
+                             const orchard_query_filter* filter, orchard_world_point* found);
+/* How many bodies a solid sphere touches; the first `room` of them, in ascending order of indices, are written. */
+size_t orchard_detector_touching_sphere(orchard_detector* detector, const double center[3], double radius,
+                                        const orchard_query_filter* filter, orchard_body* bodies, size_t room);
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index);
 uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index);
 uint64_t orchard_detector_promises_broken(const orchard_detector* detector);

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -181,5 +182,39 @@ const char* structure_fault(const TreeView& tree) noexcept;
 // Upper bound on |centre| + radius over the nodes and on |vertex|, relative to the origin: the rounding of a query is a
 // multiple of it. O(nodes + vertices).
 double coordinate_extent(const TreeView& tree) noexcept;
+
+// What every query needs to know of a tree and would otherwise work out anew: made once per tree and shared by all
+// pairs that the tree is part of, in any number of threads. O(nodes + triangles), some 0.1 ms for 1000 triangles;
+// allocates nothing and throws nothing. Precondition: structure_fault(tree) is nullptr, and what the view refers to
+// outlives this object unchanged.
+struct PreparedTree {
+  PreparedTree() = default;
+  explicit PreparedTree(const TreeView& view) noexcept;
+
+  TreeView tree;
+  std::array<double, 3> root{}, middle{};   // the root's centre, with and without the tree's origin
+  double radius = 0, reach = 0, depth = 0;  // the root's; `reach` is its error
+  double error = 0;                         // how far a point may be off, whatever the pose
+  double extent = 0;                        // coordinate_extent()
+  int bits = 0;                             // link_bits() of the tree
+  std::uint64_t fingerprint = 0;            // of everything stored: equal for copies of one tree
+};
+
+// Trees of simple shapes, so that every query between trees answers about them, too: contacts, distances, times of
+// impact. All of them throw std::bad_alloc only. A sphere, a capsule or a box with rounded edges is a point, a segment
+// or a box asked about with a margin (closer_than(), ImpactOptions::margin).
+// Queries are about surfaces: for a body that may lie wholly inside a box or hull ask touches_box(), touches_hull().
+
+PackedSphereTree point_tree(const std::array<double, 3>& point);
+PackedSphereTree segment_tree(const std::array<double, 3>& p, const std::array<double, 3>& q);
+// Centred at the origin; half the edges' lengths, positive.
+PackedSphereTree box_tree(const std::array<double, 3>& half);
+// Of triangles as they are, the spheres' bounds unknown: for a few dozen triangles. For meshes there is `orchard
+// build`.
+PackedSphereTree triangles_tree(std::span<const std::array<double, 3>> vertices,
+                                std::span<const std::array<std::uint32_t, 3>> triangles);
+// The convex hull of points, with triangles outward; corners are points of those given. Nothing if they lie in a plane,
+// or are not finite. Exact predicates decide; O(n h) for h facets.
+std::optional<PackedSphereTree> hull_tree(std::span<const std::array<double, 3>> points);
 
 }  // namespace orchard::runtime

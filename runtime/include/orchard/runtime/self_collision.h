@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 // Does a robot touch itself, or what stands around it? Numbered parts, a tree each; pairs that may touch are not asked
 // about.

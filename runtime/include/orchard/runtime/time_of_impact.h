@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "orchard/runtime/body_pair.h"
+#include "orchard/runtime/collide.h"
 
 // When two moving bodies touch first: certified, so that nothing tunnels however thin or fast it is.
 namespace orchard::runtime {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "every_machine.h"
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
 #include "support.h"
 
 namespace orchard::runtime::detail {

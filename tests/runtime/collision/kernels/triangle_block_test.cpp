@@ -7,7 +7,7 @@
 #include "collision/kernels/ball_slab_block.h"
 #include "collision/support_map.h"
 #include "every_machine.h"
-#include "orchard/runtime/vec3.h"
+#include "orchard/runtime/pose.h"
 #include "placement.h"
 #include "support.h"
 #include "support/effort.h"

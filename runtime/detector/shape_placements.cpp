@@ -1,11 +1,11 @@
-#include "detector/pair_tests.h"
+#include "detector/shape_placements.h"
 
 #include "collision/pair_query.h"
 
 namespace orchard::runtime::detail {
 
-void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
-                      PlacedPart& placed_part) const noexcept {
+void ShapePlacements::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
+                               PlacedPart& placed_part) const noexcept {
   placed_part.shape = &(*shapes_)[shape];
   placed_part.there = &pose;
   if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
@@ -13,15 +13,15 @@ void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPla
   placed_part.be_in({transform(pose, part.center), part.reach * pose.scale});
 }
 
-void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+void ShapePlacements::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
   if (!is_half_space(body)) {
     const Body& of = (*bodies_)[body];
-    const Whereabouts& where = bodies_->whereabouts(body);
+    const BoundingSphere& where = bodies_->sphere_cache(body).sphere;
     if (of.one && of.at_origin && where.reach < std::numeric_limits<double>::infinity()) {
       placed_part.shape = &(*shapes_)[of.shape];
       placed_part.there = &bodies_->state(body).pose;
       placed_part.rigid = true;
-      placed_part.be_in({where.middle, where.reach});
+      placed_part.be_in(where);
       return;
     }
     const PartRecord& record = of.parts[part];
@@ -30,7 +30,7 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
   placed_part.shape = nullptr;
 }
 
-void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+void ShapePlacements::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) {
     placed_part.shape = nullptr;
     return;
@@ -42,7 +42,8 @@ void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed
   placed_part.be_in(sphere(body, part));
 }
 
-void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {
+void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
+                                   PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) {
     placed_part.shape = nullptr;
     return;
@@ -70,7 +71,7 @@ bool spheres_part(const PartPair& pair) noexcept {
   return !(dot(way, way) < reach * reach) && sphere_gap(pair).least > 0;
 }
 
-double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedSphere& sphere) const noexcept {
+double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept {
   const Body& of = (*bodies_)[body];
   const PartRecord& record = of.parts[part];
   if (!of.valid) return 0;
@@ -94,8 +95,8 @@ double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedSphere
   return std::isfinite(gap) ? gap : 0;
 }
 
-double Places::bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b, const PlacedSphere& a,
-                          const PlacedSphere& b) const noexcept {
+double ShapePlacements::bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b,
+                                   const BoundingSphere& a, const BoundingSphere& b) const noexcept {
   const double gap = bounds_gap(pair.a, part_a, b);
   return gap > 0 ? gap : bounds_gap(pair.b, part_b, a);
 }

@@ -1,4 +1,4 @@
-#include "detector/pair_records.h"
+#include "detector/pair_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -18,10 +18,10 @@ struct ModelPair {
 };
 
 // Pairs come, go, are replaced or kept, as a map would have it; what is remembered of each stays with it.
-TEST(RecordTable, RemembersOfEachPairWhatAMapWould) {
+TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
   for (std::uint64_t seed = 0; seed < 100 * orchard::test::more(); ++seed) {
     test::Draw draw(orchard::test::first_seed() + seed);
-    RecordTable table;
+    PairCache table;
     std::map<BodyPair, ModelPair> model;
     std::map<BodyIndex, std::uint32_t> generations;
     const auto generation_of = [&](const BodyPair& pair) { return generations[pair.a] + generations[pair.b]; };
@@ -60,8 +60,8 @@ TEST(RecordTable, RemembersOfEachPairWhatAMapWould) {
       const std::vector<BodyPair> pairs(now.begin(), now.end());
       table.match(
           pairs, [&](const BodyPair& pair) { return replaced.contains(pair.a) || replaced.contains(pair.b); },
-          [&](const RecordTable::Known& known) { return known.generations == generation_of(known.pair); },
-          [&](const RecordTable::Known& known) {
+          [&](const PairCache::Known& known) { return known.generations == generation_of(known.pair); },
+          [&](const PairCache::Known& known) {
             gone.push_back(known.pair);
             EXPECT_EQ(known.clearance.changes, model[known.pair].mark);
             return lasts(known.pair);

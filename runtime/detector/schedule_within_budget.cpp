@@ -3,7 +3,7 @@
 
 #include "collision/coherent_pair.h"
 #include "collision/pair_query.h"
-#include "detector/rounds.h"
+#include "detector/schedule_pairs.h"
 
 // Within a budget: by class of importance, and there in the order of who has waited longest. At the same time
 // everybody's answer is begun with what costs next to nothing and tells most pairs: spheres, roots, what the last step
@@ -33,30 +33,31 @@ void sort_by(std::vector<std::uint32_t>& tasks, std::vector<std::uint32_t>& sort
 }  // namespace
 
 // A task for each two parts, with what their spheres say: so much is known of everybody whatever the budget.
-void Rounds::make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
+void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t> open, Step now) {
+  const ShapePlacements& places = answerer_.places();
   tasks_.clear();
   for (const std::uint32_t index : open) {
-    Record& record = records[index];
+    CachedPair& record = records[index];
     forget_answer(record);
-    const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
+    const std::uint32_t parts_a = places.parts(record.bodies.a), parts_b = places.parts(record.bodies.b);
     PartPair pair;
-    if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
+    if (is_half_space(record.bodies.b)) pair.half = places.half_space(record.bodies.b);
     for (std::uint32_t i = 0; i < parts_a; ++i) {
-      places_->place_sphere(record.pair.a, i, pair.a);
+      places.place_sphere(record.bodies.a, i, pair.a);
       for (std::uint32_t j = 0; j < parts_b; ++j) {
-        places_->place_sphere(record.pair.b, j, pair.b);
+        places.place_sphere(record.bodies.b, j, pair.b);
         Task& task = tasks_.emplace_back();
         task.record = index, task.part_a = i, task.part_b = j;
         task.simple = pair.simple();
         task.verdict = unasked(pair);
         task.done = task.verdict.answer == Answer::no;
-        task.slow = record.coherent && is_slow(record, pair, now);
+        task.slow = record.coherent && PairAnswerer::is_slow(record, pair, now);
       }
     }
   }
 }
 
-void Rounds::sort_tasks(const RecordTable& records) {
+void PairScheduler::sort_tasks(const PairCache& records) {
   schedule_.clear();
   for (std::uint32_t i = 0; i < tasks_.size(); ++i) {
     if (!tasks_[i].done) schedule_.push_back(i);
@@ -67,12 +68,12 @@ void Rounds::sort_tasks(const RecordTable& records) {
 }
 
 // What can be told without a search.
-void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) const noexcept {
+void PairScheduler::begin_one(Task& task, CachedPair& record, QueryPool::Scratch& scratch) const noexcept {
   PartPair pair;
   PairQuery& narrow = query_of(scratch.workspace.narrow);
   const double bound = task.verdict.separation_bound;
   if (task.simple) {
-    place(record, task.part_a, task.part_b, pair);
+    answerer_.place(record, task.part_a, task.part_b, pair);
     task.verdict = answer_exactly(narrow, pair, task.work);
     task.done = true;
     return;
@@ -84,7 +85,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     --record.roots_wait;
     return;
   }
-  place(record, task.part_a, task.part_b, pair);
+  answerer_.place(record, task.part_a, task.part_b, pair);
   Verdict known;
   if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), known)) {
     task.verdict = solid_verdict(known, pair);
@@ -100,15 +101,16 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
   task.verdict.work = task.work;
 }
 
-void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::Scratch& scratch) const noexcept {
+void PairScheduler::decide(Task& task, CachedPair& record, std::uint64_t most,
+                           QueryPool::Scratch& scratch) const noexcept {
   PartPair pair;
-  place(record, task.part_a, task.part_b, pair);
+  answerer_.place(record, task.part_a, task.part_b, pair);
   const double bound = task.verdict.separation_bound;
   PairQuery& narrow = query_of(scratch.workspace.narrow);
   Verdict verdict;
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
-    if (verdict.answer != Answer::yes) note_search(task.record, record, verdict.work, scratch);
+    if (verdict.answer != Answer::yes) PairAnswerer::note_search(task.record, record, verdict.work, scratch);
   } else {
     narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
@@ -122,8 +124,9 @@ void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::S
 
 // piece(task, record, scratch) for each; budget.may_begin() says where the clock ends it.
 template <typename Piece>
-void Rounds::once_each(std::span<const std::uint32_t> tasks, StepBudget& budget, RecordTable& records, Piece&& piece) {
-  const bool alone = executor_->run == nullptr;
+void PairScheduler::once_each(std::span<const std::uint32_t> tasks, StepBudget& budget, PairCache& records,
+                              Piece&& piece) {
+  const bool alone = world_.options.executor.run == nullptr;
   in_parallel(tasks.size(), [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
     for (std::size_t i = begin; i < end; ++i) {
       Task& task = tasks_[tasks[i]];
@@ -141,7 +144,7 @@ void Rounds::once_each(std::span<const std::uint32_t> tasks, StepBudget& budget,
 
 // A turn for each of schedule_[begin, end), and meanwhile the beginning of all. What is done at once has its overshoot
 // set aside, so that the budget holds.
-void Rounds::decide_class(std::size_t begin, std::size_t end, StepBudget& budget, RecordTable& records) {
+void PairScheduler::decide_class(std::size_t begin, std::size_t end, StepBudget& budget, PairCache& records) {
   // What has been told meanwhile, of the task or of its bodies.
   const auto settled = [&](std::uint32_t task) {
     return tasks_[task].done || records[tasks_[task].record].verdict.answer == Answer::yes;
@@ -157,7 +160,7 @@ void Rounds::decide_class(std::size_t begin, std::size_t end, StepBudget& budget
         if (!settled(schedule_[begun_])) order_.push_back(schedule_[begun_]);
       }
       once_each(order_, budget, records,
-                [&](Task& task, Record& record, QueryPool::Scratch& scratch) { begin_one(task, record, scratch); });
+                [&](Task& task, CachedPair& record, QueryPool::Scratch& scratch) { begin_one(task, record, scratch); });
       lead_ += static_cast<std::int64_t>(budget.spent() - before);
       continue;
     }
@@ -167,24 +170,25 @@ void Rounds::decide_class(std::size_t begin, std::size_t end, StepBudget& budget
       if (!settled(schedule_[begin])) order_.push_back(schedule_[begin]);
     }
     const std::uint64_t most = std::min(left, kFirstSlice);
-    once_each(order_, budget, records,
-              [&](Task& task, Record& record, QueryPool::Scratch& scratch) { decide(task, record, most, scratch); });
+    once_each(order_, budget, records, [&](Task& task, CachedPair& record, QueryPool::Scratch& scratch) {
+      decide(task, record, most, scratch);
+    });
     lead_ -= kBeginsShare * static_cast<std::int64_t>(budget.spent() - before);
   }
 }
 
 // What is still open of a class.
-void Rounds::order_open(std::size_t begin, std::size_t end, const RecordTable& records) {
+void PairScheduler::order_open(std::size_t begin, std::size_t end, const PairCache& records) {
   order_.clear();
   for (std::size_t i = begin; i < end; ++i) {
     Task& task = tasks_[schedule_[i]];
     if (task.done || task.simple || records[task.record].verdict.answer == Answer::yes) continue;
-    if (task.query == nullptr && (task.query = queries_->take(max_unfinished_)) == nullptr) continue;
+    if (task.query == nullptr && (task.query = queries_.take(world_.options.max_unfinished)) == nullptr) continue;
     order_.push_back(schedule_[i]);
   }
 }
 
-void Rounds::refine_class(std::size_t begin, std::size_t end, StepBudget& budget, RecordTable& records) {
+void PairScheduler::refine_class(std::size_t begin, std::size_t end, StepBudget& budget, PairCache& records) {
   std::uint64_t slice = 4 * kFirstSlice;
   while (budget.may_refine()) {
     order_open(begin, end, records);
@@ -194,10 +198,10 @@ void Rounds::refine_class(std::size_t begin, std::size_t end, StepBudget& budget
   }
 }
 
-void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice,
-                        std::chrono::nanoseconds time) const noexcept {
+void PairScheduler::refine_one(Task& task, const CachedPair& record, std::uint64_t slice,
+                               std::chrono::nanoseconds time) const noexcept {
   PartPair pair;
-  place(record, task.part_a, task.part_b, pair);
+  answerer_.place(record, task.part_a, task.part_b, pair);
   PairQuery& query = *task.query;
   if (!task.started) {
     query.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
@@ -214,8 +218,8 @@ void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice,
 }
 
 // One piece for each of order_; what may run at once has its overshoot set aside, so that the budget holds.
-void Rounds::refine_once(std::uint64_t slice, StepBudget& budget, RecordTable& records) {
-  const bool alone = executor_->run == nullptr;
+void PairScheduler::refine_once(std::uint64_t slice, StepBudget& budget, PairCache& records) {
+  const bool alone = world_.options.executor.run == nullptr;
   for (std::size_t next = 0; next < order_.size();) {
     const std::uint64_t left = budget.left();
     if (left == 0 || !budget.may_refine()) return;
@@ -240,15 +244,15 @@ void Rounds::refine_once(std::uint64_t slice, StepBudget& budget, RecordTable& r
   }
 }
 
-void Rounds::fold(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
+void PairScheduler::fold(PairCache& records, std::span<const std::uint32_t> open, Step now) {
   for (const std::uint32_t index : open) forget_answer(records[index]);
-  for (const Task& task : tasks_) take_in(records[task.record], task.verdict, task.part_a, task.part_b);
+  for (const Task& task : tasks_) add(records[task.record], task.verdict, task.part_a, task.part_b);
   for (const std::uint32_t index : open) {
     if (records[index].verdict.answer != Answer::maybe) records[index].answered = now;
   }
 }
 
-void Rounds::begin_within(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
+void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open, Step now) {
   make_tasks(records, open, now);
   now_ = now;
   sort_tasks(records);
@@ -256,7 +260,7 @@ void Rounds::begin_within(RecordTable& records, std::span<const std::uint32_t> o
   lead_ = 0;
 }
 
-void Rounds::answer_within(RecordTable& records, StepBudget& budget) {
+void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
   const auto importance = [&](std::size_t i) { return records[tasks_[schedule_[i]].record].importance; };
   for (std::size_t begin = 0; begin < schedule_.size();) {
     std::size_t end = begin;
@@ -265,7 +269,7 @@ void Rounds::answer_within(RecordTable& records, StepBudget& budget) {
     refine_class(begin, end, budget, records);
     begin = end;
   }
-  queries_->give_back_all();
+  queries_.give_back_all();
 }
 
 }  // namespace orchard::runtime::detail

@@ -8,12 +8,12 @@
 namespace orchard::runtime::detail {
 
 // What is asked at one step about two parts, or a part and a half-space.
-struct PlacedPart : PlacedSphere {
+struct PlacedPart : BoundingSphere {
   const Shape* shape = nullptr;  // null: a half-space
   bool rigid = true;
 
-  PlacedPart() noexcept : PlacedSphere({}, 0) {}
-  void be_in(const PlacedSphere& sphere) noexcept { static_cast<PlacedSphere&>(*this) = sphere; }
+  PlacedPart() noexcept : BoundingSphere({}, 0) {}
+  void be_in(const BoundingSphere& sphere) noexcept { static_cast<BoundingSphere&>(*this) = sphere; }
   const Pose& pose() const noexcept { return there != nullptr ? *there : *own; }
   void move_to(const Pose& pose) noexcept { there = nullptr, own = pose; }
   const Pose* there = nullptr;  // most are where their body is: that is not copied
@@ -27,9 +27,9 @@ struct PartPair {
 };
 
 // Where bodies, parts and half-spaces are at the step under way.
-class Places {
+class ShapePlacements {
  public:
-  Places(const ShapeTable& shapes, const BodyTable& bodies, const HalfSpaces& halves) noexcept
+  ShapePlacements(const ShapeTable& shapes, const BodyTable& bodies, const HalfSpaces& halves) noexcept
       : shapes_(&shapes), bodies_(&bodies), halves_(&halves) {}
 
   const Body& body(BodyIndex index) const noexcept {
@@ -43,7 +43,7 @@ class Places {
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // All but the pose: enough for spheres, and a third of the time.
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
-  PlacedSphere sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
+  BoundingSphere sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
     const Body& of = (*bodies_)[body];
     if (!of.one) return of.part_spheres[part];
     const Pose& pose = of.state.pose;
@@ -51,8 +51,8 @@ class Places {
   }
   // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
   // sphere: long shapes fill little of theirs. Else at most 0.
-  double bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b, const PlacedSphere& a,
-                    const PlacedSphere& b) const noexcept;
+  double bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b, const BoundingSphere& a,
+                    const BoundingSphere& b) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
   ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
@@ -63,7 +63,7 @@ class Places {
   const BodyTable& bodies() const noexcept { return *bodies_; }
 
  private:
-  double bounds_gap(BodyIndex body, std::uint32_t part, const PlacedSphere& sphere) const noexcept;
+  double bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept;
   void place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part, PlacedPart& placed) const noexcept;
   const ShapeTable* shapes_;
   const BodyTable* bodies_;
@@ -81,10 +81,10 @@ inline SphereGap sphere_gap(double apart, double reach, double size) noexcept {
   // Each solid is somewhere in its sphere.
   return {std::isfinite(least) ? least : 0, most >= 0 ? most : std::numeric_limits<double>::infinity()};
 }
-inline SphereGap sphere_gap(const PlacedSphere& a, const PlacedSphere& b) noexcept {
+inline SphereGap sphere_gap(const BoundingSphere& a, const BoundingSphere& b) noexcept {
   return sphere_gap(length(b.center - a.center), a.reach + b.reach, a.size + b.size);
 }
-inline SphereGap sphere_gap(const PlacedSphere& a, const HalfSpace& half) noexcept {
+inline SphereGap sphere_gap(const BoundingSphere& a, const HalfSpace& half) noexcept {
   return sphere_gap(dot(half.normal, a.center) - half.offset, a.reach, a.size + std::fabs(half.offset));
 }
 inline SphereGap sphere_gap(const PartPair& pair) noexcept {

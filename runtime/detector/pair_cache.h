@@ -5,23 +5,22 @@
 #include <new>
 #include <type_traits>
 
-#include "detector/pair_tests.h"
-#include "orchard/runtime/body_pair.h"
+#include "detector/shape_placements.h"
+#include "orchard/runtime/collide.h"
 
 namespace orchard::runtime::detail {
 
 inline constexpr std::uint32_t kNoFront = 0xffffffffu;
 
-// What is remembered of a pair that its spheres have not told apart at some step, while it is one, or until its touch
-// has ended.
-// First what is asked of it wherever it comes up.
-struct Record {
-  BodyPair pair{};
+// What is remembered of a pair that could not be skipped at some step, while it is one, or until its touch has ended.
+// First what every loop over pairs reads.
+struct CachedPair {
+  BodyPair bodies{};
   BodyId a, b;
   std::uint32_t filters_a = 0, filters_b = 0, filter_version = 0;  // of when it was allowed, or not
   std::uint32_t jumps = 0;                                         // teleports of both, so far
   std::uint32_t deformed = 0;                                      // and changes of their shapes
-  std::uint32_t nos = 0;                                           // certain ones in a row, while touching
+  std::uint32_t separated_steps = 0;                               // certain ones in a row, while touching
   std::uint32_t waited = 0;                                        // steps without a certain answer
   bool allowed = false;
   bool touching = false;
@@ -38,18 +37,18 @@ struct Record {
   Step answered = -1;              // the step of `verdict`, if that is certain
   std::uint32_t part_a = 0, part_b = 0;
   Verdict verdict;
-  runtime::Vec3 apart_by{};  // from centre to centre,
-  Step apart_at = -1;        // at that step
-  runtime::Vec3 along{};     // of the answer of the step under way, if that is "no": Clearance::along
+  Vec3 apart_by{};     // from centre to centre,
+  Step apart_at = -1;  // at that step
+  Vec3 along{};        // of the answer of the step under way, if that is "no": Clearance::along
   double impact_from = 0, impact_to = 0;
   TreePair trees;
 };
 
 // How two bodies are to each other at some step: their middles are this way from each other, but for `slack`, and they
-// have turned so far; see Whereabouts.
-struct Standing {
+// have turned so far; see BoundingSphereCache.
+struct RelativePlacement {
   double slack = 0;
-  runtime::Vec3 way{};
+  Vec3 way{};
   double turned = 0;
   std::uint32_t changes = 0;
 };
@@ -71,7 +70,7 @@ struct Clearance {
 inline constexpr std::uint32_t kNoRecord = 0x7fffffffu;
 
 // The pairs of the step before, in ascending order, what is known of each, and the records of some.
-class RecordTable {
+class PairCache {
  public:
   struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this, if that
     BodyPair pair;
@@ -96,12 +95,12 @@ class RecordTable {
   }
   ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
-  Record& operator[](std::uint32_t record) noexcept { return *place_of(record); }
-  const Record& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
+  CachedPair& operator[](std::uint32_t record) noexcept { return *place_of(record); }
+  const CachedPair& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
   // A record for known(place), to be begun by begin(), in any thread.
   void take(std::size_t place);
   bool is_begun(const Known& known) const noexcept { return known.begun != 0; }
-  Record& begin(Known& known) noexcept;
+  CachedPair& begin(Known& known) noexcept;
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
@@ -128,12 +127,12 @@ class RecordTable {
 
   // In pieces, so that they stay where they are, and whose memory nobody touches before begin().
   static constexpr std::size_t kPiece = 256;
-  static_assert(std::is_trivially_destructible_v<Record> && alignof(Record) <= alignof(std::max_align_t));
+  static_assert(std::is_trivially_destructible_v<CachedPair> && alignof(CachedPair) <= alignof(std::max_align_t));
   struct Piece {
-    alignas(Record) std::array<std::byte, sizeof(Record)> memory[kPiece];
+    alignas(CachedPair) std::array<std::byte, sizeof(CachedPair)> memory[kPiece];
   };
-  Record* place_of(std::uint32_t record) const noexcept {
-    return std::launder(reinterpret_cast<Record*>(pieces_[record / kPiece]->memory[record % kPiece].data()));
+  CachedPair* place_of(std::uint32_t record) const noexcept {
+    return std::launder(reinterpret_cast<CachedPair*>(pieces_[record / kPiece]->memory[record % kPiece].data()));
   }
   std::vector<std::unique_ptr<Piece>> pieces_;
   std::uint32_t record_count_ = 0;  // in use, or free
@@ -149,7 +148,7 @@ class RecordTable {
 };
 
 // What partings_[i] and some after it need.
-ORCHARD_INLINE void RecordTable::prefetch_parting(std::size_t i) const noexcept {
+ORCHARD_INLINE void PairCache::prefetch_parting(std::size_t i) const noexcept {
   constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
   if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
   if (i + kRecord >= partings_.size()) return;
@@ -158,8 +157,8 @@ ORCHARD_INLINE void RecordTable::prefetch_parting(std::size_t i) const noexcept 
 }
 
 template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
-void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                        Generations&& generations, Load&& load) {
+void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
+                      Generations&& generations, Load&& load) {
   constexpr std::size_t kFreshAhead = 8;
   compare(pairs);
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();

@@ -1,10 +1,10 @@
-#include "detector/pair_records.h"
+#include "detector/pair_cache.h"
 
 #include <cstring>
 
 namespace orchard::runtime::detail {
 
-void RecordTable::take(std::size_t place) {
+void PairCache::take(std::size_t place) {
   std::uint32_t record = record_count_;
   if (free_.empty()) {
     if (record / kPiece == pieces_.size()) {
@@ -20,13 +20,13 @@ void RecordTable::take(std::size_t place) {
   known(place).begun = 0;
 }
 
-Record& RecordTable::begin(Known& known) noexcept {
+CachedPair& PairCache::begin(Known& known) noexcept {
   known.begun = 1;
-  return *::new (pieces_[known.record / kPiece]->memory[known.record % kPiece].data()) Record;
+  return *::new (pieces_[known.record / kPiece]->memory[known.record % kPiece].data()) CachedPair;
 }
 
 // Of how many pairs the two begin alike: most of them do, from one step to the next.
-std::size_t RecordTable::common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept {
+std::size_t PairCache::common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept {
   constexpr std::size_t kAtOnce = 8;
   const std::size_t count = std::min(a.size(), b.size());
   std::size_t i = 0;
@@ -44,7 +44,7 @@ std::size_t RecordTable::common(std::span<const BodyPair> a, std::span<const Bod
 }
 
 // Before anything is done about it: then it is known what will be needed from memory.
-void RecordTable::compare(std::span<const BodyPair> pairs) {
+void PairCache::compare(std::span<const BodyPair> pairs) {
   changes_.clear(), partings_.clear();
   std::size_t old = 0, now = 0;
   while (now < pairs.size() || old < pairs_.size()) {
@@ -60,14 +60,14 @@ void RecordTable::compare(std::span<const BodyPair> pairs) {
   }
 }
 
-void RecordTable::keep(std::size_t from, std::size_t count) {
+void PairCache::keep(std::size_t from, std::size_t count) {
   const auto some = [&](const auto& of) { return std::span(of).subspan(from, count); };
   const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
   append_some(next_pairs_, some(pairs_));
   append_some(next_slots_, some(slots_));
 }
 
-void RecordTable::add(const BodyPair& pair, std::uint32_t generations) {
+void PairCache::add(const BodyPair& pair, std::uint32_t generations) {
   std::uint32_t slot = static_cast<std::uint32_t>(known_.size());
   if (free_slots_.empty()) {
     known_.emplace_back();
@@ -85,7 +85,7 @@ void RecordTable::add(const BodyPair& pair, std::uint32_t generations) {
   next_slots_.push_back(slot);
 }
 
-void RecordTable::leave(std::size_t place) noexcept {
+void PairCache::leave(std::size_t place) noexcept {
   const std::uint32_t slot = slots_[place] & kSlot;
   if (known_[slot].record != kNoRecord) free_.push_back(known_[slot].record);
   free_slots_.push_back(slot);

@@ -1,4 +1,4 @@
-#include "detector/rounds.h"
+#include "detector/answer_pairs.h"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ constexpr double kSlow = 0.02;  // of the smaller body's size, per step
 
 }  // namespace
 
-void forget_answer(Record& record) noexcept {
+void forget_answer(CachedPair& record) noexcept {
   record.verdict = Verdict{};
   record.verdict.answer = Answer::no;
   record.verdict.separation_bound = record.verdict.lower_bound = std::numeric_limits<double>::infinity();
@@ -21,7 +21,7 @@ void forget_answer(Record& record) noexcept {
   record.impact = false;
 }
 
-void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept {
+void add(CachedPair& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept {
   const double upper = std::min(record.verdict.separation_bound, verdict.separation_bound);
   const double lower = std::min(record.verdict.lower_bound, verdict.lower_bound);
   const std::uint64_t work = record.verdict.work + verdict.work;
@@ -49,8 +49,8 @@ struct PartsApart {
   }
 };
 
-// As take_in() of what unasked() would say of them.
-void take_in_apart(Record& record, const PartsApart& apart) noexcept {
+// As add() of what unasked() would say of them.
+void add_apart(CachedPair& record, const PartsApart& apart) noexcept {
   Verdict& verdict = record.verdict;
   if (verdict.answer == Answer::no && apart.gap.most < verdict.separation_bound) {
     const double lower = verdict.lower_bound;
@@ -67,14 +67,15 @@ void take_in_apart(Record& record, const PartsApart& apart) noexcept {
 
 }  // namespace
 
-void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept {
-  places_->place(record.pair.a, part_a, pair.a);
-  places_->place(record.pair.b, part_b, pair.b);
-  if (pair.b.shape == nullptr) pair.half = places_->half_space(record.pair.b);
+void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b,
+                         PartPair& pair) const noexcept {
+  places_->place(record.bodies.a, part_a, pair.a);
+  places_->place(record.bodies.b, part_b, pair.b);
+  if (pair.b.shape == nullptr) pair.half = places_->half_space(record.bodies.b);
 }
 
 // Unless they pass each other so fast that looking for what lasts would not pay.
-bool Rounds::is_slow(Record& record, const PartPair& pair, Step now) noexcept {
+bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept {
   const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart_by;
   const bool first = record.apart_at < 0;
   const double slow =
@@ -85,8 +86,8 @@ bool Rounds::is_slow(Record& record, const PartPair& pair, Step now) noexcept {
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
-void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
-                               QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_coherently(std::uint32_t index, CachedPair& record, Step now,
+                                     QueryPool::Scratch& scratch) const noexcept {
   record.part_a = record.part_b = 0;
   record.impact = false;
   Verdict& verdict = record.verdict;
@@ -113,7 +114,7 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
 }
 
 // Two bodies of one part each, at least one of them a simple shape.
-void Rounds::answer_two_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   Verdict& verdict = record.verdict;
   PartPair pair;
   place(record, 0, 0, pair);
@@ -131,9 +132,10 @@ void Rounds::answer_two_parts(Record& record, Step now, QueryPool::Scratch& scra
   verdict.work = scratch.work - before;
 }
 
-void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer(std::uint32_t index, CachedPair& record, Step now,
+                          QueryPool::Scratch& scratch) const noexcept {
   if (record.coherent) return answer_coherently(index, record, now, scratch);
-  if (places_->parts(record.pair.a) == 1 && places_->parts(record.pair.b) == 1) {
+  if (places_->parts(record.bodies.a) == 1 && places_->parts(record.bodies.b) == 1) {
     return answer_two_parts(record, now, scratch);
   }
   answer_parts(record, now, scratch);
@@ -141,8 +143,8 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
 
 // Two parts that touched at the step before, where a triangle `guess` may have been nearest. Where others of these
 // shapes have met is no more than a guess.
-Verdict Rounds::answer_again(Record& record, std::uint32_t guess, const PartPair& pair,
-                             QueryPool::Scratch& scratch) noexcept {
+Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
+                                   QueryPool::Scratch& scratch) noexcept {
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
                      &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
   if (!known) return answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess);
@@ -157,7 +159,7 @@ Verdict Rounds::answer_again(Record& record, std::uint32_t guess, const PartPair
 }
 
 // Of two parts of bodies, what is new.
-Verdict Rounds::answer_anew(Record& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept {
+Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept {
   const Verdict verdict = answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work);
   record.met = verdict.answer == Answer::yes && !pair.simple();
   if (!record.met) return verdict;
@@ -168,16 +170,16 @@ Verdict Rounds::answer_anew(Record& record, const PartPair& pair, QueryPool::Scr
 
 // Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
 // know how they are turned. Whether all answers are certain.
-bool Rounds::answer_others(Record& record, const PartIndices& but, PartPair& pair,
-                           QueryPool::Scratch& scratch) const noexcept {
-  const BodyPair& bodies = record.pair;
+bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
+                                 QueryPool::Scratch& scratch) const noexcept {
+  const BodyPair& bodies = record.bodies;
   const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
   const bool half = is_half_space(bodies.b);
   bool certain = true, placed_b = false;
   PartsApart apart;
-  PlacedSphere b = half || parts_b > 1 ? PlacedSphere{} : places_->sphere(bodies.b, 0);
+  BoundingSphere b = half || parts_b > 1 ? BoundingSphere{} : places_->sphere(bodies.b, 0);
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
-    const PlacedSphere a = places_->sphere(bodies.a, i);
+    const BoundingSphere a = places_->sphere(bodies.a, i);
     bool placed_a = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
       if (i == but.a && j == but.b) continue;
@@ -192,21 +194,21 @@ bool Rounds::answer_others(Record& record, const PartIndices& but, PartPair& pai
       if (!placed_a) places_->place(bodies.a, i, pair.a);
       if (!placed_b) places_->place(bodies.b, j, pair.b);
       placed_a = true, placed_b = parts_b == 1;
-      const Verdict verdict = answer_anew(record, pair, scratch);
-      take_in(record, verdict, i, j);
+      const Verdict verdict = answer_new(record, pair, scratch);
+      add(record, verdict, i, j);
       certain = certain && verdict.answer != Answer::maybe;
     }
   }
   if (record.verdict.answer != Answer::yes && apart.gap.least < std::numeric_limits<double>::infinity())
-    take_in_apart(record, apart);
+    add_apart(record, apart);
   return certain;
 }
 
 // Bodies of several parts: those that touched mostly still do, and then nobody else is asked.
-void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;
-  if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
+  if (is_half_space(record.bodies.b)) pair.half = places_->half_space(record.bodies.b);
   PartIndices touched;
   std::uint32_t guess = kNoTriangle;
   if (record.verdict.answer == Answer::yes) {
@@ -219,7 +221,7 @@ void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch)
   if (touched.a != kNoPart) {
     ++scratch.work;
     const Verdict verdict = answer_again(record, guess, pair, scratch);
-    take_in(record, verdict, touched.a, touched.b);
+    add(record, verdict, touched.a, touched.b);
     certain = verdict.answer != Answer::maybe;
   }
   certain = answer_others(record, touched, pair, scratch) && certain && record.verdict.answer != Answer::maybe;
@@ -227,33 +229,54 @@ void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch)
   record.verdict.work = scratch.work - before;
 }
 
-std::uint64_t Rounds::answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
-  const std::size_t among = jobs(open.size());
-  const std::uint64_t work = answer_by(among, [&](std::size_t job, QueryPool::Scratch& scratch) {
-    const std::size_t end = open.size() * (job + 1) / among;
-    for (std::size_t i = open.size() * job / among; i < end; ++i) {  // what a pair needs is all over memory
-      constexpr std::size_t kRecord = 6, kBodies = 4;                // pairs ahead
-      if (i + kRecord < end) prefetch_all(records[open[i + kRecord]]);
-      if (i + kBodies < end) places_->prefetch_bodies(records[open[i + kBodies]].pair);
-      answer(open[i], records[open[i]], now, scratch);
-    }
-  });
-  give_fronts(records, now);
-  return work;
-}
-
-void Rounds::note_search(std::uint32_t index, Record& record, std::uint64_t work,
-                         QueryPool::Scratch& scratch) noexcept {
+void PairAnswerer::note_search(std::uint32_t index, CachedPair& record, std::uint64_t work,
+                               QueryPool::Scratch& scratch) noexcept {
   if (scratch.wanting.capacity() == 0 || !FrontPool::wants(record, work)) return;
   if (scratch.wanting.size() < scratch.wanting.capacity()) scratch.wanting.push_back(index);
 }
 
-// Jobs take the pairs in their order, and what a job leaves out for want of room would not get a front anyway.
-void Rounds::give_fronts(RecordTable& records, Step now) {
-  for (std::size_t job = 0; job < queries_->jobs(); ++job) {
-    auto& wanting = queries_->scratch(job).wanting;
-    fronts_->give(records, wanting, now);
-    wanting.clear();
+void leave_open(CachedPair& record) noexcept {
+  if (record.verdict.answer == Answer::yes) return;
+  record.verdict.answer = Answer::maybe;
+  record.answered = -1;
+}
+
+void PairAnswerer::sweep(CachedPair& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept {
+  PartPair from, to;
+  const bool half = is_half_space(record.bodies.b);
+  if (half) from.half = to.half = places_->half_space(record.bodies.b);
+  Swept first;
+  first.from = first.to = 2;
+  double earliest = 2;
+  for (std::uint32_t i = 0; i < places_->parts(record.bodies.a); ++i) {
+    places_->place_before(record.bodies.a, i, now, from.a);
+    places_->place(record.bodies.a, i, to.a);
+    for (std::uint32_t j = 0; j < places_->parts(record.bodies.b); ++j) {
+      places_->place_before(record.bodies.b, j, now, from.b);
+      places_->place(record.bodies.b, j, to.b);
+      Swept swept;
+      if (scratch.work < most) {
+        swept = detail::sweep(scratch.workspace, from, to, most, scratch.work);
+      } else {
+        swept.answer = Answer::maybe;  // nobody has looked
+      }
+      if (swept.answer == Answer::no) continue;
+      earliest = std::min(earliest, swept.from);
+      const bool better = swept.answer != first.answer ? swept.answer > first.answer : swept.from < first.from;
+      if (!better) continue;
+      first = swept;
+      record.part_a = i, record.part_b = j;
+    }
+  }
+  if (first.answer == Answer::no) return;
+  record.impact = true;
+  record.impact_from = earliest;
+  record.impact_to = first.answer == Answer::yes ? first.to : std::numeric_limits<double>::quiet_NaN();
+  if (record.verdict.answer == Answer::yes) return;
+  if (first.answer == Answer::yes) {
+    record.verdict = first.verdict;
+  } else {
+    leave_open(record);
   }
 }
 

@@ -1,0 +1,50 @@
+#pragma once
+#include "detector/front_pool.h"
+#include "detector/query_pool.h"
+#include "detector/sweep.h"
+
+namespace orchard::runtime::detail {
+
+// What is known of a pair before anything is asked: no parts of it are near. What two of its parts add to that. And
+// where what happened between two steps is not known: "maybe", unless it touches at this one.
+void forget_answer(CachedPair& record) noexcept;
+void add(CachedPair& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept;
+void leave_open(CachedPair& record) noexcept;
+
+// Answers one pair of bodies from the poses of a step. Any number of threads may call it at once, each with its own
+// scratch, for different pairs.
+class PairAnswerer {
+ public:
+  explicit PairAnswerer(const ShapePlacements& places) noexcept : places_(&places) {}
+
+  // Every pair of its parts to the end. `index`: of the pair in its cache.
+  void answer(std::uint32_t index, CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  // What happened between the step before and this one, until scratch.work has reached `most`.
+  void sweep(CachedPair& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
+
+  void place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
+  // Whether the two move so slowly that what the last step found may be of use. Once a step.
+  static bool is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept;
+  // A search has cost so much: what is expensive each time is to have a front.
+  static void note_search(std::uint32_t index, CachedPair& record, std::uint64_t work,
+                          QueryPool::Scratch& scratch) noexcept;
+  const ShapePlacements& places() const noexcept { return *places_; }
+
+ private:
+  static Verdict answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
+                              QueryPool::Scratch& scratch) noexcept;
+  static Verdict answer_new(CachedPair& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept;
+  void answer_coherently(std::uint32_t index, CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  void answer_two_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  static constexpr std::uint32_t kNoPart = 0xffffffffu;
+  struct PartIndices {
+    std::uint32_t a = kNoPart, b = kNoPart;
+  };
+  bool answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
+                     QueryPool::Scratch& scratch) const noexcept;
+  void answer_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+
+  const ShapePlacements* places_;
+};
+
+}  // namespace orchard::runtime::detail

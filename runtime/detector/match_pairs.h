@@ -1,0 +1,80 @@
+#pragma once
+#include "detector/load_model.h"
+#include "detector/search_by_parts.h"
+#include "detector/step_pairs.h"
+
+namespace orchard::runtime::detail {
+
+// Match: which pairs of bodies a step asks about, and what is remembered of each from the step before.
+class PairMatcher {
+ public:
+  PairMatcher(World& world, StateSampler& sampler, PartPairs& part_pairs) noexcept
+      : world_(world), sampler_(sampler), part_pairs_(part_pairs) {}
+
+  // Whether no step has pairs before the broad phase, or a half-space, finds some.
+  bool idle() const noexcept { return cache_.empty() && !part_pairs_.any(); }
+  void expect(double meetings) noexcept { seen_.meetings = meetings; }  // as the timing wheel has announced them
+  // The pairs of the step, in ascending order: the broad phase's, those with half-spaces, those found by parts, and
+  // those of the step before that an interrupted broad phase may have left out. Samples the states of their bodies.
+  void gather(Step step, const Advance& now);
+  // Matches them with those of the step before. Calls goes_on(pair) for each held pair that is none any more; true
+  // keeps it.
+  template <typename GoesOn>
+  void match(GoesOn&& goes_on);
+  std::size_t pair_count() const noexcept { return pairs_.all().size(); }
+  const LoadModel::Pairs& seen() const noexcept { return seen_; }
+
+  PairCache& cache() noexcept { return cache_; }
+  const PairCache& cache() const noexcept { return cache_; }
+  // What is remembered of a pair that has to be asked about, from the first time on.
+  CachedPair& cached(PairCache::Known& known);
+  // By the filters of both bodies and of the application, which is asked again only after something has changed.
+  bool allowed(CachedPair& pair) const;
+  bool is_there(const CachedPair& pair) const noexcept { return world_.contains(pair.a) && world_.contains(pair.b); }
+  bool has_jumped(const CachedPair& pair) const noexcept {
+    return pair.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
+  }
+  std::size_t memory_bytes() const noexcept {
+    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_) + bytes_of(left_out_) +
+           bytes_of(due_motions_);
+  }
+
+ private:
+  void gather_half_spaces(Step step);
+  void gather_left_out(Step step, const Advance& now);
+  std::uint32_t generations(const BodyPair& pair) const noexcept {
+    const std::uint32_t first = world_.bodies.sphere_cache(pair.a).generation;
+    return is_half_space(pair.b) ? first : first + world_.bodies.sphere_cache(pair.b).generation;
+  }
+
+  World& world_;
+  StateSampler& sampler_;
+  PartPairs& part_pairs_;
+  PairCache cache_;
+  StepPairs pairs_;
+  LoadModel::Pairs seen_;
+  std::vector<BodyIndex> due_, left_out_;
+  std::vector<Motion> due_motions_;
+};
+
+template <typename GoesOn>
+void PairMatcher::match(GoesOn&& goes_on) {
+  seen_.known = cache_.size(), seen_.fresh = 0;
+  BodyTable& bodies = world_.bodies;
+  const bool any = bodies.any_invalidated();
+  const auto doubted = [&](const BodyPair& pair) {
+    return any && (bodies.invalidated(pair.a) || (!is_half_space(pair.b) && bodies.invalidated(pair.b)));
+  };
+  const auto same = [&](const PairCache::Known& known) { return known.generations == generations(known.pair); };
+  const auto gone = [&](const PairCache::Known& known) { return goes_on(cache_[known.record]); };
+  const auto fresh = [&](const BodyPair& pair) {
+    ++seen_.fresh;
+    return generations(pair);
+  };
+  const auto load = [&](const BodyPair& pair) ORCHARD_INLINE_LAMBDA { bodies.prefetch_sphere_cache(pair.b); };
+  cache_.match(pairs_.all(), doubted, same, gone, fresh, load);
+  seen_.parted = seen_.known + seen_.fresh + cache_.kept().size() - cache_.size();
+  bodies.forget_invalidated();
+}
+
+}  // namespace orchard::runtime::detail

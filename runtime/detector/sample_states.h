@@ -1,0 +1,58 @@
+#pragma once
+#include "detector/world.h"
+#include "orchard/runtime/motion_monitor.h"
+
+namespace orchard::runtime::detail {
+
+// Sample: where bodies are at a step, and what the broad phase may rely on. Every question for a body's state goes
+// through sample().
+class StateSampler {
+ public:
+  StateSampler(World& world, BroadPhase& broad);
+
+  void begin_call() noexcept { refused_.clear(), broken_.clear(); }
+  // Makes the states of these bodies those of the step; a body may come up twice.
+  void sample(Step step, std::span<const BodyIndex> bodies) { sample(step, world_.clock.time(step), bodies); }
+  // Where most bodies were in pairs at the step before: all of them at once, so that the broad phase's jobs may run at
+  // once, until it has ended.
+  void sample_all(Step step);
+  bool sampled_all() const noexcept { return sampled_all_; }
+  void broad_phase_ended() noexcept { sampled_all_ = false; }
+  // The bodies of these pairs, in ascending order; refuses those whose states are not valid.
+  void sample_pairs(Step step, std::span<const BodyPair> pairs);
+  // What is relied on of a body whose state has been sampled: what its state says, or what the monitor makes of it.
+  Motion promise_of(BodyIndex body, double time) const;
+  // The broad phase asks for the motions of bodies.
+  void answer_broad_phase(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
+
+  bool watches() const noexcept { return watches_; }
+  // Before the broad phase relies on anything at this step: compares every body's state with what was promised.
+  void watch(Step step);
+  void cancel(Body& body);  // its promise holds no longer
+  void refuse(std::span<const BodyIndex> bodies) { append_all(refused_, bodies); }
+  MotionMonitor& monitor() noexcept { return monitor_; }
+  const MotionMonitor& monitor() const noexcept { return monitor_; }
+  std::span<const BodyIndex> refused();  // since begin_call(), in ascending order
+  std::span<const BodyIndex> broken() const noexcept { return broken_; }
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  static void append_all(std::vector<BodyIndex>& to, std::span<const BodyIndex> bodies) {
+    to.insert(to.end(), bodies.begin(), bodies.end());
+  }
+  void sample(Step step, double time, std::span<const BodyIndex> bodies);
+  bool keeps_promise(BodyIndex index, Step step);
+  bool keeps_more(const Body& body, Step step, const Motion& motion) const noexcept;
+
+  World& world_;
+  BroadPhase& broad_;
+  MotionMonitor monitor_;
+  bool watches_;
+  bool sampled_all_ = false;  // every state is that of the step that the broad phase is at
+  Step all_sampled_at_ = kNotAsked, paired_at_ = kNotAsked;
+  std::vector<BodyIndex> everyone_, refused_, broken_;
+  std::vector<BodyIndex> paired_;        // of sample_pairs(), at the step paired_at_
+  std::vector<std::uint8_t> is_paired_;  // by body, while `paired_` is made
+};
+
+}  // namespace orchard::runtime::detail

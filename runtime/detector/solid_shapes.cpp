@@ -1,0 +1,104 @@
+#include "detector/solid_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Vec3 into(const Pose& pose, const Vec3& v) noexcept {  // a vector in the shape's coordinates
+  const auto& r = pose.rotation;
+  const double shrink = 1 / pose.scale;
+  return {shrink * (r[0] * v[0] + r[3] * v[1] + r[6] * v[2]), shrink * (r[1] * v[0] + r[4] * v[1] + r[7] * v[2]),
+          shrink * (r[2] * v[0] + r[5] * v[1] + r[8] * v[2])};
+}
+
+Vec3 point_into(const Pose& pose, const Vec3& p) noexcept { return into(pose, p - Vec3(pose.translation)); }
+
+// When a ray enters a box around the origin; infinite: it does not.
+double enters_box(const Vec3& half, const Vec3& origin, const Vec3& way) noexcept {
+  double from = 0, to = kInfinity;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (way[i] == 0) {
+      if (std::fabs(origin[i]) > half[i]) return kInfinity;
+      continue;
+    }
+    const double p = (-half[i] - origin[i]) / way[i], q = (half[i] - origin[i]) / way[i];
+    from = std::max(from, std::min(p, q)), to = std::min(to, std::max(p, q));
+  }
+  return from <= to ? from : kInfinity;
+}
+
+// The smaller root of a t^2 + 2 b t + c, if it is not below 0; else infinite.
+double first_root(double a, double b, double c) noexcept {
+  const double h = b * b - a * c;
+  if (!(a > 0) || !(h >= 0)) return kInfinity;
+  const double t = (-b - std::sqrt(h)) / a;
+  return t >= 0 ? t : kInfinity;
+}
+
+// When a ray comes within `radius` of the segment from p to q.
+double enters_capsule(const Vec3& p, const Vec3& q, double radius, const Vec3& origin, const Vec3& way) noexcept {
+  const Vec3 from = origin - nearest_of_segment(p, q, origin);
+  if (dot(from, from) <= radius * radius) return 0;
+  const double square = dot(way, way);
+  double first = kInfinity;
+  for (const Vec3& end : {p, q}) {
+    const Vec3 m = origin - end;
+    first = std::min(first, first_root(square, dot(way, m), dot(m, m) - radius * radius));
+  }
+  const Vec3 axis = q - p, m = origin - p;
+  const double aa = dot(axis, axis), aw = dot(axis, way), am = dot(axis, m);
+  const double side =
+      first_root(aa * square - aw * aw, aa * dot(way, m) - am * aw, aa * dot(m, m) - am * am - radius * radius * aa);
+  const double foot = am + side * aw;
+  return foot >= 0 && foot <= aa ? std::min(first, side) : first;
+}
+
+}  // namespace
+
+std::optional<RayHit> cast_ray(const Shape& shape, const Pose& pose, const Ray& ray) noexcept {
+  if (shape.kind == ShapeKind::tree) return cast_ray(shape.tree, pose, ray.origin, ray.direction, ray.longest);
+  const Vec3 origin = point_into(pose, ray.origin), way = into(pose, ray.direction);
+  const double along = shape.kind == ShapeKind::box ? enters_box(shape.p, origin, way)
+                                                    : enters_capsule(shape.p, shape.q, shape.radius, origin, way);
+  if (!(along <= ray.longest) || along == kInfinity) return std::nullopt;
+  return RayHit{along, Vec3(ray.origin) + along * Vec3(ray.direction), kNoTriangle};
+}
+
+std::optional<RayHit> cast_ray(const HalfSpace& half, const Ray& ray) noexcept {
+  const double height = dot(half.normal, ray.origin) - half.offset, sinks = -dot(half.normal, ray.direction);
+  const double along = height <= 0 ? 0 : sinks > 0 ? height / sinks : kInfinity;
+  if (!(along <= ray.longest) || along == kInfinity) return std::nullopt;
+  return RayHit{along, Vec3(ray.origin) + along * Vec3(ray.direction), kNoTriangle};
+}
+
+SurfacePoint nearest_point(const Shape& shape, const Pose& pose, const Vec3& point, double limit) noexcept {
+  if (shape.kind == ShapeKind::tree) return nearest_point(shape.tree, pose, point, limit);
+  const Vec3 at = point_into(pose, point);
+  Vec3 near = at;
+  if (shape.kind == ShapeKind::box) {
+    for (std::size_t i = 0; i < 3; ++i) near[i] = std::clamp(at[i], -shape.p[i], shape.p[i]);
+  } else {
+    const Vec3 middle = nearest_of_segment(shape.p, shape.q, at), way = at - middle;
+    const double size = length(way);
+    if (size > shape.radius) near = middle + (shape.radius / size) * way;
+  }
+  SurfacePoint result;
+  result.distance = length(at - near) * pose.scale;
+  if (!(result.distance <= limit)) return {};
+  result.point = result.distance == 0 ? point : Vec3(transform(pose, near));
+  return result;
+}
+
+SurfacePoint nearest_point(const HalfSpace& half, const Vec3& point, double limit) noexcept {
+  SurfacePoint result;
+  result.distance = std::max(0.0, dot(half.normal, point) - half.offset);
+  if (!(result.distance <= limit)) return {};
+  result.point = point - result.distance * half.normal;
+  return result;
+}
+
+}  // namespace orchard::runtime::detail

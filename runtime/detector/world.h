@@ -1,0 +1,46 @@
+#pragma once
+#include <memory>
+
+#include "detector/kept_states.h"
+#include "detector/shape_placements.h"
+
+namespace orchard::runtime::detail {
+
+// What the application has said of its bodies, and up to which step it has been answered. The parts of a detector share
+// it: calls between two steps change it, and within a step only the sampler does, which asks where the bodies are.
+struct World {
+  World(StateSource source, const DetectorOptions& wanted);
+
+  bool contains(BodyId body) const noexcept {
+    return is_half_space(body.index) ? halves.contains(body) : bodies.contains(body);
+  }
+  double time_of_last_step() const noexcept { return clock.time(std::max<Step>(answered, 0)); }  // or of the first one
+  // It has rested up to the last step: where it was then is known.
+  void wake(Body& body) const noexcept {
+    if (body.frozen) body.asked = std::max(body.asked, answered);
+    body.frozen = false;
+  }
+  bool filters_exclude(const BodyPair& pair) const {  // two bodies of the broad phase
+    const Body &a = bodies[pair.a], &b = bodies[pair.b];
+    return !filters_allow(a, b) || (filter && !filter(a.id, b.id));
+  }
+
+  DetectorOptions options;
+  Clock clock;
+  ShapeTable shapes;
+  BodyTable bodies;
+  HalfSpaces halves;
+  ShapePlacements places{shapes, bodies, halves};
+  std::unique_ptr<KeptStates> kept_states;  // null: the application has them
+  PairFilter filter;
+  std::uint32_t filter_version = 0;
+  std::size_t body_count = 0;   // half-spaces included
+  std::uint64_t changes = 0;    // of bodies, shapes and states between steps
+  Step answered = -1;           // up to which steps have been answered
+  bool any_continuous = false;  // bodies, ever
+  bool any_static = false;      // bodies, ever
+  bool any_filters = false;     // any body, ever: a filter of its own
+  bool any_jumped = false;      // bodies, since the last step that was answered
+};
+
+}  // namespace orchard::runtime::detail
