@@ -343,6 +343,13 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
                   "surface and what the balls stand for, as measured at the end")
       ->check(ANumber(CLI::Range(1e-4, 100.0)))
       ->excludes(vertices);
+  command
+      .add_option(
+          "--balls", medial.few_kind,
+          "What these balls may be: medial (centres in the solid, radii as far as the surface is, to the error; "
+          "the volume is kept) or free, which may come nearer where they are too few")
+      ->check(CLI::IsMember({"medial", "free"}))
+      ->capture_default_str();
   command.add_flag("--curve", medial.curve, "Write how far off ever fewer balls are: MODEL-curve.csv and .svg");
   CLI::Option* envelope = command.add_option(
       "--envelope", medial.envelope,

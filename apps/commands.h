@@ -107,6 +107,7 @@ struct MedialCommand {
   Index quality_samples = 100'000;            // surface points of the judgement
   Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
   double few_error = 0;                   // percent of the diagonal that the simplified axis may be off; 0: not asked
+  std::string few_kind = "medial";        // what the balls of the simplified axis may be: medial or free
   bool curve = false;                     // simplify to ever fewer vertices, and write how far off each is
   std::filesystem::path envelope;         // .obj: the surface of what the axis stands for; empty: none
   double envelope_cell = 0.5;             // % of the diagonal

@@ -102,8 +102,10 @@ bool given(const MedialCommand& command, const char* option) {
 }
 
 SimplifyOptions few_balls_options(const MedialCommand& command) {
-  return {
-      .vertices = command.few_vertices, .error = command.few_error / 100, .seed = command.tuning.options.sampling.seed};
+  return {.vertices = command.few_vertices,
+          .error = command.few_error / 100,
+          .balls = command.few_kind == "free" ? SimplifiedBalls::free : SimplifiedBalls::medial,
+          .seed = command.tuning.options.sampling.seed};
 }
 
 std::vector<std::string> few_balls_names(const MedialCommand& command) {
@@ -121,10 +123,12 @@ std::vector<std::string> few_balls_names(const MedialCommand& command) {
 void check_few_balls(const MedialCommand& command, const Destination& destination,
                      const std::vector<std::filesystem::path>& inputs) {
   if (!command.sweep.empty()) {
-    for (const char* option : {"vertices", "error", "curve", "envelope"}) {
+    for (const char* option : {"vertices", "error", "balls", "curve", "envelope"}) {
       if (given(command, option)) throw InputError(fmt::format("--{} has no effect with --sweep", option));
     }
   }
+  if (given(command, "balls") && !simplifies(command) && !command.curve)
+    throw InputError("--balls has no effect without --vertices, --error or --curve");
   if (given(command, "error") && !(command.few_error > 0)) throw InputError("--error: expected a percentage above 0");
   if (!command.envelope.empty()) {
     if (command.envelope.extension() != ".obj")

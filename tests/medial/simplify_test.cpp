@@ -377,6 +377,42 @@ TEST(SimplifiedMedialMesh, IsWithinTheErrorAskedFor) {
   EXPECT_LT(fine.mesh.size(), axis.size() / 2);
 }
 
+TEST(SimplifiedMedialMesh, HasNoCenterOutsideAndTheRadiiOfTheAxis) {
+  const Surface surface(test::known_l_shape(8).solid);
+  const MedialMesh axis = built_axis(surface, 300);
+  const SimplifyOptions options{.vertices = 16, .samples = 1000, .check = 1000, .search = 20'000, .rounds = 1};
+  const SimplifiedMedialMesh result = simplify_medial_mesh(surface, axis, options);
+  const double error = result.report.hausdorff.max * surface.bounding_box().diagonal().norm();
+  for (Index v = 0; v < result.mesh.size(); ++v) {
+    const double depth = -surface.signed_distance(result.mesh.centers[v]);
+    EXPECT_GE(depth, 0) << v;
+    EXPECT_NEAR(result.mesh.radii[v], depth, 1.01 * error) << v;
+  }
+}
+
+TEST(SimplifiedMedialMesh, MedialBallsAreBroughtBackFromOutsideAndToTheirRadius) {
+  const Surface box(test::known_box({1, 2, 3}).solid);
+  const detail::Ball4 outside = detail::medial_ball(box, detail::ball4(Point(-0.25, 1, 1.5), 0.25), 0.1);
+  EXPECT_LT((outside.head<3>() - Point(0, 1, 1.5)).norm(), 1e-6);
+  EXPECT_TRUE(box.inside(outside.head<3>()));
+  EXPECT_NEAR(outside[3], 0.1, 1e-6);
+  const detail::Ball4 small = detail::medial_ball(box, detail::ball4(Point(0.5, 1, 1.5), 0.2), 0.1);
+  EXPECT_EQ(small.head<3>(), Point(0.5, 1, 1.5));
+  EXPECT_NEAR(small[3], 0.4, 1e-12);
+  const detail::Ball4 right = detail::medial_ball(box, detail::ball4(Point(0.5, 1, 1.5), 0.45), 0.1);
+  EXPECT_EQ(right[3], 0.45);
+}
+
+TEST(SimplifiedMedialMesh, IsNoFartherOffWithMoreBalls) {
+  const Surface surface(test::known_l_shape(8).solid);
+  const MedialMesh axis = built_axis(surface, 200);
+  const SimplifyOptions options{.samples = 500, .check = 500, .search = 20'000, .rounds = 1};
+  const std::vector<Index> counts{40, 30, 22, 16, 12};
+  const auto results = simplify_to_each(surface, axis, counts, options);
+  ASSERT_GE(results.size(), 3u);
+  for (std::size_t i = 1; i < results.size(); ++i) EXPECT_LE(results[i - 1].report.upper, results[i].report.upper) << i;
+}
+
 // The distance from the surface of the farthest of random places of the envelope's boundary.
 double max_attained(const Surface& surface, const MedialMesh& mesh, Random& random) {
   const detail::Reconstruction reconstruction(mesh);
