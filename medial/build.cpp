@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "orchard/geometry/error.h"
-#include "refine/open_places.h"
+#include "reach/open_places.h"
 #include "refine/refiner.h"
 
 namespace orchard {

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "ball_complex.h"
+#include "../balls/ball_complex.h"
 
 namespace orchard::detail {
 

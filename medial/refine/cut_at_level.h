@@ -1,5 +1,5 @@
 #pragma once
-#include "ball_complex.h"
+#include "../balls/ball_complex.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {

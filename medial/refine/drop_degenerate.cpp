@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "../extend/flat_triangle.h"
 #include "../simplify/contractible_mesh.h"
-#include "flat_triangle.h"
 
 namespace orchard::detail {
 namespace {

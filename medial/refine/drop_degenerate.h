@@ -1,5 +1,5 @@
 #pragma once
-#include "ball_complex.h"
+#include "../balls/ball_complex.h"
 
 namespace orchard::detail {
 

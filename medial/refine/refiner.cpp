@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "../axis_triangles.h"
+#include "../balls/axis_of_balls.h"
+#include "../extend/extend_sheets.h"
+#include "../reach/dents_below.h"
 #include "../remesh/remesh.h"
-#include "axis_of_balls.h"
 #include "cut_at_level.h"
-#include "dents_below.h"
 #include "drop_degenerate.h"
-#include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
 #include "orchard/medial/quality.h"

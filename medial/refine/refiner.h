@@ -3,14 +3,14 @@
 #include <span>
 #include <vector>
 
-#include "ball_complex.h"
-#include "borders.h"
+#include "../balls/ball_complex.h"
+#include "../balls/found_balls.h"
+#include "../extend/borders.h"
+#include "../reach/dents_below.h"
+#include "../reach/uncovered.h"
 #include "cover_guard.h"
-#include "dents_below.h"
-#include "found_balls.h"
 #include "orchard/medial/refine.h"
 #include "split.h"
-#include "uncovered.h"
 
 namespace orchard::detail {
 

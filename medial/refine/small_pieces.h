@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "ball_complex.h"
+#include "../balls/ball_complex.h"
 #include "cover_guard.h"
 
 namespace orchard::detail {

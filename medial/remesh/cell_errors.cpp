@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../refine/exact_ball.h"
+#include "../balls/exact_ball.h"
 
 namespace orchard::detail {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "../refine/ball_complex.h"
+#include "../balls/ball_complex.h"
 #include "feature_edges.h"
 #include "orchard/geometry/progress.h"
 

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "../refine/exact_ball.h"
-#include "../refine/sharp_edges.h"
-#include "../refine/sharp_ends.h"
+#include "../balls/exact_ball.h"
+#include "../extend/sharp_edges.h"
+#include "../extend/sharp_ends.h"
 #include "cell_errors.h"
 #include "cover_samples.h"
 #include "mesh_change.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "../refine/ball_complex.h"
+#include "../balls/ball_complex.h"
 
 namespace orchard::detail {
 

@@ -15,10 +15,10 @@
 #include "orchard/medial/topology.h"
 #include "outlines.h"
 #include "quality/reconstruction.h"
-#include "refine/dents_below.h"
+#include "reach/dents_below.h"
+#include "reach/uncovered.h"
 #include "refine/drop_degenerate.h"
 #include "refine/split.h"
-#include "refine/uncovered.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 

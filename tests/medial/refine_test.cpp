@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "balls/found_balls.h"
+#include "extend/free_extension.h"
 #include "hanging_pieces.h"
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
@@ -23,8 +25,6 @@
 #include "orchard/medial/topology.h"
 #include "outlines.h"
 #include "quality/reconstruction.h"
-#include "refine/found_balls.h"
-#include "refine/free_extension.h"
 #include "support/brute_distance.h"
 #include "support/effort.h"
 #include "support/shapes.h"

@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
+#include "../balls/exact_ball.h"
 #include "../remesh/feature_edges.h"
-#include "exact_ball.h"
 
 namespace orchard::detail {
 

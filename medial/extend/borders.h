@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
+#include "../balls/ball_complex.h"
 #include "../remesh/feature_edges.h"
-#include "ball_complex.h"
 
 namespace orchard::detail {
 

@@ -2,7 +2,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "ball_complex.h"
+#include "../balls/ball_complex.h"
 
 namespace orchard::detail {
 

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "../extend/extend_sheets.h"
+#include "../extend/flat_triangle.h"
+#include "../extend/growing_borders.h"
+#include "../extend/sharp_ends.h"
+#include "../extend/sheet_extension.h"
 #include "../quality/reconstruction.h"
-#include "extend_sheets.h"
-#include "flat_triangle.h"
-#include "growing_borders.h"
+#include "../refine/split.h"
 #include "point_grid.h"
-#include "sharp_ends.h"
-#include "sheet_extension.h"
-#include "split.h"
 
 namespace orchard::detail {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 #include <span>
 
+#include "../reach/uncovered.h"
+#include "../refine/split.h"
 #include "borders.h"
 #include "orchard/geometry/surface.h"
-#include "split.h"
-#include "uncovered.h"
 
 // What makes sheets go as far as they belong. All of it is free: it changes no topology.
 namespace orchard::detail {
