@@ -73,11 +73,11 @@ class Connector {
   // Tetrahedra with their largest free side, the first of equals, as long as one has any.
   void collapse() {
     std::vector<std::uint8_t> gone(tetrahedra_.size(), 0);
-    std::vector<Index> todo;
-    for (Index i = static_cast<Index>(tetrahedra_.size()); i-- > 0;) todo.push_back(i);
-    while (!todo.empty()) {
-      const Index i = todo.back();
-      todo.pop_back();
+    std::vector<Index> waiting;
+    for (Index i = static_cast<Index>(tetrahedra_.size()); i-- > 0;) waiting.push_back(i);
+    while (!waiting.empty()) {
+      const Index i = waiting.back();
+      waiting.pop_back();
       if (gone[i] != 0) continue;
       const Triangle* free = nullptr;
       const std::array<Triangle, 4> own = sides(tetrahedra_[i]);
@@ -89,7 +89,7 @@ class Connector {
       for (const Triangle& side : own) {
         auto& around = triangles_.at(side);
         around.erase(std::remove(around.begin(), around.end(), i), around.end());
-        todo.insert(todo.end(), around.begin(), around.end());
+        waiting.insert(waiting.end(), around.begin(), around.end());
       }
       triangles_.erase(*free);
     }

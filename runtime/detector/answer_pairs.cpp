@@ -258,7 +258,7 @@ void PairAnswerer::sweep(CachedPair& record, Step now, QueryPool::Scratch& scrat
       if (scratch.work < most) {
         swept = detail::sweep(scratch.workspace, from, to, most, scratch.work);
       } else {
-        swept.answer = Answer::maybe;  // nobody has looked
+        swept.answer = Answer::maybe;  // not looked at yet
       }
       if (swept.answer == Answer::no) continue;
       earliest = std::min(earliest, swept.from);

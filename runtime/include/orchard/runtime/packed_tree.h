@@ -183,10 +183,10 @@ const char* structure_fault(const TreeView& tree) noexcept;
 // multiple of it. O(nodes + vertices).
 double coordinate_extent(const TreeView& tree) noexcept;
 
-// What every query needs to know of a tree and would otherwise work out anew: made once per tree and shared by all
-// pairs that the tree is part of, in any number of threads. O(nodes + triangles), some 0.1 ms for 1000 triangles;
-// allocates nothing and throws nothing. Precondition: structure_fault(tree) is nullptr, and what the view refers to
-// outlives this object unchanged.
+// What every query needs to know of a tree and would otherwise have to work out again. It is made once per tree and
+// shared by all pairs that the tree is part of, in any number of threads. O(nodes + triangles), some 0.1 ms for 1000
+// triangles; allocates nothing and throws nothing. Precondition: structure_fault(tree) is nullptr, and what the view
+// refers to outlives this object unchanged.
 struct PreparedTree {
   PreparedTree() = default;
   explicit PreparedTree(const TreeView& view) noexcept;

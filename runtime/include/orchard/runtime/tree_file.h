@@ -43,8 +43,8 @@ inline constexpr std::size_t kViewAlignment = 32;
 LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept;
 
 // A tree used in place in a file that the system maps into memory (POSIX; elsewhere, and on big-endian machines, the
-// file is read instead). Pages are shared between processes. The file must stay as it is meanwhile: whoever cuts it
-// short makes the program receive SIGBUS at the next query, and whoever writes into it makes queries leave their
+// file is read instead). Pages are shared between processes. The file must stay as it is meanwhile: if another
+// program cuts it short, the next query receives SIGBUS, and if another program writes into it, queries leave their
 // arrays. Replace it by renaming another one over it, as orchard does; where others may write to it, use load_file(),
 // which copies it into memory.
 class MappedTree {
