@@ -1,7 +1,8 @@
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <utility>
 
+#include "../formats/graphml_text.h"
 #include "axis_complex.h"
 #include "orchard/medial/segments.h"
 
@@ -79,48 +80,20 @@ class Tracer {
   SkeletonGraph graph_;
 };
 
-std::string shortest(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
-void add_data(std::string& text, const char* key, const std::string& value) {
-  text += "<data key=\"" + std::string(key) + "\">" + value + "</data>";
-}
-
 }  // namespace
 
 SkeletonGraph skeleton_graph(const MedialAxis& axis) { return Tracer(axis).run(); }
 
 std::string to_graphml(const SkeletonGraph& graph, const MedialAxis& axis) {
-  std::string text =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n";
-  const auto declare = [&](const char* key, const char* of, const char* type) {
-    text += "  <key id=\"" + std::string(key) + "\" for=\"" + of + "\" attr.name=\"" + key + "\" attr.type=\"" + type +
-            "\"/>\n";
-  };
-  for (const char* key : {"x", "y", "z", "radius"}) declare(key, "node", "double");
-  for (const char* key : {"length", "mean_radius"}) declare(key, "edge", "double");
-  declare("kind", "edge", "string");
-  text += "  <graph id=\"skeleton\" edgedefault=\"undirected\">\n";
-  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    const Index vertex = graph.nodes[i];
-    text += "    <node id=\"n" + std::to_string(i) + "\">";
-    add_data(text, "x", shortest(axis.centers[vertex].x()));
-    add_data(text, "y", shortest(axis.centers[vertex].y()));
-    add_data(text, "z", shortest(axis.centers[vertex].z()));
-    add_data(text, "radius", shortest(axis.radii[vertex]));
-    text += "</node>\n";
-  }
-  constexpr const char* kNames[] = {"curve", "border", "junction"};
+  constexpr std::array kNumbers{"length", "mean_radius"};
+  constexpr std::array kNames{"curve", "border", "junction"};
+  detail::GraphmlText text("skeleton", kNumbers);
+  for (const Index vertex : graph.nodes) text.add_node(axis.centers[vertex], axis.radii[vertex]);
   for (const SkeletonGraph::Arc& arc : graph.arcs) {
-    text += "    <edge source=\"n" + std::to_string(arc.from) + "\" target=\"n" + std::to_string(arc.to) + "\">";
-    add_data(text, "length", shortest(arc.length));
-    add_data(text, "mean_radius", shortest(arc.mean_radius));
-    add_data(text, "kind", kNames[static_cast<int>(arc.kind)]);
-    text += "</edge>\n";
+    const std::array numbers{arc.length, arc.mean_radius};
+    text.add_edge(arc.from, arc.to, numbers, kNames[static_cast<std::size_t>(arc.kind)]);
   }
-  return text + "  </graph>\n</graphml>\n";
+  return text.finished();
 }
 
 }  // namespace orchard

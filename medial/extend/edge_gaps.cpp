@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "sharp_edges.h"
+#include "../features/sharp_edges.h"
 
 namespace orchard::detail {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../balls/ball_complex.h"
-#include "../remesh/feature_edges.h"
+#include "../features/feature_edges.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {

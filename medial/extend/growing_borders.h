@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "../reach/point_grid.h"
+#include "point_grid.h"
 #include "sheet_extension.h"
 
 namespace orchard::detail {

@@ -1,6 +1,6 @@
 #pragma once
+#include "../features/sharp_edges.h"
 #include "borders.h"
-#include "sharp_edges.h"
 
 // Where the sheets at a ball end on the surface: what the searches for edges and corners have in common.
 namespace orchard::detail {

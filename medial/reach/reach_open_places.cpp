@@ -1,3 +1,5 @@
+#include "reach_open_places.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,14 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "../extend/extend_sheets.h"
+#include "../balls/split.h"
 #include "../extend/flat_triangle.h"
 #include "../extend/growing_borders.h"
+#include "../extend/point_grid.h"
 #include "../extend/sharp_ends.h"
 #include "../extend/sheet_extension.h"
 #include "../quality/reconstruction.h"
-#include "../refine/split.h"
-#include "point_grid.h"
 
 namespace orchard::detail {
 namespace {

@@ -13,6 +13,7 @@
 #include "../balls/axis_of_balls.h"
 #include "../extend/extend_sheets.h"
 #include "../reach/dents_below.h"
+#include "../reach/reach_open_places.h"
 #include "../remesh/remesh.h"
 #include "cut_at_level.h"
 #include "drop_degenerate.h"

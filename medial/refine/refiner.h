@@ -5,12 +5,12 @@
 
 #include "../balls/ball_complex.h"
 #include "../balls/found_balls.h"
+#include "../balls/split.h"
 #include "../extend/borders.h"
 #include "../reach/dents_below.h"
 #include "../reach/uncovered.h"
 #include "cover_guard.h"
 #include "orchard/medial/refine.h"
-#include "split.h"
 
 namespace orchard::detail {
 

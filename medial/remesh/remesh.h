@@ -2,7 +2,7 @@
 #include <span>
 
 #include "../balls/ball_complex.h"
-#include "feature_edges.h"
+#include "../features/feature_edges.h"
 #include "orchard/geometry/progress.h"
 
 namespace orchard::detail {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "../balls/exact_ball.h"
-#include "../extend/sharp_edges.h"
 #include "../extend/sharp_ends.h"
+#include "../features/sharp_edges.h"
 #include "cell_errors.h"
 #include "cover_samples.h"
 #include "mesh_change.h"

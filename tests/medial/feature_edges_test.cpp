@@ -1,5 +1,5 @@
 // Which edges of a mesh sheets end on: by what the axis would lose, not by an angle.
-#include "remesh/feature_edges.h"
+#include "features/feature_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "balls/split.h"
 #include "known_axes.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/build.h"
@@ -18,7 +19,6 @@
 #include "reach/dents_below.h"
 #include "reach/uncovered.h"
 #include "refine/drop_degenerate.h"
-#include "refine/split.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 

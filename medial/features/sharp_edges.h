@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../balls/exact_ball.h"
-#include "../remesh/feature_edges.h"
+#include "feature_edges.h"
 
 namespace orchard::detail {
 

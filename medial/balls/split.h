@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "../balls/ball_complex.h"
+#include "ball_complex.h"
 #include "orchard/geometry/progress.h"
 
 namespace orchard::detail {
