@@ -126,11 +126,7 @@ Stage Descent::finished(Stage stage) const {
     failed = enough;
     if (enough) share /= 2;  // fewer may find their places where many were in each other's way
   }
-  if (options_.balls == SimplifiedBalls::medial) {
-    for (Index v = 0; v < stage.mesh.size(); ++v) {
-      if (stage.mesh.alive(v)) stage.mesh.set_ball(v, medial_ball(surface_, stage.mesh.ball(v), stage.feet.worst()));
-    }
-  }
+  if (options_.balls == SimplifiedBalls::medial) make_medial(surface_, stage.mesh, stage.feet.worst());
   return stage;
 }
 

@@ -46,14 +46,16 @@ class Fitter {
 
   void run() {
     const bool known = feet_.feet.size() == samples_.size();
-    if (known && medial_) make_medial();
+    if (known && medial_) {
+      make_medial(surface_, mesh_, feet_.max);
+      walker_.follow_mesh();
+    }
     if (known) feet_.walk(samples_, walker_);
     if (options_.search || !known) feet_.find_off(mesh_, samples_, kExact * feet_.max);
     negligible_ = kHardly * feet_.max;
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
-    volume_weight_ = 0;
     if (medial_) volume_weight_ = kVolumeWeight * total();
     double cost = total();
     double damping = kFirstDamping;
@@ -126,7 +128,7 @@ class Fitter {
         block.topLeftCorner<3, 3>() += bend * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
       }
       equations_.add(foot.corners, foot.weights, weight * block, weight * foot.value * row);
-      equations_.add_to_vector(foot.corners, foot.weights, samples_[i].area * volume_factor_ * row);
+      if (medial_) equations_.add_to_vector(foot.corners, foot.weights, samples_[i].area * volume_factor_ * row);
     }
     for (const Protrusion& protrusion : protrusions_) {
       const double weight = ball_weight() * weight_at(protrusion.value);
@@ -138,13 +140,6 @@ class Fitter {
     // As the other sums, over power / scale^2.
     if (volume_weight_ > 0)
       equations_.add_square(2 * volume_weight_ * scale_ * scale_ / options_.power, volume_error());
-  }
-
-  void make_medial() {
-    for (Index v = 0; v < mesh_.size(); ++v) {
-      if (mesh_.alive(v)) mesh_.set_ball(v, medial_ball(surface_, mesh_.ball(v), feet_.max));
-    }
-    walker_.follow_mesh();
   }
 
   // Radii stay at 0 that would fall below.
@@ -249,6 +244,12 @@ Ball4 medial_ball(const Surface& surface, const Ball4& ball, double error) {
   }
   result[3] = std::clamp(ball[3], std::max(0.0, depth - error), depth + error);
   return result;
+}
+
+void make_medial(const Surface& surface, ContractibleMesh& mesh, double error) {
+  for (Index v = 0; v < mesh.size(); ++v) {
+    if (mesh.alive(v)) mesh.set_ball(v, medial_ball(surface, mesh.ball(v), error));
+  }
 }
 
 }  // namespace orchard::detail

@@ -49,5 +49,7 @@ void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSamp
 // The nearest ball, or next to it, whose centre is not outside and whose radius is off its distance to the surface by
 // `error` at most.
 Ball4 medial_ball(const Surface& surface, const Ball4& ball, double error);
+// Makes all balls of a mesh so.
+void make_medial(const Surface& surface, ContractibleMesh& mesh, double error);
 
 }  // namespace orchard::detail

@@ -157,9 +157,11 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
   for (const SimplifiedBalls contracted : ways(options)) {
     Stage stage = descent.start(contracted);
     for (const Index count : {options.vertices, rung_below(options.vertices)}) {
+      const Index before = stage.mesh.living();
       descent.go_down(stage, count);
       reached = std::min(reached, stage.mesh.living());
       if (stage.mesh.living() > count) break;
+      if (best && stage.mesh.living() == before) break;  // the same again
       SimplifiedMedialMesh result = finish(surface, mesh, descent, stage);
       best = best ? nearer(std::move(*best), std::move(result)) : std::move(result);
     }
@@ -175,10 +177,12 @@ std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const
   check(surface, mesh, options);
   const Descent descent(surface, mesh, options, progress);
   std::vector<SimplifiedMedialMesh> results;
-  for (const SimplifiedBalls contracted : ways(options)) {
+  const std::vector<SimplifiedBalls> all_ways = ways(options);
+  double done = 0;
+  for (const SimplifiedBalls contracted : all_ways) {
     Stage stage = descent.start(contracted);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      report_progress(progress, kStage, static_cast<double>(i) / static_cast<double>(vertices.size()));
+      report_progress(progress, kStage, done++ / static_cast<double>(all_ways.size() * vertices.size()));
       descent.go_down(stage, vertices[i]);
       if (stage.mesh.living() > vertices[i]) break;
       SimplifiedMedialMesh result = finish(surface, mesh, descent, stage);

@@ -53,8 +53,10 @@ struct SimplifiedMedialMesh {
 // Contracts edges under the link condition, and so keeps the Betti numbers of `mesh`, until options.vertices are left:
 // first by quadrics of slabs, cones and borders, then by what contracting costs places of the surface; fits all balls
 // to the surface in between and at the end; then moves vertices from where they are spared to where the distance is
-// largest. One vertex alone is the largest ball in the solid. Radii may be 0, on edges. Balls are those that fit best,
-// not those of the medial axis: their radius is not the distance of their centre.
+// largest. One vertex alone is the largest ball in the solid. Radii may be 0, on edges. Balls are those that fit best
+// among those that options.balls allows. Where these are medial, the mesh goes down twice, by contractions that make
+// free balls and by ones that make medial ones, each time to the next half-power of 2 below options.vertices as well,
+// and the nearest result is taken: more vertices are seldom worse than fewer, and never worse than that number below.
 //
 // Deterministic, whatever the number of threads; parallel. O(n log n) for n vertices, and some nearest-ball queries for
 // each sample. Throws InputError unless surface.solid(), validate(mesh) passes and options are in range; if no
@@ -64,8 +66,9 @@ struct SimplifiedMedialMesh {
 SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMesh& mesh,
                                           const SimplifyOptions& options, const Progress& progress = {});
 
-// The same for each of several numbers of vertices, which are descending, all from one descent; options.vertices and
-// .error do not count. Ends before the first that the topology does not allow.
+// The same for each of several numbers of vertices, which are descending, all from the same descents; options.vertices
+// and .error do not count. None is farther off than one of fewer vertices. Ends before the first that the topology does
+// not allow.
 std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const MedialMesh& mesh,
                                                    std::span<const Index> vertices, const SimplifyOptions& options,
                                                    const Progress& progress = {});
