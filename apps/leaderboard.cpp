@@ -95,7 +95,8 @@ void leaderboard(const LeaderboardCommand& command) {
              to_markdown(rows, found.skipped, plots));
   write_file(outputs.add("leaderboard.csv", "every measure of every axis"), to_csv(rows));
 #ifdef ORCHARD_HAS_VIZ
-  write_file(outputs.add(kScript, "opens the worst places in ParaView"), to_paraview(rows, found.entries));
+  write_file(outputs.add(kScript, "opens the worst places in ParaView"),
+             to_paraview(rows, found.entries, command.folder));
 #endif
   nlohmann::json report = to_json(rows, found.skipped);
   outputs.add_report(report, "the same as JSON");

@@ -11,6 +11,7 @@
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/text_lines.h"
+#include "orchard/medial/read_axis.h"
 
 namespace orchard::apps {
 namespace {
@@ -29,8 +30,8 @@ bool one_of(const std::string& word, std::initializer_list<const char*> words) {
 }
 bool may_be_mesh(const fs::path& file) { return one_of(lower_extension(file), {".obj", ".off", ".stl", ".ply"}); }
 bool may_be_axis(const fs::path& file) {
-  return one_of(lower_extension(file), {".ma", ".ma_dup", ".ma_struct", ".obj", ".ply", ".off", ".sph", ".swc", ".cg",
-                                        ".cgal", ".txt", ".xyz", ".xyzr", ".balls"});
+  const std::span<const char* const> known = axis_extensions();
+  return std::find(known.begin(), known.end(), lower_extension(file)) != known.end();
 }
 
 std::vector<fs::path> files_of(const fs::path& folder) {

@@ -209,9 +209,11 @@ json to_json(const std::vector<LeaderboardRow>& rows, const std::vector<std::str
             {"behind", all.behind}}}};
 }
 
-std::string to_paraview(const std::vector<LeaderboardRow>& rows, const std::vector<LeaderboardEntry>& entries) {
+std::string to_paraview(const std::vector<LeaderboardRow>& rows, const std::vector<LeaderboardEntry>& entries,
+                        const std::filesystem::path& folder) {
   json meshes = json::object(), shown = json::array();
-  for (const LeaderboardEntry& entry : entries) meshes[entry.model] = std::filesystem::absolute(entry.mesh).string();
+  for (const LeaderboardEntry& entry : entries)
+    meshes[entry.model] = std::filesystem::relative(entry.mesh, folder).generic_string();
   for (const LeaderboardRow& row : rows) {
     if (row.refused.empty()) shown.push_back({row.model, fmt::format("{} at {}", row.system, row.asked), row.file});
   }
@@ -224,7 +226,7 @@ std::string to_paraview(const std::vector<LeaderboardRow>& rows, const std::vect
          "view = GetActiveViewOrCreate('RenderView')\n"
          "for model, file in meshes.items():\n"
          "    if os.path.splitext(file)[1] in ('.obj', '.stl', '.ply'):\n"
-         "        mesh = OpenDataFile(file, registrationName=model)\n"
+         "        mesh = OpenDataFile(os.path.join(here, file), registrationName=model)\n"
          "        Show(mesh, view).Opacity = 0.15\n"
          "        Hide(mesh, view)\n"
          "for model, title, file in rows:\n"

@@ -44,11 +44,11 @@ class Builder {
     regular_.insert(sites.begin(), sites.end());
   }
 
-  PowerDiagram run() {
+  PowerDiagram run(std::span<const Sphere> balls) {
     add_vertices();
     add_edges();
     add_facets();
-    find_hidden();
+    find_centers(balls);
     const auto by_balls = [](const auto& a, const auto& b) { return a.balls < b.balls; };
     std::sort(diagram_.vertices.begin(), diagram_.vertices.end(), by_balls);
     std::sort(diagram_.edges.begin(), diagram_.edges.end(), by_balls);
@@ -96,13 +96,11 @@ class Builder {
       diagram_.facets.push_back(std::move(facet));
     }
   }
-  void find_hidden() {
-    std::vector<std::uint8_t> seen(count_, 0);
-    for (const auto vertex : regular_.finite_vertex_handles()) {
-      if (vertex->info() < count_) seen[vertex->info()] = 1;
-    }
+  void find_centers(std::span<const Sphere> balls) {
     for (Index i = 0; i < count_; ++i) {
-      if (seen[i] == 0) diagram_.hidden.push_back(i);
+      const Point& center = balls[i].center;
+      const auto own = regular_.nearest_power_vertex({center.x(), center.y(), center.z()});
+      diagram_.holds_center.push_back(own->info() == i ? 1 : 0);
     }
   }
 
@@ -113,6 +111,6 @@ class Builder {
 
 }  // namespace
 
-PowerDiagram power_diagram(std::span<const Sphere> balls, const Box& box) { return Builder(balls, box).run(); }
+PowerDiagram power_diagram(std::span<const Sphere> balls, const Box& box) { return Builder(balls, box).run(balls); }
 
 }  // namespace orchard

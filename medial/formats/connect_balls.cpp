@@ -96,16 +96,6 @@ class Connector {
     result_.tetrahedra = static_cast<Index>(std::count(gone.begin(), gone.end(), 0));
   }
 
-  // Whether a ball's centre is in its own cell of the diagram.
-  bool holds_its_center(Index i) const {
-    const double own = -balls_.radii[i] * balls_.radii[i];
-    for (Index j = 0; j < balls_.size(); ++j) {
-      const double other = (balls_.centers[j] - balls_.centers[i]).squaredNorm() - balls_.radii[j] * balls_.radii[j];
-      if (other < own || (other == own && j < i)) return false;
-    }
-    return true;
-  }
-
   // Those with cells, and those alone in their part of the solid.
   void keep_balls() {
     MedialMesh& mesh = result_.mesh;
@@ -115,7 +105,7 @@ class Connector {
       for (const Index corner : t) number[corner] = 0;
     }
     for (Index i = 0; i < balls_.size(); ++i) {
-      if (number[i] == kNone && !(holds_its_center(i) && is_inside(balls_.centers[i]))) {
+      if (number[i] == kNone && !(diagram_.holds_center[i] != 0 && is_inside(balls_.centers[i]))) {
         ++result_.left_out;
         continue;
       }

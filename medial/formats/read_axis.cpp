@@ -1,6 +1,7 @@
 #include "orchard/medial/read_axis.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -40,12 +41,19 @@ ForeignAxis read_by_extension(const std::filesystem::path& file) {
   if (extension == ".cgal" || (extension == ".txt" && polylines)) return detail::parse_polylines(TextLines(file));
   if (extension == ".ply") return detail::parse_ply_axis(bytes_of(file), file.string());
   if (one_of(extension, {".txt", ".xyz", ".xyzr", ".balls"})) return detail::parse_balls(file.string(), bytes_of(file));
-  throw InputError(file.string() + ": \"" + extension +
-                   "\" is no kind of medial axis that is read; these are .ma, .ma_dup, .obj, .ply, .off, .sph, .swc, "
-                   ".cg, .cgal, .txt, .xyz, .xyzr and .balls");
+  std::string known;
+  for (const char* one : axis_extensions()) known += std::string(known.empty() ? "" : ", ") + one;
+  throw InputError(file.string() + ": \"" + extension + "\" is no kind of medial axis that is read; these are " +
+                   known);
 }
 
 }  // namespace
+
+std::span<const char* const> axis_extensions() {
+  static constexpr std::array kAll{".ma",  ".ma_dup", ".ma_struct", ".obj", ".ply", ".off",  ".sph",
+                                   ".swc", ".cg",     ".cgal",      ".txt", ".xyz", ".xyzr", ".balls"};
+  return kAll;
+}
 
 ForeignAxis detail::parse_ma_axis(TextLines lines) {
   const FlaggedMedialMesh flagged = parse_ma(std::move(lines));

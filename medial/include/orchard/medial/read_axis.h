@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,7 @@ struct ForeignAxis {
 // Reads the axis of any system, by the extension of the file, whose case does not matter:
 // - .ma, .ma_dup, .ma_struct: Q-MAT, MATFP, MATTopo and MATStruct;
 // - .obj: vertices, lines and faces; a fourth number of every vertex is its radius, unless all of them are 1;
-// - .ply: VMAS, CGAL and others, ASCII or binary; the vertex property radius or r, if there is one, and edges and
-// faces;
+// - .ply: VMAS, CGAL and others, ASCII or binary; the vertex property radius or r, if any, and edges and faces;
 // - .off: the faces, or the points alone; with Point2Skeleton's names (.._center.off, .._skel_face.obj,
 //   .._skel_edge.obj, .._sphere.obj), or an .obj of the same name, all of them make one axis;
 // - .sph: the balls of MATFP and MATTopo ("4 n", then lines "x y z r");
@@ -30,6 +30,8 @@ struct ForeignAxis {
 // Text is read over where it is of no use for an axis. Throws InputError, which names the file, the line or byte, and
 // what is wrong. Time grows with the size of the files (n log n), memory with it linearly.
 ForeignAxis read_axis(const std::filesystem::path& file);
+// These extensions, in lower case and with their dots.
+std::span<const char* const> axis_extensions();
 
 // What place_axis() is to do beside its checks.
 struct PlaceOptions {
@@ -45,11 +47,10 @@ struct PlacedAxis {
   bool connected = false;                     // the file has no cells: they are those of connect_balls()
 };
 
-// Finds the radii where the file has none, and the cells where it has none and `options` ask for them. Throws
+// Finds the radii where the file has none, and the cells where it has none and `options` ask for them. Throws an
 // InputError
 // - if the balls do not lie near the surface (tolerance::kFrameError): it says which scale and move would fit, if one
-// of
-//   the frames that programs commonly use does;
+//   of the frames that programs commonly use does;
 // - if the cells are the surface itself, as in files that a program wrote as a start;
 // - unless surface.solid().
 // One distance for each ball: O(n log m).

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct PowerDiagram {
   std::vector<Vertex> vertices;
   std::vector<Edge> edges;
   std::vector<Facet> facets;
-  std::vector<Index> hidden;  // balls without a cell, ascending
+  std::vector<std::uint8_t> holds_center;  // of each ball: whether its centre is in its own cell
 };
 
 // By CGAL's regular triangulation, with exact predicates; positions are rounded. Items are in ascending order of their
