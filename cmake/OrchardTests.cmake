@@ -1,12 +1,10 @@
 # What the tests of all modules share.
 
-# orchard_add_tests(module SOURCES .. [APART ..] [LINK ..] [LONG suites..] [NUMERIC tests..]): one executable and one ctest
-# label per module. All tests are "quick"; the suites named take their random cases from tests/support/effort.h, and are
-# once more, with twenty times as many and fresh ones, a test that is "long". Those named NUMERIC do the same sums over
-# and over, or run every command once more, which takes the sanitizers half of their time and shows them nothing that
-# other tests do not: .ci/run leaves them out there, and there alone.
+# orchard_add_tests(module SOURCES .. [APART ..] [LINK ..] [LONG suites..]): one executable and one ctest label per module.
+# All tests are "quick"; the suites named take their random cases from tests/support/effort.h, and are once more, with
+# twenty times as many and fresh ones, a test that is "long".
 function(orchard_add_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK;LONG;NUMERIC" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK;LONG" ${ARGN})
   set(target orchard_${name}_tests)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE orchard_flags ${ARG_LINK} GTest::gtest_main)
@@ -28,9 +26,6 @@ function(orchard_add_tests name)
   # Two labels are more than gtest_discover_tests can pass on.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${target}_labels.cmake)
   file(WRITE ${labels} "set_tests_properties(\${${target}_TESTS} PROPERTIES LABELS \"${name};quick\")\n")
-  foreach(test IN LISTS ARG_NUMERIC)
-    file(APPEND ${labels} "set_tests_properties(\"${name}.${test}\" PROPERTIES LABELS \"${name};quick;numeric\")\n")
-  endforeach()
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
   foreach(suite IN LISTS ARG_LONG)
     add_test(NAME ${name}.long.${suite} COMMAND ${target} --gtest_filter=${suite})

@@ -8,8 +8,6 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 Vec3 unit(const Vec3& v) {
   const double l = length(v);
   return l > 0 ? (1 / l) * v : Vec3{};

@@ -16,7 +16,6 @@ using runtime::Vec3;
 using Quaternion = std::array<double, 4>;  // w x y z
 
 Vec3 cross(const Vec3& a, const Vec3& b);
-double length(const Vec3& v);
 Vec3 unit(const Vec3& v);  // zero stays zero
 Vec3 turned(const Quaternion& q, const Vec3& v);
 Quaternion product(const Quaternion& a, const Quaternion& b);

@@ -11,14 +11,12 @@ namespace {
 using detail::Near;
 
 constexpr std::size_t kAskedAtOnce = 64;
-constexpr double kFirstReach = 0.5;  // of a cell, for the nearest body: half of the cube that is searched first
-constexpr double kRounding = 1e-12;  // of the coordinates: more than the tests' own
+constexpr double kFirstReach = 0.5;       // of a cell, for the nearest body: half of the cube that is searched first
+constexpr double kQueryRounding = 1e-12;  // of the coordinates: more than the tests' own
 
 bool fits(double x) noexcept { return std::fabs(x) <= kMaxNumber; }  // not NaN
 bool fits(const Vec3& v) noexcept { return fits(v[0]) && fits(v[1]) && fits(v[2]); }
 double max_coordinate(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
-double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 bool admits(const QueryFilter& query, const BodyFilter& body) noexcept {
   return (query.mask & body.category) != 0 && (query.category & body.mask) != 0;
 }
@@ -197,7 +195,7 @@ std::span<const BodyHit> BodyQueries::all_along(const Line& line, const QueryFil
 template <typename Touches>
 std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& upper, const QueryFilter& filter,
                                                  const Touches& touches) {
-  const double spare = kRounding * std::max(max_coordinate(lower), max_coordinate(upper));
+  const double spare = kQueryRounding * std::max(max_coordinate(lower), max_coordinate(upper));
   const Vec3 wider = {spare, spare, spare};
   const Near near = world_->state_->method->near_box(step(), lower - wider, upper + wider, candidates_);
   use_motions(near == Near::untold ? everybody() : candidates_, filter, [&](BodyIndex body, const Motion& motion) {
@@ -237,7 +235,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
   const auto note = [&](BodyIndex body, const Motion& motion) {
     near_.push_back({body, std::max(0.0, length(motion.position - point) - motion.radius)});
   };
-  const double spare = kRounding * max_coordinate(point);
+  const double spare = kQueryRounding * max_coordinate(point);
   double reach = kFirstReach * method.cell_size() * std::cbrt(static_cast<double>(k)) + spare;
   for (Near covered = Near::some; covered == Near::some; reach *= 2) {
     const Vec3 wide = {reach + 2 * spare, reach + 2 * spare, reach + 2 * spare};
@@ -247,7 +245,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
     use_motions(covered == Near::untold ? everybody() : candidates_, filter, note);
     if (near_.size() < k) continue;
     std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(k) - 1, near_.end(), nearer);
-    if (near_[k - 1].distance <= reach * (1 - kRounding)) break;
+    if (near_[k - 1].distance <= reach * (1 - kQueryRounding)) break;
   }
   const std::size_t count = std::min(k, near_.size());
   std::sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), nearer);

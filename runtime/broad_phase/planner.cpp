@@ -12,9 +12,9 @@ constexpr double kCrowding = 4;                         // lines read per entry 
 constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
 constexpr double kNearlyAll = 0.9;                      // of many, at each step so far: one step is enough
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
-constexpr unsigned kPlansKept = 8;       // a plan that fits is made anew after as many updates of all windows
-constexpr double kFarthestWay = 0x1p20;  // spacings, which cells are not much smaller than
-constexpr double kFewPairs = 1e-3;       // per body: too few to say anything about the prediction
+constexpr unsigned kPlansKept = 8;         // a plan that fits is made anew after as many updates of all windows
+constexpr double kFarthestWay = 0x1p20;    // spacings, which cells are not much smaller than
+constexpr double kFewPairsPerBody = 1e-3;  // per body: too few to say anything about the prediction
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   double off = 1;  // pairs seen to pairs predicted
   if (counts.bodies > 0) {
     const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
-    off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
+    off = (seen + kFewPairsPerBody) / (plan_.pairs_per_body + kFewPairsPerBody);
   }
   const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
   const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));

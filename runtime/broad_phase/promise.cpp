@@ -6,10 +6,9 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kRounding = 1e-9;         // of velocities and radii: the application's own arithmetic
+constexpr double kOwnRounding = 1e-9;      // of velocities and radii: the application's own arithmetic
 constexpr double kTimeRounding = 0x1p-50;  // of times
 
-double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 double above(double value, double bound) noexcept { return value > bound ? value - bound : 0; }
 
 }  // namespace
@@ -29,11 +28,12 @@ PromiseExcess promise_excess(const Motion& promise, double promise_time, const M
   const Vec3 side = size > 0 ? (1 / size) * promise.half_space : Vec3{};
   excess.position = above(length(off), reach + slack);
   excess.side = above(dot(off, side), promise.drift * seconds + slack);
-  excess.radius = above(std::fabs(given.radius - promise.radius), kRounding * std::max(given.radius, promise.radius));
+  excess.radius =
+      above(std::fabs(given.radius - promise.radius), kOwnRounding * std::max(given.radius, promise.radius));
   if (!(time < promise.expiry - kTimeRounding * (std::fabs(time) + std::fabs(promise_time)))) return excess;
   const Vec3 change = given.velocity - promise.velocity;
   const double drifts = promise.drift + given.drift, bound = drifts + promise.acceleration * seconds;
-  const double rounding = kRounding * (length(given.velocity) + length(promise.velocity) + bound);
+  const double rounding = kOwnRounding * (length(given.velocity) + length(promise.velocity) + bound);
   excess.velocity = above(length(change), bound + rounding);
   excess.turn = above(dot(change, side), drifts + rounding);
   return excess;

@@ -11,14 +11,14 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kSpare = 1 + 0x1p-12;    // of a cell: more than what coordinates within the grid are rounded by
-constexpr double kOriginCell = 0x1p30;    // cells: the origin's; beyond twice as many there is no other
-constexpr double kCellsPerSpacing = 2;    // smaller cells do not have fewer bodies
-constexpr std::size_t kLargeShare = 256;  // one in so many bodies may be larger than a cell
-constexpr std::size_t kMaxTests = 64;     // for each body and pair: with more of them boxes are the better choice
-constexpr std::uint32_t kSampled = 16;    // of the bodies, every so many are looked at for the number of near ones
-constexpr std::size_t kLanes = 8;         // that may be read beyond the last sphere
-constexpr std::uint32_t kLarge = ~0u;     // in no line
+constexpr double kCellSpare = 1 + 0x1p-12;  // of a cell: more than what coordinates within the grid are rounded by
+constexpr double kOriginCell = 0x1p30;      // cells: the origin's; beyond twice as many there is no other
+constexpr double kCellsPerSpacing = 2;      // smaller cells do not have fewer bodies
+constexpr std::size_t kLargeShare = 256;    // one in so many bodies may be larger than a cell
+constexpr std::size_t kMaxTests = 64;       // for each body and pair: with more of them boxes are the better choice
+constexpr std::uint32_t kSampled = 16;      // of the bodies, every so many are looked at for the number of near ones
+constexpr std::size_t kLanes = 8;           // that may be read beyond the last sphere
+constexpr std::uint32_t kLarge = ~0u;       // in no line
 
 }  // namespace
 
@@ -101,7 +101,7 @@ std::uint32_t SortedSpheres::line_of(const Vec3& center) const noexcept {
 }
 
 void SortedSpheres::enter(Sphere& sphere) {
-  if (2 * sphere.radius * kSpare > cell_) {
+  if (2 * sphere.radius * kCellSpare > cell_) {
     sphere.line = kLarge;
     large_.push_back(static_cast<std::uint32_t>(&sphere - spheres_.data()));
     return;
@@ -123,7 +123,7 @@ void SortedSpheres::choose_cell() {
   for (const Sphere& sphere : spheres_) x_.push_back(sphere.radius);
   const auto nth = x_.end() - 1 - static_cast<std::ptrdiff_t>(x_.size() / kLargeShare);
   std::nth_element(x_.begin(), nth, x_.end());
-  cell_ = std::max({2 * *nth * kSpare * kSpare, spacing_ / kCellsPerSpacing, 4 * kMinLength});
+  cell_ = std::max({2 * *nth * kCellSpare * kCellSpare, spacing_ / kCellsPerSpacing, 4 * kMinLength});
   per_length_ = 1 / cell_;
   std::fill(begins_.begin(), begins_.end(), 0);
   large_.clear();

@@ -16,7 +16,7 @@ constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kMostLines = 0.5;       // for each body
 // More of them where boxes take several cells each, so that fewer lines overflow: as many as a core's cache holds well,
 // and not where pairs take much memory as it is.
-constexpr double kLinesPerCell = 0.9, kCellsAsEver = 1.2, kLinesInCache = 11000, kManyPairs = 1;
+constexpr double kLinesPerCell = 0.9, kCellsAsEver = 1.2, kLinesInCache = 11000, kManyPairsPerBody = 1;
 constexpr double kMostCells = 0x1p23;  // along the world, as a sample shows it: a quarter of the lattice's
 // Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
 // evenly one in each unit of space, have another one nearer than this.
@@ -202,7 +202,8 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
     if (cost >= (window > best.window ? least * kWorthLonger : least)) return;
     least = cost;
     const double as_ever = std::min(kMostLines, kLinesPerVolume / per_line) * static_cast<double>(bodies);
-    const double more = pairs < kManyPairs ? kLinesPerCell * (cells - kCellsAsEver) * static_cast<double>(bodies) : 0;
+    const double more =
+        pairs < kManyPairsPerBody ? kLinesPerCell * (cells - kCellsAsEver) * static_cast<double>(bodies) : 0;
     const double lines = std::max(as_ever, std::min(more, kLinesInCache));
     best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
   };

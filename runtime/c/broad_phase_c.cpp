@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "c/bodies_c.h"
 #include "c/orchard_c.h"
 #include "execution/guarded.h"
 #include "orchard/runtime/broad_queries.h"
@@ -18,12 +19,9 @@ struct orchard_broad_phase {
 
 namespace {
 
-using rt::detail::guarded;
+using namespace rt::detail;
 
-rt::Vec3 vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
-rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
-orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
-orchard_body nobody() noexcept { return body_of(rt::kNoBody); }
+orchard_body no_body() noexcept { return body_of(rt::kNoBody); }
 
 rt::Motion motion_of(const orchard_motion& from) noexcept {
   rt::Motion motion;
@@ -44,14 +42,6 @@ orchard_motion motion_in_c(const rt::Motion& from) noexcept {
   std::copy_n(from.half_space.begin(), 3, motion.half_space);
   motion.expiry = from.expiry;
   return motion;
-}
-
-rt::BodyFilter filter_of(const orchard_body_filter* from) noexcept {
-  return from == nullptr ? rt::BodyFilter{}
-                         : rt::BodyFilter{from->category, from->mask, from->group, from->ignores_static != 0};
-}
-rt::QueryFilter filter_of(const orchard_query_filter* from) noexcept {
-  return from == nullptr ? rt::QueryFilter{} : rt::QueryFilter{from->category, from->mask};
 }
 
 rt::MotionSource source_of(orchard_motion_source source, void* context) {
@@ -175,12 +165,12 @@ double orchard_broad_phase_next_time(const orchard_broad_phase* world) { return 
 
 orchard_body orchard_broad_phase_add(orchard_broad_phase* world, uint8_t importance,
                                      const orchard_body_filter* filter) {
-  return guarded([&] { return body_of(world->world.add(importance, filter_of(filter))); }, nobody);
+  return guarded([&] { return body_of(world->world.add(importance, filter_of(filter))); }, no_body);
 }
 orchard_body orchard_broad_phase_add_static(orchard_broad_phase* world, const orchard_motion* place, uint8_t importance,
                                             const orchard_body_filter* filter) {
   return guarded([&] { return body_of(world->world.add_static(motion_of(*place), importance, filter_of(filter))); },
-                 nobody);
+                 no_body);
 }
 
 int orchard_broad_phase_remove(orchard_broad_phase* world, orchard_body body) {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <new>
 
+#include "c/bodies_c.h"
 #include "c/orchard_c.h"
 #include "execution/guarded.h"
 #include "orchard/runtime/detector.h"
@@ -21,18 +22,11 @@ struct orchard_detector {
 
 namespace {
 
-using rt::detail::pose_of, rt::detail::vector_of;
-
-rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
-orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
-
-rt::BodyFilter filter_of(const orchard_body_filter& from) noexcept {
-  return {from.category, from.mask, from.group, from.ignores_static != 0};
-}
+using namespace rt::detail;
 
 rt::BodyOptions options_of(const orchard_body_options* from) noexcept {
   if (from == nullptr) return {};
-  return {from->importance, filter_of(from->filter), from->continuous_speed, from->reach, from->suggest != 0};
+  return {from->importance, filter_of(&from->filter), from->continuous_speed, from->reach, from->suggest != 0};
 }
 
 rt::BodyState state_of(const orchard_body_state& from) noexcept {
@@ -69,10 +63,6 @@ std::span<const rt::BodyPart> parts_of(orchard_detector& detector, const orchard
   return detector.parts;
 }
 
-rt::QueryFilter filter_of(const orchard_query_filter* from) noexcept {
-  return from == nullptr ? rt::QueryFilter{} : rt::QueryFilter{from->category, from->mask};
-}
-
 int given(const std::optional<rt::WorldPoint>& from, orchard_world_point* to) noexcept {
   if (!from) return 0;
   to->body = body_of(from->body);
@@ -84,8 +74,8 @@ int given(const std::optional<rt::WorldPoint>& from, orchard_world_point* to) no
 
 // What `make` gives, or `otherwise` if there is no memory for it.
 template <typename Result, typename Make>
-Result guarded(Result otherwise, Make&& make) noexcept {
-  return rt::detail::guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
+Result made_or(Result otherwise, Make&& make) noexcept {
+  return guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
 }
 
 orchard_frame step(orchard_detector& detector, double time, const orchard_budget& given,
@@ -135,7 +125,7 @@ orchard_detector_options orchard_default_detector(void) {
 
 orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
                                        const orchard_detector_options* with) {
-  return guarded<orchard_detector*>(nullptr, [&] {
+  return made_or<orchard_detector*>(nullptr, [&] {
     auto made = std::make_unique<orchard_detector>();
     made->source = source;
     made->context = context;
@@ -165,35 +155,35 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
 void orchard_detector_free(orchard_detector* detector) { delete detector; }
 
 orchard_shape orchard_detector_add_tree(orchard_detector* detector, const orchard_tree* tree) {
-  return guarded(rt::kNoShape, [&] { return detector->detector->add_shape(tree->view); });
+  return made_or(rt::kNoShape, [&] { return detector->detector->add_shape(tree->view); });
 }
 orchard_shape orchard_detector_load(orchard_detector* detector, const char* path, const char** error) {
   rt::LoadStatus status = rt::LoadStatus::out_of_memory;
-  const orchard_shape shape = guarded(rt::kNoShape, [&] { return detector->detector->load_shape(path, &status); });
+  const orchard_shape shape = made_or(rt::kNoShape, [&] { return detector->detector->load_shape(path, &status); });
   if (error != nullptr) *error = shape == rt::kNoShape ? rt::message(status) : nullptr;
   return shape;
 }
 orchard_shape orchard_detector_add_sphere(orchard_detector* detector, double radius, const double center[3]) {
-  return guarded(rt::kNoShape, [&] { return detector->detector->add_sphere(radius, vector_of(center)); });
+  return made_or(rt::kNoShape, [&] { return detector->detector->add_sphere(radius, vector_of(center)); });
 }
 orchard_shape orchard_detector_add_capsule(orchard_detector* detector, const double p[3], const double q[3],
                                            double radius) {
-  return guarded(rt::kNoShape, [&] { return detector->detector->add_capsule(vector_of(p), vector_of(q), radius); });
+  return made_or(rt::kNoShape, [&] { return detector->detector->add_capsule(vector_of(p), vector_of(q), radius); });
 }
 orchard_shape orchard_detector_add_box(orchard_detector* detector, const double half_lengths[3]) {
-  return guarded(rt::kNoShape, [&] { return detector->detector->add_box(vector_of(half_lengths)); });
+  return made_or(rt::kNoShape, [&] { return detector->detector->add_box(vector_of(half_lengths)); });
 }
 
 orchard_body orchard_detector_add_body(orchard_detector* detector, const orchard_part* parts, size_t count,
                                        const orchard_body_options* options) {
-  return guarded(kNobody, [&] {
+  return made_or(kNobody, [&] {
     return body_of(detector->detector->add_body(parts_of(*detector, parts, count), options_of(options)));
   });
 }
 
 orchard_body orchard_detector_add_static(orchard_detector* detector, const orchard_part* parts, size_t count,
                                          const orchard_pose* pose, const orchard_body_options* options) {
-  return guarded(kNobody, [&] {
+  return made_or(kNobody, [&] {
     return body_of(
         detector->detector->add_static(parts_of(*detector, parts, count), pose_of(*pose), options_of(options)));
   });
@@ -201,48 +191,48 @@ orchard_body orchard_detector_add_static(orchard_detector* detector, const orcha
 
 orchard_body orchard_detector_add_half_space(orchard_detector* detector, const double normal[3], double offset,
                                              const orchard_body_options* options) {
-  return guarded(kNobody, [&] {
+  return made_or(kNobody, [&] {
     return body_of(detector->detector->add_half_space(vector_of(normal), offset, options_of(options)));
   });
 }
 
 int orchard_detector_remove(orchard_detector* detector, orchard_body body) {
-  return guarded(0, [&] { return int{detector->detector->remove(id_of(body))}; });
+  return made_or(0, [&] { return int{detector->detector->remove(id_of(body))}; });
 }
 int orchard_detector_cancel(orchard_detector* detector, orchard_body body) {
-  return guarded(0, [&] { return int{detector->detector->cancel(id_of(body))}; });
+  return made_or(0, [&] { return int{detector->detector->cancel(id_of(body))}; });
 }
 int orchard_detector_teleport(orchard_detector* detector, orchard_body body) {
-  return guarded(0, [&] { return int{detector->detector->teleport(id_of(body))}; });
+  return made_or(0, [&] { return int{detector->detector->teleport(id_of(body))}; });
 }
 int orchard_detector_move_static(orchard_detector* detector, orchard_body body, const orchard_pose* pose) {
-  return guarded(0, [&] { return int{detector->detector->move_static(id_of(body), pose_of(*pose))}; });
+  return made_or(0, [&] { return int{detector->detector->move_static(id_of(body), pose_of(*pose))}; });
 }
 int orchard_detector_set_local(orchard_detector* detector, orchard_body body, size_t part, const orchard_pose* local) {
-  return guarded(0, [&] { return int{detector->detector->set_local(id_of(body), part, pose_of(*local))}; });
+  return made_or(0, [&] { return int{detector->detector->set_local(id_of(body), part, pose_of(*local))}; });
 }
 int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance) {
-  return guarded(0, [&] { return int{detector->detector->set_importance(id_of(body), importance)}; });
+  return made_or(0, [&] { return int{detector->detector->set_importance(id_of(body), importance)}; });
 }
 int orchard_detector_set_filter(orchard_detector* detector, orchard_body body, const orchard_body_filter* filter) {
-  const rt::BodyFilter made = filter == nullptr ? rt::BodyFilter{} : filter_of(*filter);
-  return guarded(0, [&] { return int{detector->detector->set_filter(id_of(body), made)}; });
+  const rt::BodyFilter made = filter == nullptr ? rt::BodyFilter{} : filter_of(filter);
+  return made_or(0, [&] { return int{detector->detector->set_filter(id_of(body), made)}; });
 }
 int orchard_detector_set_state(orchard_detector* detector, orchard_body body, const orchard_body_state* state) {
-  return guarded(0, [&] { return int{detector->detector->set_state(id_of(body), state_of(*state))}; });
+  return made_or(0, [&] { return int{detector->detector->set_state(id_of(body), state_of(*state))}; });
 }
 int orchard_detector_set_velocity(orchard_detector* detector, orchard_body body, const double velocity[3]) {
-  return guarded(0, [&] { return int{detector->detector->set_velocity(id_of(body), vector_of(velocity))}; });
+  return made_or(0, [&] { return int{detector->detector->set_velocity(id_of(body), vector_of(velocity))}; });
 }
 int orchard_detector_sleep(orchard_detector* detector, orchard_body body) {
-  return guarded(0, [&] { return int{detector->detector->sleep(id_of(body))}; });
+  return made_or(0, [&] { return int{detector->detector->sleep(id_of(body))}; });
 }
 int orchard_detector_wake(orchard_detector* detector, orchard_body body) {
-  return guarded(0, [&] { return int{detector->detector->wake(id_of(body))}; });
+  return made_or(0, [&] { return int{detector->detector->wake(id_of(body))}; });
 }
 
 int orchard_detector_set_pair_filter(orchard_detector* detector, orchard_pair_filter filter, void* context) {
-  return guarded(0, [&] {
+  return made_or(0, [&] {
     rt::PairFilter made;
     if (filter != nullptr) {
       made = [filter, context](rt::BodyId a, rt::BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
@@ -287,19 +277,19 @@ orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t in
 
 int orchard_detector_cast_ray(orchard_detector* detector, const double origin[3], const double direction[3],
                               double longest, const orchard_query_filter* filter, orchard_world_point* found) {
-  return guarded(0, [&] {
+  return made_or(0, [&] {
     const rt::Ray ray{vector_of(origin), vector_of(direction), longest};
     return given(detector->detector->cast_ray(ray, filter_of(filter)), found);
   });
 }
 int orchard_detector_nearest(orchard_detector* detector, const double point[3], double limit,
                              const orchard_query_filter* filter, orchard_world_point* found) {
-  return guarded(0,
+  return made_or(0,
                  [&] { return given(detector->detector->nearest(vector_of(point), limit, filter_of(filter)), found); });
 }
 size_t orchard_detector_touching_sphere(orchard_detector* detector, const double center[3], double radius,
                                         const orchard_query_filter* filter, orchard_body* bodies, size_t room) {
-  return guarded(std::size_t{0}, [&] {
+  return made_or(std::size_t{0}, [&] {
     const auto touching = detector->detector->touching_sphere(vector_of(center), radius, filter_of(filter));
     for (std::size_t i = 0; i < std::min(room, touching.size()); ++i) bodies[i] = body_of(touching[i]);
     return touching.size();

@@ -85,12 +85,12 @@ function(orchard_precompile_once target name)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# orchard_unite(target [APART ..]): with ORCHARD_UNITY, files are compiled eight at a time, in the order in which they are
-# listed, and all NAME_cgal.cpp at once: what they instantiate of CGAL takes longer than all else. APART: by themselves, for
-# they have names of their own in unnamed namespaces that others have as well. A build without ORCHARD_UNITY compiles less
-# after a change.
+# orchard_unite(target [BY_FOLDER] [APART ..]): with ORCHARD_UNITY, files are compiled eight at a time, in the order in which
+# they are listed, or BY_FOLDER those of a folder, and all NAME_cgal.cpp at once: what they instantiate of CGAL takes longer
+# than all else. Files with options of their own are compiled by themselves, and so are those APART, which have names of
+# their own in unnamed namespaces that others have as well. A build without ORCHARD_UNITY compiles less after a change.
 function(orchard_unite target)
-  cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
+  cmake_parse_arguments(ARG "BY_FOLDER" "" "APART" ${ARGN})
   if(NOT ORCHARD_UNITY)
     return()
   endif()
@@ -101,6 +101,12 @@ function(orchard_unite target)
       continue()
     elseif(source MATCHES "_cgal\\.cpp$")
       set(group cgal)
+    elseif(ARG_BY_FOLDER)
+      cmake_path(GET source PARENT_PATH folder)
+      cmake_path(GET folder FILENAME group)
+      if(group STREQUAL "kernels")  # compiled by themselves, so that what they inline is the same in every build
+        continue()
+      endif()
     else()
       math(EXPR group "${count} / 8")
       math(EXPR count "${count} + 1")
@@ -126,11 +132,9 @@ function(orchard_add_module name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
   # As C++20 whatever the project around it asks for: see packed_tree.h.
   set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
-  if(name STREQUAL "runtime")  # file by file, so that a game links no more than it uses
+  if(name STREQUAL "runtime")  # without ORCHARD_UNITY file by file, so that a game links no more than it uses
     orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
-    if(ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS)  # where only its tests link it
-      orchard_unite(${target} APART ${ARG_APART})
-    endif()
+    orchard_unite(${target} BY_FOLDER)
   else()
     orchard_precompile_once(${target} construction PIC LINK Eigen3::Eigen TBB::tbb
       HEADERS ${ORCHARD_CONSTRUCTION_HEADERS} ${ORCHARD_TBB_HEADERS})

@@ -22,14 +22,12 @@ constexpr std::uint8_t kSearchesBeforeRoots = 4;
 constexpr std::uint8_t kInVain = 4;   // answers of roots that told nothing, before they are asked now and then only
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
-double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 // How far a point of the tree's triangles is at most from where it was, both places relative to the other body.
 double displacement(const PreparedTree& tree, const Pose& before, const Pose& now) noexcept {
   const BallSlabBlock& root = tree.tree.ball_slabs[0];
   Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   for (std::size_t i = 0; i < 3; ++i) middle[i] += tree.tree.origin[i];
-  return size_of(minus(transform(now, middle), transform(before, middle))) +
+  return length(minus(transform(now, middle), transform(before, middle))) +
          detail::pose_change(before, now) * double{root.radius[0]};
 }
 

@@ -27,14 +27,10 @@ namespace {
 
 using Cut = Workspace::Scratch::Cut;
 
-double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 Vec3 unit(const Vec3& v) noexcept {
   const double size = length(v);
   return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{0, 0, 0};
 }
-
-Vec3 opposite(const Vec3& v) noexcept { return {-v[0], -v[1], -v[2]}; }
 
 // All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
 std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
@@ -118,11 +114,11 @@ void first_directions(const WayOutSearch& search, Directions& directions) noexce
   if (length(by_normals) > 0) directions.add(by_normals);
   if (length(by_plane) > 0) {
     const bool same_side = dot(by_plane, by_normals) >= 0;
-    directions.add(same_side ? by_plane : opposite(by_plane));
+    directions.add(same_side ? by_plane : -by_plane);
   }
   // Where normals cancel out, as those of open surfaces may, either side may be the way out.
   if (directions.count < 2 || std::fabs(dot(by_plane, by_normals)) < 0.3) {
-    directions.add(directions.count > 0 ? opposite(directions.some[directions.count - 1]) : Vec3{0, 0, 1});
+    directions.add(directions.count > 0 ? -directions.some[directions.count - 1] : Vec3{0, 0, 1});
   }
   if (!cuts.empty()) return;
   for (const SolidBox& solid : search.solids) {  // out through a box's faces
@@ -289,7 +285,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   if (options.depth) out = least_way_out(search, directions.all(), options.refinements);
   result.complete = out.ended;
   result.depth = out.way * world.scale;
-  result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
+  result.normal = rotate(world, exchanged ? -out.direction : out.direction);
   result.error = narrow.exact_error();
   if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
   if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);

@@ -16,16 +16,12 @@ namespace orchard::runtime {
 
 namespace {
 
-constexpr double kRounding = 1e-12;     // of distances in double, relative to them
-constexpr float kSumRounding = 1e-6f;   // of a few float sums
-constexpr double kSmallMargin = 0.125;  // of two leaves' radii: then most of their triangles are farther apart
+constexpr double kDistanceRounding = 1e-12;  // of distances in double, relative to them
+constexpr float kSumRounding = 1e-6f;        // of a few float sums
+constexpr double kSmallMargin = 0.125;       // of two leaves' radii: then most of their triangles are farther apart
 
 float float_above(double value) noexcept {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
-}
-
-std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
 }
 
 // Compares as the float does; of 32 bits.
@@ -90,9 +86,9 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
   if (limit < std::numeric_limits<double>::infinity()) {
     // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
     const double error = pair_.exact_error_, scale = pair_.first_pose_.scale;
-    limit_ = (limit + 2 * error) / scale * (1 + 4 * kRounding);
+    limit_ = (limit + 2 * error) / scale * (1 + 4 * kDistanceRounding);
     reach_ = float_above(limit_);
-    enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kRounding));
+    enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kDistanceRounding));
   }
   find_cut();
   stack_[stack_size_++] = {0, 0, 0};
@@ -120,7 +116,7 @@ void DistanceSearch::refine(const Budget& budget) noexcept {
       continue;
     }
     if (limit_ < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
-    const std::uint32_t a = child_of(first, pair.a), b = child_of(second, pair.b);
+    const std::uint32_t a = slab_child(first, pair.a), b = slab_child(second, pair.b);
     if (a & b & kLeafBit) {
       compare_leaves(pair);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
@@ -219,8 +215,8 @@ void DistanceSearch::expand_within(const BallSlabPair& pair, std::uint32_t block
 // The nearest ones first: each found makes fewer of the others worth a test.
 void DistanceSearch::compare_leaves(const BallSlabPair& pair) noexcept {
   const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
-  const TriangleBlock& lanes = first.triangle_blocks[child_of(first, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second.triangle_blocks[child_of(second, pair.b) & ~kLeafBit];
+  const TriangleBlock& lanes = first.triangle_blocks[slab_child(first, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second.triangle_blocks[slab_child(second, pair.b) & ~kLeafBit];
   const float radii = radius_of(first, pair.a) + radius_of(second, pair.b) * pair_.placement_.scale;
   if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
   detail::TriangleGaps gaps;
@@ -287,7 +283,7 @@ void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t
   const bool meet = may_meet && detail::triangles_intersect(a, b, &common);
   const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
   const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));
-  min_lower_ = std::min(min_lower_, std::max(0.0, nearest.distance * (1 - kRounding) - error));
+  min_lower_ = std::min(min_lower_, std::max(0.0, nearest.distance * (1 - kDistanceRounding) - error));
   if (nearest.distance >= nearest_) return;
   nearest_ = nearest.distance;
   find_cut();
@@ -304,8 +300,8 @@ void DistanceSearch::report() noexcept {
   double least = std::min(min_lower_, nearest_);
   for (std::size_t i = 0; i < stack_size_; ++i) least = std::min(least, double{stack_[i].lower});
   const double scale = pair_.first_pose_.scale, error = pair_.exact_error_;
-  if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kRounding) - error);
-  upper_ = std::min(upper_, nearest_ * scale * (1 + kRounding) + error);
+  if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kDistanceRounding) - error);
+  upper_ = std::min(upper_, nearest_ * scale * (1 + kDistanceRounding) + error);
   lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose ball slabs do not hold their triangles
 }
 

@@ -26,8 +26,6 @@ constexpr float kFarSteps = 16;  // last motions: what is farther than these is 
 constexpr std::uint32_t kMostOpen = 64;  // more to look at than that, and the roots are the shorter way
 constexpr double kAxisError = 4e-6;      // of a motion
 
-double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 }  // namespace
 
 FrontWalk::FrontWalk(PairFront& front, PairQuery& narrow) noexcept
@@ -94,8 +92,8 @@ bool FrontWalk::advance() noexcept {
     way[i] = turn[3 * i] * middle[0] + turn[3 * i + 1] * middle[1] + turn[3 * i + 2] * middle[2] + by;
     shift.by[i] = static_cast<float>(by);
   }
-  const double moved = size_of(way) + swing * double{root.radius[0]};
-  const double error = double{placement_.margin} + kAxisError * (moved + size_of(middle) * swing);
+  const double moved = length(way) + swing * double{root.radius[0]};
+  const double error = double{placement_.margin} + kAxisError * (moved + length(middle) * swing);
   enough_ = static_cast<float>(moved);
   front_.rest_ -= moved + error;
   if (!(front_.rest_ > 0) || !std::isfinite(moved)) return false;

@@ -38,8 +38,6 @@
 //      for D. A height is off by sigma + 22 u D, the rest by 6 u D: box_margin = 2 sigma + 192 u D leaves room.
 namespace orchard::runtime {
 
-using detail::length;
-
 namespace {
 
 constexpr double kFloatUnit = 0x1p-24;

@@ -11,17 +11,8 @@
 namespace orchard::runtime {
 
 using detail::BoxGaps;
-
-namespace {
-
-const BallSlabBlock& block_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.ball_slabs[node / kBlockWidth];
-}
-std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return block_of(tree, node).child[node % kBlockWidth];
-}
-
-}  // namespace
+using detail::slab_block;
+using detail::slab_child;
 
 void PairQuery::start_exact() noexcept {
   exact_started_ = true;
@@ -41,7 +32,7 @@ detail::NodeBox PairQuery::moved_box(std::uint32_t node) const noexcept {
 
 // The larger node's children against the other node, in the children's frame. True if they are the second tree's.
 inline bool PairQuery::find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) noexcept {
-  const BallSlabBlock &of_a = block_of(first_->tree, pair.a), &of_b = block_of(second_->tree, pair.b);
+  const BallSlabBlock &of_a = slab_block(first_->tree, pair.a), &of_b = slab_block(second_->tree, pair.b);
   const std::uint32_t lane_a = pair.a % kBlockWidth, lane_b = pair.b % kBlockWidth;
   const bool second =
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
@@ -89,7 +80,7 @@ bool PairQuery::refine_ball_slabs(PairBudget& tracker) noexcept {
   while (stack_size_ > 0) {
     if (tracker.exhausted()) return false;
     const NodePair pair = stack_[--stack_size_];
-    const std::uint32_t a = child_of(first_->tree, pair.a), b = child_of(second_->tree, pair.b);
+    const std::uint32_t a = slab_child(first_->tree, pair.a), b = slab_child(second_->tree, pair.b);
     if (a & b & kLeafBit) {
       const std::uint64_t before = triangle_tests_;
       const bool meet = test_triangles(pair);
@@ -97,14 +88,14 @@ bool PairQuery::refine_ball_slabs(PairBudget& tracker) noexcept {
       if (meet) return true;
       continue;
     }
-    const bool two = stack_size_ > 0 && (child_of(first_->tree, stack_[stack_size_ - 1].a) &
-                                         child_of(second_->tree, stack_[stack_size_ - 1].b) & kLeafBit) == 0;
+    const bool two = stack_size_ > 0 && (slab_child(first_->tree, stack_[stack_size_ - 1].a) &
+                                         slab_child(second_->tree, stack_[stack_size_ - 1].b) & kLeafBit) == 0;
     const std::uint64_t before = pair_tests_;
     BoxGaps gaps[2];
     const bool second = find_children(pair, a, b, gaps[0]);
     if (two) {
       const NodePair other = stack_[--stack_size_];
-      const std::uint32_t oa = child_of(first_->tree, other.a), ob = child_of(second_->tree, other.b);
+      const std::uint32_t oa = slab_child(first_->tree, other.a), ob = slab_child(second_->tree, other.b);
       const bool other_second = find_children(other, oa, ob, gaps[1]);
       push_children(other, other_second, other_second ? ob : oa, gaps[1]);
     }
@@ -159,8 +150,8 @@ bool PairQuery::search_near(std::uint32_t a, std::uint32_t b, const Budget& budg
 }
 
 bool PairQuery::test_triangles(const NodePair& pair) noexcept {
-  const TriangleBlock& lanes = first_->tree.triangle_blocks[child_of(first_->tree, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second_->tree.triangle_blocks[child_of(second_->tree, pair.b) & ~kLeafBit];
+  const TriangleBlock& lanes = first_->tree.triangle_blocks[slab_child(first_->tree, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second_->tree.triangle_blocks[slab_child(second_->tree, pair.b) & ~kLeafBit];
   const auto used = [](const TriangleBlock& block) {
     std::uint64_t count = 0;
     for (const std::uint32_t t : block.triangle) count += t != kNoTriangle;
@@ -185,8 +176,8 @@ bool PairQuery::test_triangles(const NodePair& pair) noexcept {
 
 // Of the leaves in these ball slabs, these triangles.
 bool PairQuery::triangles_meet(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept {
-  const TriangleBlock& lanes = first_->tree.triangle_blocks[child_of(first_->tree, a) & ~kLeafBit];
-  const TriangleBlock& rows = second_->tree.triangle_blocks[child_of(second_->tree, b) & ~kLeafBit];
+  const TriangleBlock& lanes = first_->tree.triangle_blocks[slab_child(first_->tree, a) & ~kLeafBit];
+  const TriangleBlock& rows = second_->tree.triangle_blocks[slab_child(second_->tree, b) & ~kLeafBit];
   if (!detail::triangles_intersect(detail::points_of(lanes, lane), detail::moved_points_of(rows, row, relative_),
                                    &witness_)) {
     return false;

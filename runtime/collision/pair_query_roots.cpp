@@ -25,8 +25,6 @@ bool before(const Pose& a, const Pose& b) noexcept {
   return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
 }
 
-Vec3 opposite(const Vec3& v) noexcept { return {-v[0], -v[1], -v[2]}; }
-
 Vec3 turned_back(const Pose& pose, const Vec3& u) noexcept {
   const auto& r = pose.rotation;
   return {r[0] * u[0] + r[3] * u[1] + r[6] * u[2], r[1] * u[0] + r[4] * u[1] + r[7] * u[2],
@@ -83,7 +81,7 @@ Answer PairQuery::start(const Pose& a, const Pose& b) noexcept {
       const Vec3 direction = turned_back(pose, u);
       return pose.scale * (detail::reach_along(side.tree.supports, direction) - dot(direction, side.middle));
     };
-    gap = square - (reach(*first_, first, way) + reach(*second_, second, opposite(way)));
+    gap = square - (reach(*first_, first, way) + reach(*second_, second, -way));
     if (!(gap > 0)) gap = hulls_gap(first, second, way, along);
     gap = gap / distance * (1 - detail::kStretch) - detail::kStretch * distance - exact_error_;
   }
@@ -153,7 +151,7 @@ double PairQuery::hulls_gap(const Pose& first, const Pose& second, const Vec3& w
   };
   double best = -std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < kRootDirections; ++turn) {
-    const detail::Support p = support_of(*first_, first, u), q = support_of(*second_, second, opposite(u));
+    const detail::Support p = support_of(*first_, first, u), q = support_of(*second_, second, -u);
     const double gap = dot(u, way) - (p.most + q.most);
     if (gap > 0) return gap;
     if (gap <= best) break;

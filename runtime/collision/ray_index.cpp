@@ -10,14 +10,14 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kBeyond = std::numeric_limits<float>::infinity();
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
 
 constexpr double kOutward = 1 + 0x1p-23;  // more than what rounding to float takes away
 
 struct Box {
-  std::array<float, 3> low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
+  std::array<float, 3> low = {kBeyond, kBeyond, kBeyond}, high = {-kBeyond, -kBeyond, -kBeyond};
 
   void add(const Box& other) {
     for (std::size_t i = 0; i < 3; ++i) {

@@ -95,7 +95,7 @@ Flat seen_along(const TrianglePoints& t, const Vec3& origin, const Way& way) noe
   return flat;
 }
 
-struct Best {
+struct LargestOffer {
   double t = -std::numeric_limits<double>::infinity();
   int kind = 0;  // 1: a corner of b on a; 2: a corner of a on b; 3: two edges
   std::size_t i = 0, j = 0;
@@ -118,7 +118,7 @@ void covered_corners(const Flat& p, const Flat& q, Offer&& offer) noexcept {
   }
 }
 
-void crossing_edges(const Flat& a, const Flat& b, Best& best) noexcept {
+void crossing_edges(const Flat& a, const Flat& b, LargestOffer& best) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t i2 = (i + 1) % 3;
     const double ux = a.x[i2] - a.x[i], uy = a.y[i2] - a.y[i];
@@ -135,7 +135,7 @@ void crossing_edges(const Flat& a, const Flat& b, Best& best) noexcept {
 }
 
 // Both seen edge on, in one line: where their ends lie on each other's edges.
-void ends_on_edges(const Flat& p, const Flat& q, double slack, int kind, Best& best) noexcept {
+void ends_on_edges(const Flat& p, const Flat& q, double slack, int kind, LargestOffer& best) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
@@ -186,7 +186,7 @@ Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const 
 
 Exit exit_along(const TrianglePoints& a, const TrianglePoints& b, const Way& way) noexcept {
   const Flat p = seen_along(a, a[0], way), q = seen_along(b, a[0], way);
-  Best best;
+  LargestOffer best;
   covered_corners(p, q, [&best](std::size_t k, double height) { best.offer(height, 1, k, 0); });
   covered_corners(q, p, [&best](std::size_t k, double height) { best.offer(-height, 2, k, 0); });
   crossing_edges(p, q, best);

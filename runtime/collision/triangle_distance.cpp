@@ -189,16 +189,16 @@ ORCHARD_INLINE Near<Kind> near_segment(const Vec3& p, const Vec3& q, const Trian
   return best;
 }
 
-struct Best {
+struct NearestPair {
   double square = std::numeric_limits<double>::infinity();
   Vec3 p{}, q{};
 };
 
-NearestPoints points_of(const Best& best) noexcept { return {std::sqrt(best.square), best.p, best.q}; }
+NearestPoints found_points(const NearestPair& best) noexcept { return {std::sqrt(best.square), best.p, best.q}; }
 
 template <typename Find>
-Best one_by_one(Find&& find) noexcept {
-  Best best;
+NearestPair one_by_one(Find&& find) noexcept {
+  NearestPair best;
   for (std::size_t lane = 0; lane < 3; ++lane) {
     const Near<OneDouble> found = find(lane);
     if (!(found.square < best.square)) continue;
@@ -207,18 +207,18 @@ Best one_by_one(Find&& find) noexcept {
   return best;
 }
 
-Best triangles_one_by_one(const TrianglePoints& a, const TrianglePoints& b) noexcept {
+NearestPair triangles_one_by_one(const TrianglePoints& a, const TrianglePoints& b) noexcept {
   return one_by_one([&](std::size_t lane) { return near_triangle<OneDouble>(a, b, lane); });
 }
-Best point_one_by_one(const Vec3& point, const TrianglePoints& t) noexcept {
+NearestPair point_one_by_one(const Vec3& point, const TrianglePoints& t) noexcept {
   return one_by_one([&](std::size_t lane) { return near_point<OneDouble>(point, t, lane); });
 }
-Best segment_one_by_one(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+NearestPair segment_one_by_one(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   return one_by_one([&](std::size_t lane) { return near_segment<OneDouble>(p, q, t, lane); });
 }
 
 #ifdef ORCHARD_VECTORS
-ORCHARD_INLINE Best first_of(const Near<FourDoubles>& near) noexcept {
+ORCHARD_INLINE NearestPair first_of(const Near<FourDoubles>& near) noexcept {
   using Lanes = std::array<double, 4>;
   const auto lanes = [](const FourDoubles::Numbers& v) ORCHARD_INLINE_LAMBDA -> Lanes {
     Lanes result;
@@ -233,13 +233,13 @@ ORCHARD_INLINE Best first_of(const Near<FourDoubles>& near) noexcept {
   return {square[lane], {px[lane], py[lane], pz[lane]}, {qx[lane], qy[lane], qz[lane]}};
 }
 
-ORCHARD_INLINE Best triangles_at_once(const TrianglePoints& a, const TrianglePoints& b) noexcept {
+ORCHARD_INLINE NearestPair triangles_at_once(const TrianglePoints& a, const TrianglePoints& b) noexcept {
   return first_of(near_triangle<FourDoubles>(a, b, 0));
 }
-ORCHARD_INLINE Best point_at_once(const Vec3& point, const TrianglePoints& t) noexcept {
+ORCHARD_INLINE NearestPair point_at_once(const Vec3& point, const TrianglePoints& t) noexcept {
   return first_of(near_point<FourDoubles>(point, t, 0));
 }
-ORCHARD_INLINE Best segment_at_once(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+ORCHARD_INLINE NearestPair segment_at_once(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   return first_of(near_segment<FourDoubles>(p, q, t, 0));
 }
 #endif
@@ -258,23 +258,23 @@ double longest_edge(const TrianglePoints& t) noexcept {
 // Machines without vectors of four doubles are better served by one number at a time.
 #ifdef ORCHARD_VECTORS
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return points_of(PerMachine<triangles_at_once, triangles_one_by_one>::call(a, b));
+  return found_points(PerMachine<triangles_at_once, triangles_one_by_one>::call(a, b));
 }
 NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept {
-  return points_of(PerMachine<point_at_once, point_one_by_one>::call(point, t));
+  return found_points(PerMachine<point_at_once, point_one_by_one>::call(point, t));
 }
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return points_of(PerMachine<segment_at_once, segment_one_by_one>::call(p, q, t));
+  return found_points(PerMachine<segment_at_once, segment_one_by_one>::call(p, q, t));
 }
 #else
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return points_of(triangles_one_by_one(a, b));
+  return found_points(triangles_one_by_one(a, b));
 }
 NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept {
-  return points_of(point_one_by_one(point, t));
+  return found_points(point_one_by_one(point, t));
 }
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return points_of(segment_one_by_one(p, q, t));
+  return found_points(segment_one_by_one(p, q, t));
 }
 #endif
 

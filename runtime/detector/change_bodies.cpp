@@ -121,7 +121,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
 BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOptions& options) {
   State& s = *state_;
   const detail::ScaledVector scaled(normal);
-  const double size = detail::length(Vec3(scaled.value)), height = std::ldexp(offset, scaled.power) / size;
+  const double size = length(Vec3(scaled.value)), height = std::ldexp(offset, scaled.power) / size;
   if (!s.takes_changes() || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
   body.set_filter(options.filter);

@@ -94,7 +94,7 @@ void Detector::set_executor(const Executor& executor) noexcept {
 bool Detector::contains(BodyId body) const noexcept { return state_->contains(body); }
 double Detector::reach(ShapeId shape) const noexcept {
   const detail::ShapeTable& shapes = state_->world.shapes;
-  return shapes.contains(shape) ? (detail::length(shapes[shape].center) + shapes[shape].reach) * (1 + 1e-15) : 0;
+  return shapes.contains(shape) ? (length(shapes[shape].center) + shapes[shape].reach) * (1 + 1e-15) : 0;
 }
 std::size_t Detector::size() const noexcept { return state_->world.body_count; }
 bool Detector::valid() const noexcept { return state_->valid; }

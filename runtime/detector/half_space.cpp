@@ -7,7 +7,6 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNormalSlack = 2e-6;  // of a ball slab's normal, unit to 1e-6 and rounded
 
 // How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at least.

@@ -15,7 +15,6 @@ double height_over(const HalfSpace& half, const Motion& motion) noexcept {
 }
 
 double seconds_above(const HalfSpace& half, const Motion& motion, double height) noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (height <= 0) return 0;
   const double fall = (motion.drift - dot(half.normal, motion.velocity)) * (1 + 1e-12),
                half_m = motion.acceleration / 2;

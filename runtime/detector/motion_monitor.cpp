@@ -9,8 +9,6 @@ namespace {
 constexpr double kMaxAngle = 0.5;        // cosine: of accelerations that share a half-space, with their mean
 constexpr double kFasterHorizon = 1.25;  // a kept promise makes the next one so much longer
 
-double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 }  // namespace
 
 void MotionMonitor::Part::add(const Vec3& acceleration) noexcept {

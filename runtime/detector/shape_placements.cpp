@@ -57,12 +57,6 @@ void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
   place_at(pose, is_rigid(pose), record.shape, place, placed_part);
 }
 
-namespace {
-
-constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
-
-}  // namespace
-
 // Mostly the squares tell: a gap that is computed as more than 0 has a square of its way that is larger.
 bool spheres_part(const PartPair& pair) noexcept {
   if (pair.b.shape == nullptr) return sphere_gap(pair).least > 0;
@@ -91,7 +85,7 @@ double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const Bou
   if (!record.at_origin) enter(record.local);
   const Shape& shape = (*shapes_)[record.shape];
   size += scale * (length(shape.center) + shape.reach);
-  const double gap = scale * distance_to_bounds(shape, at) - sphere.reach - kRounding * size;
+  const double gap = scale * distance_to_bounds(shape, at) - sphere.reach - kPlaceRounding * size;
   return std::isfinite(gap) ? gap : 0;
 }
 

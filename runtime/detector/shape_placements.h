@@ -70,14 +70,16 @@ class ShapePlacements {
   const HalfSpaces* halves_;
 };
 
+// Of rotations that are rotations to kRigidTolerance, and of coordinates.
+inline constexpr double kPlaceRounding = 1e-11;
+
 struct SphereGap {
   double least;  // how far apart the spheres around the two are, at least; at most 0 where they may overlap
   double most;   // and what is in them, at most
 };
 // `apart`: of the spheres' centres, or of a's from a half-space; `reach`, `size`: of both.
 inline SphereGap sphere_gap(double apart, double reach, double size) noexcept {
-  constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
-  const double least = apart - reach - kRounding * size, most = std::max(0.0, apart) + reach;
+  const double least = apart - reach - kPlaceRounding * size, most = std::max(0.0, apart) + reach;
   // Each solid is somewhere in its sphere.
   return {std::isfinite(least) ? least : 0, most >= 0 ? most : std::numeric_limits<double>::infinity()};
 }

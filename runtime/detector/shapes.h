@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "orchard/runtime/packed_tree.h"
 
 namespace orchard::runtime::detail {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class ShapeKind : std::uint8_t {
   tree,
@@ -58,8 +61,6 @@ struct HalfSpace {
   Vec3 normal{1, 0, 0};
   double offset = 0;
 };
-
-inline double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 inline Vec3 nearest_of_segment(const Vec3& p, const Vec3& q, const Vec3& to) noexcept {
   const Vec3 d = q - p;

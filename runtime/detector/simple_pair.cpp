@@ -7,7 +7,6 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of distances computed from a few operations on coordinates of that size.
 constexpr double kSimpleRounding = 1e-14;
 
@@ -71,7 +70,7 @@ struct NearestOfBox {  // in the box's frame at scale 1
 };
 
 // The first place of the segment from p to q in a solid box, as a part of it, or beyond 1.
-double enters_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
+double segment_enters_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
   double from = 0, to = 1;
   for (std::size_t i = 0; i < 3; ++i) {
     const double way = q[i] - p[i];
@@ -89,7 +88,7 @@ double enters_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
 // between the places where a coordinate enters or leaves the box.
 NearestOfBox nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
   const Vec3 way = q - p;
-  if (const double inside = enters_box(half, p, q); inside <= 1) {
+  if (const double inside = segment_enters_box(half, p, q); inside <= 1) {
     const Vec3 at = point_of(p, q, inside);
     return {at, at, 0};
   }

@@ -10,8 +10,8 @@ constexpr int kMaxSteps = 512;       // towards a half-space
 constexpr double kSkip = 4;          // closenesses passed over where a graze is not told from a contact,
 constexpr double kSkipGrowth = 4;    // and times that, each time,
 constexpr double kMinSkip = 1e-9;    // but so much of the way at least,
-constexpr double kMaxSkip = 1.0 / 64;  // and so much of it at most the first time
-constexpr double kRounding = 1e-9;     // of speeds
+constexpr double kMaxSkip = 1.0 / 64;    // and so much of it at most the first time
+constexpr double kSpeedRounding = 1e-9;  // of speeds
 
 Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -25,7 +25,7 @@ double margin_of(const PlacedPart& part) noexcept {
 
 // No point of the part moves faster.
 double speed_of(const Travel& travel, double reach) noexcept {
-  return (length(Vec3(travel.velocity)) + length(Vec3(travel.spin)) * reach) * (1 + kRounding);
+  return (length(Vec3(travel.velocity)) + length(Vec3(travel.spin)) * reach) * (1 + kSpeedRounding);
 }
 
 bool can_travel(const PlacedPart& from, const PlacedPart& to) noexcept {
@@ -128,7 +128,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
   const double turn = from.a.shape->kind == ShapeKind::round && from.a.shape->p == from.a.shape->q
                           ? 0
                           : length(cross(Vec3(travel.spin), normal)) * from.a.reach;
-  const double sinking = turn - dot(Vec3(travel.velocity), normal) + kRounding * speed;
+  const double sinking = turn - dot(Vec3(travel.velocity), normal) + kSpeedRounding * speed;
   PartPair now = from;
   double time = 0;
   bool certain = true;

@@ -132,7 +132,7 @@ void FlexibleTree::enlarge_for_good() {
   const auto root_center = detail::center_of(tree_, 0);
   const auto from_root = [&](const auto& p) {
     const std::array<double, 3> d = {p[0] - root_center[0], p[1] - root_center[1], p[2] - root_center[2]};
-    return detail::length(d);
+    return length(d);
   };
   double reach = 0;
   for (std::uint32_t node = 0; node < spheres_.size(); ++node) {
@@ -155,7 +155,7 @@ void FlexibleTree::enlarge_for_good() {
   tree_.blocks[0].radius[0] = root_radius;
   tree_.blocks[0].error[0] = raised(tree_.blocks[0].error[0], double{root_radius} - double{before});
   for (std::uint32_t i = 0; i < tree_.supports.size(); ++i) {
-    tree_.supports[i] = raised(tree_.supports[i], largest_ * detail::length(support_direction(i)));
+    tree_.supports[i] = raised(tree_.supports[i], largest_ * length(support_direction(i)));
   }
   tree_.bounding_radius += largest_;
   if (largest_ > 0) tree_.vertex_error += 0x1p-23 * coordinate_extent(tree_);  // places are rounded to float

@@ -10,8 +10,6 @@ namespace {
 constexpr double kQuarterTurn = std::numbers::pi / 2;
 constexpr double kWorthwhile = 0.5;  // of the horizon: a half-space that ends earlier costs more updates than it saves
 
-double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 Motion bounded(const Vec3& position, const Vec3& velocity, double radius, double acceleration, double expiry) noexcept {
   Motion motion;
   motion.position = position;

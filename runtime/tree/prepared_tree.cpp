@@ -52,7 +52,7 @@ PreparedTree::PreparedTree(const TreeView& view) noexcept : tree(view) {
   radius = double{block.radius[0]}, reach = double{block.error[0]}, depth = double{block.depth[0]};
   bits = link_bits(tree.branching);
   extent = coordinate_extent(tree);
-  error = detail::kStretch * (extent + detail::length(tree.origin)) + tree.vertex_error;
+  error = detail::kStretch * (extent + length(tree.origin)) + tree.vertex_error;
   fingerprint = fingerprint_of(tree);
 }
 

@@ -18,9 +18,9 @@ using detail::orientation;
 namespace {
 
 using Point = std::array<double, 3>;
-using Triangle = std::array<std::uint32_t, 3>;
+using HullTriangle = std::array<std::uint32_t, 3>;
 
-float above(double value) {
+float stored_above(double value) {
   return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
@@ -34,7 +34,7 @@ double farthest(const PackedSphereTree& tree, const Point& from) {
 }
 
 // One sphere around everything, a leaf. `depth`: of the sphere's centre, an upper bound on its signed distance.
-PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const Triangle> triangles, double depth) {
+PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const HullTriangle> triangles, double depth) {
   PackedSphereTree tree;
   if (vertices.empty()) return tree;
   Point low = vertices[0], high = vertices[0];
@@ -61,9 +61,9 @@ PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const Triang
   tree.node_count = 1;
   SiblingBlock& root = tree.blocks.emplace_back();
   root.radius.fill(-1);
-  root.radius[0] = above(radius);
-  root.depth[0] = above(depth);
-  root.error[0] = above(radius + std::max(0.0, depth));
+  root.radius[0] = stored_above(radius);
+  root.depth[0] = stored_above(depth);
+  root.error[0] = stored_above(radius + std::max(0.0, depth));
   std::vector<std::uint32_t> all(triangles.size());
   for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
   root.link[0] = add_list(tree, all);
@@ -82,10 +82,10 @@ class Hull {
     for (std::uint32_t p = 0; p < points_.size(); ++p) add(p);
     return true;
   }
-  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<HullTriangle>& triangles() const { return triangles_; }
 
  private:
-  int side(const Triangle& t, std::uint32_t p) const {  // > 0: outside
+  int side(const HullTriangle& t, std::uint32_t p) const {  // > 0: outside
     return -orientation(points_[t[0]], points_[t[1]], points_[t[2]], points_[p]);
   }
 
@@ -105,7 +105,7 @@ class Hull {
     if (c == count) return false;
     while (d < count && orientation(points_[0], points_[b], points_[c], points_[d]) == 0) ++d;
     if (d == count) return false;
-    const Triangle base = {0, b, c};
+    const HullTriangle base = {0, b, c};
     const bool outward = side(base, d) < 0;
     const std::uint32_t x = outward ? b : c, y = outward ? c : b;
     triangles_ = {{0, x, y}, {0, y, d}, {y, x, d}, {x, 0, d}};
@@ -113,13 +113,13 @@ class Hull {
   }
 
   void add(std::uint32_t p) {
-    std::vector<Triangle> kept, seen;
-    for (const Triangle& t : triangles_) (side(t, p) > 0 ? seen : kept).push_back(t);
+    std::vector<HullTriangle> kept, seen;
+    for (const HullTriangle& t : triangles_) (side(t, p) > 0 ? seen : kept).push_back(t);
     if (seen.empty()) return;
-    for (const Triangle& t : seen) {
+    for (const HullTriangle& t : seen) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t from = t[i], to = t[(i + 1) % 3];
-        const bool inner = std::any_of(seen.begin(), seen.end(), [&](const Triangle& other) {
+        const bool inner = std::any_of(seen.begin(), seen.end(), [&](const HullTriangle& other) {
           return (other[0] == to && other[1] == from) || (other[1] == to && other[2] == from) ||
                  (other[2] == to && other[0] == from);
         });
@@ -130,20 +130,20 @@ class Hull {
   }
 
   std::span<const Point> points_;
-  std::vector<Triangle> triangles_;
+  std::vector<HullTriangle> triangles_;
 };
 
 }  // namespace
 
 PackedSphereTree point_tree(const Point& point) {
   const Point vertices[] = {point};
-  const Triangle triangles[] = {{0, 0, 0}};
+  const HullTriangle triangles[] = {{0, 0, 0}};
   return tree_of(vertices, triangles, 0);
 }
 
 PackedSphereTree segment_tree(const Point& p, const Point& q) {
   const Point vertices[] = {p, q};
-  const Triangle triangles[] = {{0, 1, 1}};
+  const HullTriangle triangles[] = {{0, 1, 1}};
   return tree_of(vertices, triangles, 0);
 }
 
@@ -164,8 +164,8 @@ std::optional<PackedSphereTree> hull_tree(std::span<const Point> points) {
   if (!hull.build()) return std::nullopt;
   std::vector<std::uint32_t> place(points.size(), kNoTriangle);
   std::vector<Point> corners;
-  std::vector<Triangle> triangles = hull.triangles();
-  for (Triangle& t : triangles) {
+  std::vector<HullTriangle> triangles = hull.triangles();
+  for (HullTriangle& t : triangles) {
     for (std::uint32_t& v : t) {
       if (place[v] == kNoTriangle) place[v] = static_cast<std::uint32_t>(corners.size()), corners.push_back(points[v]);
       v = place[v];
@@ -174,7 +174,7 @@ std::optional<PackedSphereTree> hull_tree(std::span<const Point> points) {
   // The middle of the hull's box may be outside of it, but no farther from it than from its corners.
   PackedSphereTree tree = tree_of(corners, triangles, 0);
   double depth = -std::numeric_limits<double>::infinity();
-  for (const Triangle& t : triangles) {
+  for (const HullTriangle& t : triangles) {
     const Point n = cross(minus(corners[t[1]], corners[t[0]]), minus(corners[t[2]], corners[t[0]]));
     const double size = std::sqrt(dot(n, n));
     if (size > 0) depth = std::max(depth, dot(n, minus(tree.origin, corners[t[0]])) / size);
@@ -183,8 +183,8 @@ std::optional<PackedSphereTree> hull_tree(std::span<const Point> points) {
     depth = tree.bounding_radius;
   else
     depth = 0;
-  tree.blocks[0].depth[0] = above(depth);
-  tree.blocks[0].error[0] = above(tree.bounding_radius + depth);
+  tree.blocks[0].depth[0] = stored_above(depth);
+  tree.blocks[0].error[0] = stored_above(tree.bounding_radius + depth);
   return tree;
 }
 

@@ -20,10 +20,16 @@ inline double pair_bound(double distance, double radii, double errors, double de
   return std::max(0.0, bound) * (1 + kStretch);
 }
 
-inline double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 inline const SiblingBlock& block_of(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.blocks[node / kBlockWidth];
+}
+
+// The same of the triangles' own tree.
+inline const BallSlabBlock& slab_block(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.ball_slabs[node / kBlockWidth];
+}
+inline std::uint32_t slab_child(const TreeView& tree, std::uint32_t node) noexcept {
+  return slab_block(tree, node).child[node % kBlockWidth];
 }
 
 inline bool is_leaf(const TreeView& tree, std::uint32_t node) noexcept {

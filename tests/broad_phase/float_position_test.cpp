@@ -14,8 +14,6 @@
 namespace orchard::runtime {
 namespace {
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 Vec3 rounded(const Vec3& v) {
   return {static_cast<double>(static_cast<float>(v[0])), static_cast<double>(static_cast<float>(v[1])),
           static_cast<double>(static_cast<float>(v[2]))};

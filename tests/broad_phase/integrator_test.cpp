@@ -22,8 +22,6 @@ constexpr Integrator kIntegrators[] = {Integrator::explicit_euler,
                                        Integrator::heun,
                                        Integrator::runge_kutta_4};
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 struct State {
   Vec3 position, velocity;  // the velocity that the application would give
 };

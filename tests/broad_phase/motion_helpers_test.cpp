@@ -13,8 +13,6 @@ namespace {
 constexpr double kDt = 1e-4;  // the simulations' step: their own error is of its order
 constexpr Vec3 kNoHalfSpace{};
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // Follows a simulated body and checks what was announced: acceleration, half-space, and where both lead.
 class Watch {
  public:

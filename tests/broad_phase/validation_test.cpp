@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kStep = 0.01;
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 TEST(PromiseExcess, SaysWhichBoundIsBrokenByHowMuch) {
   const Motion promise{.position = {1, 2, 3},
                        .velocity = {4, 0, 0},

@@ -8,8 +8,6 @@
 namespace orchard::runtime::test {
 namespace {
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // By which angle the one is turned from the other, at least.
 double turned(const std::array<double, 9>& from, const std::array<double, 9>& to) {
   double square = 0;

@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kStep = 0.02;
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // A surface, which is solid if it is a box's, or a segment with a radius around it.
 struct Form {
   PackedSphereTree tree;

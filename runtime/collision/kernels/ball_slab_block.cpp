@@ -43,12 +43,6 @@ ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t 
   return found;
 }
 
-[[maybe_unused]] ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
-  std::uint32_t used = 0;
-  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
-  return used;
-}
-
 // Calls take(row, bits of lanes), row by row, until it returns true.
 template <typename Kind, typename Found>
 ORCHARD_INLINE bool each_candidate(const LeafPair& pair, const Placement& placement, Found&& take) noexcept {

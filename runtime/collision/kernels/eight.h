@@ -84,4 +84,11 @@ ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
   return lanes[0];
 }
 
+// The lanes that hold a triangle, as bits.
+ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
+  return used;
+}
+
 }  // namespace orchard::runtime::detail

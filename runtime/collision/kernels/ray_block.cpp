@@ -54,12 +54,6 @@ ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlab
   return Kind::bits(zero <= radius) & ~Kind::bits(missed);
 }
 
-ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
-  std::uint32_t used = 0;
-  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
-  return used;
-}
-
 // From the products of each two neighbouring corners, off by less than `room`: on which side of the edges the line is.
 template <typename Kind>
 ORCHARD_INLINE RayLeaf told_apart(const TriangleBlock& block, const typename Kind::Floats& p,

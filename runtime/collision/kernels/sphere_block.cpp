@@ -179,13 +179,13 @@ void test_block_scalar(const BlockPair& pair, const Placement& placement, LevelS
 }
 
 #ifdef ORCHARD_VECTORS
-using Widest = VectorKind;
+using WidestKind = VectorKind;
 #else
-using Widest = PlainKind;
+using WidestKind = PlainKind;
 #endif
 
 void test_block(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept {
-  PerMachine<test<Widest>>::call(pair, placement, level, hits);
+  PerMachine<test<WidestKind>>::call(pair, placement, level, hits);
 }
 
 }  // namespace orchard::runtime::detail

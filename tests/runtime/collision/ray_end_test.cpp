@@ -14,8 +14,6 @@ namespace {
 
 using test::Draw;
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 bool same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
   return a.has_value() == b.has_value() &&
          (!a || (a->along == b->along && a->triangle == b->triangle && a->point == b->point));

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -18,8 +19,10 @@ struct Vec3 : std::array<double, 3> {
 
 constexpr Vec3 operator+(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 constexpr Vec3 operator-(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+constexpr Vec3 operator-(const Vec3& a) noexcept { return {-a[0], -a[1], -a[2]}; }
 constexpr Vec3 operator*(double s, const Vec3& a) noexcept { return {s * a[0], s * a[1], s * a[2]}; }
 constexpr double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
 }  // namespace orchard::runtime
 
