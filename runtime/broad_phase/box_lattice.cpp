@@ -249,10 +249,12 @@ double Lattice::quantum(double coordinate, std::size_t axis) const noexcept {
 template <typename Kind>
 struct Lattice::Validity {
   using Numbers = typename Kind::Numbers;
-  typename Kind::Mask inside = Kind::within(zero(), zero(), zero(), zero());
+  typename Kind::Mask inside;
   Numbers squares = zero();  // of velocities, accelerations and so on
   Numbers least = zero();    // of what must not be negative
 
+  // Inlined without optimisation, too: only its caller may use the instructions of the Kind.
+  ORCHARD_INLINE Validity() noexcept : inside(Kind::within(zero(), zero(), zero(), zero())) {}
   ORCHARD_INLINE static Numbers zero() noexcept { return spread<Numbers>(0.0); }
   ORCHARD_INLINE bool all() const noexcept {
     const Numbers largest = spread<Numbers>(kMaxNumber * kMaxNumber);

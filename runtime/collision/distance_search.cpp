@@ -9,6 +9,7 @@
 #include "collision/kernels/least_last.h"
 #include "collision/kernels/node_box.h"
 #include "collision/triangle_distance.h"
+#include "tree/tree_nodes.h"
 
 // Depth first through the two trees of triangles, the nearest pair of ball slabs first, leaving out what is not nearer
 // than the best so far. Lower bounds are floats with their rounding taken off; distances of triangles are doubles.

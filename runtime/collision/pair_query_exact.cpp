@@ -5,6 +5,7 @@
 #include "collision/kernels/least_last.h"
 #include "collision/kernels/node_box.h"
 #include "collision/pair_query.h"
+#include "tree/tree_nodes.h"
 
 // The last level: depth first through the two trees of triangles, the larger ball slab of a pair opened first and the
 // deepest overlap looked at first, so that a "yes" comes early.
