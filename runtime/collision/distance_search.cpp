@@ -15,6 +15,8 @@
 // than the best so far. Lower bounds are floats with their rounding taken off; distances of triangles are doubles.
 namespace orchard::runtime {
 
+using detail::slab_child;
+
 namespace {
 
 constexpr double kDistanceRounding = 1e-12;  // of distances in double, relative to them
