@@ -9,6 +9,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/medial/read_axis.h"
+#include "orchard/medial/topology.h"
 
 namespace orchard {
 namespace {
@@ -201,6 +202,29 @@ void check_frame(const Surface& surface, const ForeignAxis& axis) {
     throw InputError(off + ", and no frame that programs commonly use fits; is it the axis of this mesh?");
 }
 
+std::string in_words(const Topology& topology) {
+  const auto count = [](std::int64_t number, const char* noun) {
+    return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+  };
+  return count(topology.components, "component") + ", " + count(topology.loops, "loop") + ", " +
+         std::to_string(topology.cavities) + (topology.cavities == 1 ? " cavity" : " cavities");
+}
+
+void connect(const Surface& surface, PlacedAxis& placed) {
+  ConnectedBalls connected = connect_balls(surface, placed.mesh);
+  placed.mesh = std::move(connected.mesh);
+  placed.connected = true;
+  placed.notes.push_back("the file has no cells: its balls are connected by their power diagram within the solid" +
+                         (connected.left_out > 0
+                              ? "; " + std::to_string(connected.left_out) + " without a part of it are left out"
+                              : std::string()));
+  const Topology found = topology(placed.mesh), wanted = solid_topology(surface);
+  if (found == wanted) return;
+  placed.notes.push_back("so connected they have " + in_words(found) + ", the solid has " + in_words(wanted) +
+                         ": where one ball is the nearest to two pieces of the solid, or two balls meet in two places, "
+                         "the diagram does not tell these apart; more balls there would");
+}
+
 }  // namespace
 
 PlacedAxis place_axis(const Surface& surface, ForeignAxis axis, const PlaceOptions& options) {
@@ -215,13 +239,7 @@ PlacedAxis place_axis(const Surface& surface, ForeignAxis axis, const PlaceOptio
   placed.radii_found = !axis.has_radii;
   if (placed.mesh.edges.empty()) {
     if (options.connect) {
-      ConnectedBalls connected = connect_balls(surface, placed.mesh);
-      placed.mesh = std::move(connected.mesh);
-      placed.connected = true;
-      placed.notes.push_back("the file has no cells: its balls are connected by their power diagram within the solid" +
-                             (connected.left_out > 0
-                                  ? "; " + std::to_string(connected.left_out) + " without a part of it are left out"
-                                  : std::string()));
+      connect(surface, placed);
     } else if (placed.mesh.size() > 1) {
       placed.notes.push_back("the file has no cells: its balls are measured alone");
     }

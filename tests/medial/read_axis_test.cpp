@@ -361,6 +361,23 @@ TEST(ConnectBalls, GivesTheTopologyOfTheSolid) {
   EXPECT_EQ(connect_balls(ring, circle).left_out, 1u);
 }
 
+TEST(ConnectBalls, SaysWhereTwoBallsMeetInTwoPlaces) {
+  const Surface ring(test::torus(64, 24));
+  MedialMesh few;
+  few.centers = {Point(1, 0, 0), Point(-1, 0, 0)};
+  few.radii = {0.34, 0.34};
+  const PlacedAxis two = place_axis(ring, {.mesh = few}, {.connect = true});
+  EXPECT_EQ(two.mesh.edges.size(), 1u) << "one edge for both places, so that the loop is lost";
+  EXPECT_NE(two.notes.back().find("1 component, 0 loops, 0 cavities, the solid has 1 component, 1 loop"),
+            std::string::npos)
+      << two.notes.back();
+  few.centers.insert(few.centers.end(), {Point(0, 1, 0), Point(0, -1, 0)});
+  few.radii.resize(4, 0.34);
+  const PlacedAxis four = place_axis(ring, {.mesh = few}, {.connect = true});
+  EXPECT_EQ(topology(four.mesh), solid_topology(ring));
+  EXPECT_EQ(four.notes.size(), 1u) << "nothing to say of the topology";
+}
+
 TEST(ConnectBalls, OfAPlateAreOneSheetOrAtLeastAllOfIt) {
   const Surface plate(test::box({0, 0, 0}, {8, 8, 1}));
   MedialMesh balls;

@@ -9,7 +9,7 @@
 
 namespace orchard {
 
-// A medial axis as the medial-mesh community has it (Li, Wang, Sun, Hu 2015): balls, and edges and triangles between
+// A medial axis as the medial-mesh community has it (Q-MAT, Li et al. 2015): balls, and edges and triangles between
 // them that stand for the balls in between, whose centres and radii are interpolated linearly. Any system's result.
 struct MedialMesh {
   std::vector<Point> centers;

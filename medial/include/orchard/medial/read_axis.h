@@ -57,9 +57,11 @@ struct PlacedAxis {
 PlacedAxis place_axis(const Surface& surface, ForeignAxis axis, const PlaceOptions& options = {});
 
 // The axis that balls make by their power diagram within the solid: an edge or triangle for each facet or edge of the
-// diagram that meets the solid (its nerve, as in MATTopo, Wang et al. 2022). Balls without a part of the solid are left
+// diagram that meets the solid (its nerve, as in MATTopo, Wang et al. 2024). Balls without a part of the solid are left
 // out. Where four balls meet inside the solid there is a tetrahedron, which is collapsed from a free side; those that
-// have none keep their four triangles, so that the topology is that of the solid only where there are none of these.
+// have none keep their four triangles. The topology is that of the solid if no tetrahedra are left and every part of
+// the solid that belongs to one ball, two or three is in one piece without holes. With few balls it is often not: a
+// ball that is the nearest to two legs joins them, and gives one loop too many.
 struct ConnectedBalls {
   MedialMesh mesh;
   Index left_out = 0;    // balls without a part of the solid
