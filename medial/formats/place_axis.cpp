@@ -184,7 +184,9 @@ void check_frame(const Surface& surface, const ForeignAxis& axis) {
   const std::vector<double>& radii = axis.mesh.radii;
   if (!axis.has_radii || std::all_of(radii.begin(), radii.end(), [&](double r) { return r == radii.front(); })) {
     const FrameFinder copies(surface, axis, Fit::surface);
-    if (copies.on_surface({}) || copies.on_surface(copies.best())) refuse_surface(axis);
+    // Lines and points alone fit onto many surfaces: the circle in a ring does if it is made larger.
+    const bool surface_like = !axis.mesh.triangles.empty();
+    if (copies.on_surface({}) || (surface_like && copies.on_surface(copies.best()))) refuse_surface(axis);
   }
   const FrameFinder finder(surface, axis, axis.has_radii ? Fit::balls : Fit::inside);
   const double now = finder.error({}), balls_off = finder.median({});
