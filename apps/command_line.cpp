@@ -459,7 +459,7 @@ void add_leaderboard(CLI::App& app, Request& request) {
   command.add_option("-o,--output", leaderboard.folder, "Folder for the table, and for what a later run need not redo")
       ->required();
   add_list(command, "--builders", leaderboard.builders,
-           "Of orchard, in as few balls: refined axes, raw ones (default refined)", {"refined", "raw"});
+           "Of orchard, in as few balls: refined axes, raw ones (default both)", {"refined", "raw"});
   add_list(command, "--vertices", leaderboard.vertices, "Numbers of balls to build besides those of the axes", 1);
   command.add_flag("--connect", leaderboard.connect,
                    "Connect balls without cells by their power diagram within the solid");

@@ -124,7 +124,7 @@ ExitCode medial(const MedialCommand& command);
 
 struct LeaderboardCommand {
   std::filesystem::path input, folder;  // of meshes and axes; for the table
-  std::vector<std::string> builders;    // of orchard: refined, raw; empty: refined
+  std::vector<std::string> builders;    // of orchard: refined, raw; empty: both
   std::vector<Index> vertices;          // numbers of balls beside those of the axes
   bool connect = false;                 // as of MedialCommand
   Index quality_samples = 20'000;       // surface points of each judgement

@@ -7,6 +7,7 @@
 #include "leaderboard_entries.h"
 #include "leaderboard_pages.h"
 #include "leaderboard_rows.h"
+#include "leaderboard_states.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "outputs.h"
@@ -17,9 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReport = "leaderboard.json";
-#ifdef ORCHARD_HAS_VIZ
-constexpr const char* kScript = "leaderboard-worst.py";
-#endif
 
 std::vector<std::string> models_of(const LeaderboardFolder& found) {
   std::vector<std::string> models;
@@ -30,6 +28,7 @@ std::vector<std::string> models_of(const LeaderboardFolder& found) {
 }
 
 std::string plot_name(const std::string& model) { return model + "-leaderboard.svg"; }
+std::string state_name(const std::string& model) { return model + "-worst.pvsm"; }
 
 void print(const std::vector<LeaderboardRow>& rows) {
   fmt::print("{:<20} {:>6} {:<18} {:>6} {:>9} {:>9}  {}\n", "mesh", "N", "system", "balls", "max %", "mean %",
@@ -69,17 +68,17 @@ void leaderboard(const LeaderboardCommand& command) {
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
   std::vector<std::string> names{"leaderboard.md", "leaderboard.csv"};
-#ifdef ORCHARD_HAS_VIZ
-  names.push_back(kScript);
-#endif
-  for (const std::string& model : models) names.push_back(plot_name(model));
+  for (const std::string& model : models) {
+    names.push_back(plot_name(model));
+    names.push_back(state_name(model));
+  }
   check_outputs(destination, names, inputs);
   const bool talk = !command.output.quiet && !command.output.json;
   ProgressBar bar(talk);
   const LeaderboardOptions options{
       .quality_samples = command.quality_samples,
       .vertices = command.vertices,
-      .builders = command.builders.empty() ? std::vector<std::string>{"refined"} : command.builders,
+      .builders = command.builders.empty() ? std::vector<std::string>{"refined", "raw"} : command.builders,
       .connect = command.connect,
       .samples = command.samples,
       .seed = command.seed};
@@ -94,10 +93,11 @@ void leaderboard(const LeaderboardCommand& command) {
   write_file(outputs.add("leaderboard.md", "the table, with what is not comparable"),
              to_markdown(rows, found.skipped, plots));
   write_file(outputs.add("leaderboard.csv", "every measure of every axis"), to_csv(rows));
-#ifdef ORCHARD_HAS_VIZ
-  write_file(outputs.add(kScript, "opens the worst places in ParaView"),
-             to_paraview(rows, found.entries, command.folder));
-#endif
+  for (const std::string& model : models) {
+    const std::string name = state_name(model);
+    if (write_worst_state(outputs.staged(name), rows, model, command.folder))
+      outputs.add(name, "opens its worst places in ParaView");
+  }
   nlohmann::json report = to_json(rows, found.skipped);
   outputs.add_report(report, "the same as JSON");
   outputs.commit();

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "medial_measures.h"
@@ -207,35 +206,6 @@ json to_json(const std::vector<LeaderboardRow>& rows, const std::vector<std::str
             {"lower_mean", all.lower_mean},
             {"topology_right", all.right},
             {"behind", all.behind}}}};
-}
-
-std::string to_paraview(const std::vector<LeaderboardRow>& rows, const std::vector<LeaderboardEntry>& entries,
-                        const std::filesystem::path& folder) {
-  json meshes = json::object(), shown = json::array();
-  for (const LeaderboardEntry& entry : entries)
-    meshes[entry.model] = std::filesystem::relative(entry.mesh, folder).generic_string();
-  for (const LeaderboardRow& row : rows) {
-    if (row.refused.empty()) shown.push_back({row.model, fmt::format("{} at {}", row.system, row.asked), row.file});
-  }
-  return "# paraview --script=leaderboard-worst.py: pick the rows to show in the pipeline browser.\n"
-         "import os\nfrom paraview.simple import *\n\n"
-         "here = os.path.dirname(os.path.abspath(__file__)) if '__file__' in globals() else os.getcwd()\n"
-         "meshes = " +
-         meshes.dump(1) + "\nrows = " + shown.dump() +
-         "\n\n"
-         "view = GetActiveViewOrCreate('RenderView')\n"
-         "for model, file in meshes.items():\n"
-         "    if os.path.splitext(file)[1] in ('.obj', '.stl', '.ply'):\n"
-         "        mesh = OpenDataFile(os.path.join(here, file), registrationName=model)\n"
-         "        Show(mesh, view).Opacity = 0.15\n"
-         "        Hide(mesh, view)\n"
-         "for model, title, file in rows:\n"
-         "    worst = OpenDataFile(os.path.join(here, 'worst', file + '.vtp'), registrationName=model + ': ' + title)\n"
-         "    shown = Show(worst, view)\n"
-         "    shown.PointSize = 12\n"
-         "    ColorBy(shown, ('POINTS', 'value'))\n"
-         "    Hide(worst, view)\n"
-         "ResetCamera(view)\n";
 }
 
 std::string to_svg(const std::vector<LeaderboardRow>& rows, const std::string& model) {

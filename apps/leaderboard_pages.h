@@ -23,10 +23,6 @@ std::string to_markdown(const std::vector<LeaderboardRow>& rows, const std::vect
 std::string to_csv(const std::vector<LeaderboardRow>& rows);
 // As docs/leaderboard.schema.json says.
 nlohmann::json to_json(const std::vector<LeaderboardRow>& rows, const std::vector<std::string>& skipped);
-// A script for ParaView: the mesh of a model and the axes of all its rows, each with its worst places, one row shown at
-// a time. Files are named as in the folder of the leaderboard; `entries` say where meshes and axes are.
-std::string to_paraview(const std::vector<LeaderboardRow>& rows, const std::vector<LeaderboardEntry>& entries,
-                        const std::filesystem::path& folder);
 // Largest and mean distance against the number of balls, a line for each system.
 std::string to_svg(const std::vector<LeaderboardRow>& rows, const std::string& model);
 

@@ -22,6 +22,7 @@
 #include "provenance.h"
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/medial_writer.h"
+#include "orchard/viz/vtk_writer.h"
 #endif
 
 namespace orchard::apps {
@@ -54,7 +55,10 @@ class Model {
   LeaderboardRow measure(const LeaderboardEntry& entry, bool own) {
     const std::string key = key_of({checksum_of(entry.file), options_.connect});
     const fs::path kept = folder_ / "rows" / (entry.file.filename().string() + ".json");
-    if (std::optional<json> known = read_json(kept); known && known->value("key", "") == key) return row_from(*known);
+    if (std::optional<json> known = read_json(kept); known && known->value("key", "") == key) {
+      LeaderboardRow row = row_from(*known);
+      if (has_views(row)) return row;
+    }
     LeaderboardRow row{.model = name_, .system = entry.system, .file = entry.file.filename().string(), .own = own};
     try {
       fill(entry, row);
@@ -135,10 +139,31 @@ class Model {
     for (const WorstPlace& place : judgement.quality.worst) places.push_back({place, {}});
     row.worst = to_json(places);
     for (json& place : row.worst) place.erase("advice");
-#ifdef ORCHARD_HAS_VIZ
-    write_worst_places(folder_ / "worst" / (row.file + ".vtp"), judgement.quality.worst);
-#endif
+    write_views(row, axis.mesh, judgement.quality.worst);
   }
+
+  // What leaderboard_states.h shows.
+#ifdef ORCHARD_HAS_VIZ
+  bool has_views(const LeaderboardRow& row) const {
+    if (!row.refused.empty()) return true;
+    const WorstFiles files = worst_files(row);
+    return fs::exists(folder_ / files.mesh) && fs::exists(folder_ / files.ball) && fs::exists(folder_ / files.axis) &&
+           fs::exists(folder_ / files.places);
+  }
+  void write_views(const LeaderboardRow& row, const MedialMesh& axis, const std::vector<WorstPlace>& worst) {
+    const WorstFiles files = worst_files(row);
+    const Surface& surface = solid().surface;
+    const Sphere& ball = surface.bounding_ball();
+    write_worst_places(folder_ / files.places, worst);
+    write_medial_mesh(folder_ / files.axis, axis);
+    write_mesh(folder_ / files.mesh, surface);
+    write_file(folder_ / files.ball,
+               json{ball.center.x(), ball.center.y(), ball.center.z(), ball.radius}.dump() + "\n");
+  }
+#else
+  bool has_views(const LeaderboardRow&) const { return true; }
+  void write_views(const LeaderboardRow&, const MedialMesh&, const std::vector<WorstPlace>&) {}
+#endif
 
   // The refined axis is built more closely until it has enough balls for the largest number that is asked for.
   MedialMesh whole_axis(const std::string& builder, Index most) {
@@ -197,6 +222,14 @@ class Model {
 double LeaderboardRow::value(const char* measure) const {
   const auto at = measures.find(measure);
   return at == measures.end() || !at->is_number() ? std::nan("") : at->get<double>();
+}
+
+WorstFiles worst_files(const LeaderboardRow& row) {
+  const fs::path folder = "worst";
+  return {.mesh = folder / (row.model + "-mesh.vtp"),
+          .axis = folder / (row.file + "-axis.vtp"),
+          .places = folder / (row.file + ".vtp"),
+          .ball = folder / (row.model + "-ball.json")};
 }
 
 json to_json(const LeaderboardRow& row) {

@@ -40,13 +40,19 @@ struct LeaderboardRow {
   bool comparable() const { return refused.empty() && (edges > 0 || balls == 1); }
 };
 nlohmann::json to_json(const LeaderboardRow& row);
+
+// What there is to see of a measured row, below the folder of the leaderboard.
+struct WorstFiles {
+  std::filesystem::path mesh = {}, axis = {}, places = {};  // .vtp
+  std::filesystem::path ball = {};                          // JSON: x, y, z and radius of the mesh's bounding ball
+};
+WorstFiles worst_files(const LeaderboardRow& row);
 LeaderboardRow row_from(const nlohmann::json& json);
 
 // Measures every entry, and builds and measures orchard's axes for every mesh that has one, at the same numbers of
-// balls. `folder` keeps each row (rows/), its worst places for ParaView (worst/, if the program was built with VTK) and
-// each axis that was built (axes/): what is there with the same inputs,
-// options and version is not made again. Rows come by model, number of balls asked for, system and file. A mesh or file
-// that cannot be read makes rows that say so.
+// balls. `folder` keeps each row (rows/), what ParaView shows of it (worst/, if the program was built with VTK) and
+// each axis that was built (axes/): what is there with the same inputs, options and version is not made again. Rows
+// come by model, number of balls asked for, system and file. A mesh or file that cannot be read makes rows that say so.
 std::vector<LeaderboardRow> measure_entries(const LeaderboardFolder& found, const LeaderboardOptions& options,
                                             const std::filesystem::path& folder, const Progress& progress);
 

@@ -125,7 +125,13 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-// From the right and above, as in the picture.
+bool measured(const SphereTree& tree) {
+  return std::all_of(tree.nodes.begin(), tree.nodes.end(),
+                     [](const SphereNode& node) { return std::isfinite(node.inaccuracy); });
+}
+
+}  // namespace
+
 Vector towards_eye(UpAxis up) {
   constexpr double kAzimuth = 0.6, kElevation = 0.4;
   const int axis = static_cast<int>(up);
@@ -135,19 +141,14 @@ Vector towards_eye(UpAxis up) {
          std::sin(kElevation) * upward;
 }
 
-bool measured(const SphereTree& tree) {
-  return std::all_of(tree.nodes.begin(), tree.nodes.end(),
-                     [](const SphereNode& node) { return std::isfinite(node.inaccuracy); });
-}
-
-}  // namespace
-
 ParaViewScene paraview_scene(const PipelineValues& values) {
   const Sphere& ball = values.surface->bounding_ball();
-  constexpr double kRoom = 1.15;  // the spheres of the first levels reach further than the mesh
-  ParaViewScene scene{
-      ball.center, ball.radius, kRoom * ball.radius, towards_eye(values.up), Vector::Unit(static_cast<int>(values.up)),
-      {}};
+  ParaViewScene scene{ball.center,
+                      ball.radius,
+                      kParaViewRoom * ball.radius,
+                      towards_eye(values.up),
+                      Vector::Unit(static_cast<int>(values.up)),
+                      {}};
   if (values.tree) scene.color = measured(*values.tree) ? "inaccuracy" : "radius";
   return scene;
 }

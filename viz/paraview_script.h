@@ -6,6 +6,11 @@
 
 namespace orchard::detail {
 
+constexpr double kParaViewRoom = 1.15;  // the spheres of the first levels reach further than the mesh
+
+// From the right and above, as in the picture.
+Vector towards_eye(UpAxis up);
+
 // From where ParaView looks, at what, and the array of a level's file that the spheres' colour stands for.
 struct ParaViewScene {
   Vector center;

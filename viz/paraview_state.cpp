@@ -1,265 +1,308 @@
+#include "orchard/viz/paraview_state.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <initializer_list>
 #include <limits>
+#include <map>
 
 #include "orchard/geometry/atomic_file.h"
-#include "orchard/geometry/xml_escaped.h"
 #include "paraview_script.h"
-#include "vtk_data.h"
+#include "state_objects.h"
 
-// A state lists ParaView's objects ("proxies") by number, each with the properties that differ from what ParaView takes
-// by itself, and then the names by which they are found.
 namespace orchard {
+
+using namespace detail;
+
 namespace {
 
-enum Object : int {
-  kMeshFile = 101,
-  kLevelsFile,
-  kColors,
-  kOpacities,
-  kMeshShown,
-  kSpheresShown,
-  kLegend,
-  kView,
-  kLayout,
-  kTimes,
-  kAnimation,
-  kGlyphs  // and the numbers after it
-};
+using Object = StateObjects::Object;
+using Color = std::array<double, 3>;
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+constexpr std::array<Color, 9> kViridis{{
+    {0.267, 0.005, 0.329},
+    {0.279, 0.175, 0.483},
+    {0.230, 0.322, 0.546},
+    {0.173, 0.449, 0.558},
+    {0.128, 0.567, 0.551},
+    {0.154, 0.680, 0.504},
+    {0.361, 0.786, 0.388},
+    {0.668, 0.862, 0.196},
+    {0.993, 0.906, 0.144},
+}};
+// Of Okabe and Ito, which colour-blind people can tell apart.
+constexpr std::array<Color, 8> kDistinct{{
+    {0.000, 0.447, 0.698},
+    {0.902, 0.624, 0.000},
+    {0.000, 0.620, 0.451},
+    {0.800, 0.475, 0.655},
+    {0.337, 0.706, 0.914},
+    {0.835, 0.369, 0.000},
+    {0.941, 0.894, 0.259},
+    {0.500, 0.500, 0.500},
+}};
+constexpr Color kInk{0.1, 0.1, 0.1};
+
+std::vector<std::string> texts(const Color& color) { return StateObjects::texts({color[0], color[1], color[2]}); }
+
+const char* reader_of(const std::filesystem::path& file) {
+  if (file.extension() == ".pvd") return "PVDReader";
+  return file.extension() == ".vtu" ? "XMLUnstructuredGridReader" : "XMLPolyDataReader";
 }
 
-std::vector<std::string> texts(std::initializer_list<double> numbers) {
-  std::vector<std::string> result;
-  for (const double number : numbers) result.push_back(digits(number));
-  return result;
-}
-
-std::vector<std::string> texts(const Vector& v) { return texts({v.x(), v.y(), v.z()}); }
-
-class State {
+class SceneWriter {
  public:
-  void begin(const char* group, const char* type, Object object) {
-    object_ = std::to_string(object);
-    text_.append("    <Proxy group=\"").append(group).append("\" type=\"").append(type);
-    text_.append("\" id=\"" + object_ + "\">\n");
-  }
+  SceneWriter(const StateScene& scene, const std::filesystem::path& folder)
+      : scene_(scene), folder_(std::filesystem::absolute(folder).lexically_normal()) {}
 
-  void set(const char* property, const std::vector<std::string>& values) {
-    begin_property(property, values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      text_ += "        <Element index=\"" + std::to_string(i) + "\" value=\"" + xml_escaped(values[i]) + "\"/>\n";
-    text_ += "      </Property>\n";
-  }
-
-  void set(const char* property, const std::string& value) { set(property, std::vector<std::string>{value}); }
-  void set(const char* property, double value) { set(property, texts({value})); }
-
-  // choices: objects that the property offers in place of this one.
-  void link(const char* property, std::initializer_list<Object> objects, const std::vector<Object>& choices = {}) {
-    begin_property(property, objects.size());
-    for (const Object object : objects) text_ += "        <Proxy value=\"" + std::to_string(object) + "\"/>\n";
-    if (!choices.empty()) {
-      text_ += "        <Domain name=\"proxy_list\" id=\"" + object_ + "." + property + ".proxy_list\">\n";
-      for (const Object object : choices) text_ += "          <Proxy value=\"" + std::to_string(object) + "\"/>\n";
-      text_ += "        </Domain>\n";
-    }
-    text_ += "      </Property>\n";
-  }
-
-  void layout_of(Object view) {
-    text_ += "      <Layout number_of_elements=\"1\">\n        <Item direction=\"0\" fraction=\"0.5\" view=\"" +
-             std::to_string(view) + "\"/>\n      </Layout>\n";
-  }
-
-  void end() { text_ += "    </Proxy>\n"; }
-
-  void name(const char* collection, Object object, const std::string& name) {
-    names_.append("    <ProxyCollection name=\"").append(collection).append("\">\n      <Item id=\"");
-    names_ += std::to_string(object) + "\" name=\"" + xml_escaped(name) + "\"/>\n    </ProxyCollection>\n";
-  }
-
-  std::string whole() const {
-    return "<ParaView>\n  <ServerManagerState version=\"5.11.0\">\n" + text_ + names_ +
-           "  </ServerManagerState>\n</ParaView>\n";
+  std::string run() {
+    for (const StateLayer& layer : scene_.layers) add_file(layer);
+    for (const StateRange& range : scene_.ranges) add_colors(range);
+    for (const StateView& view : scene_.views) add_view(view);
+    objects_.link_cameras(views_);
+    const Object layout = objects_.begin("misc", "ViewLayout");
+    objects_.layout_of(views_);
+    objects_.end();
+    objects_.name("layouts", layout, "Layout #1");
+    add_time();
+    return objects_.whole();
   }
 
  private:
-  void begin_property(const char* property, std::size_t count) {
-    text_.append("      <Property name=\"").append(property).append("\" id=\"" + object_ + "." + property);
-    text_.append("\" number_of_elements=\"" + std::to_string(count) + "\">\n");
+  void add_file(const StateLayer& layer) {
+    const Object file = objects_.begin("sources", reader_of(layer.file));
+    objects_.set("FileName", (folder_ / layer.file).string());
+    objects_.end();
+    objects_.name("sources", file, layer.name);
+    files_.push_back(file);
   }
 
-  std::string text_, names_, object_;
+  bool has_categories(const std::string& array) const {
+    return std::any_of(scene_.layers.begin(), scene_.layers.end(),
+                       [&](const StateLayer& layer) { return layer.array == array && layer.categories; });
+  }
+
+  std::vector<std::string> color_points(const StateRange& range, bool categories) const {
+    const double begin = range.range[0];
+    // Two colours at one place are none.
+    const double end = std::max(range.range[1], begin + 1e-9 * std::max(std::abs(begin), scene_.radius));
+    std::vector<std::string> points;
+    const auto add = [&](double value, const Color& color) {
+      for (const std::string& text : StateObjects::texts({value, color[0], color[1], color[2]})) points.push_back(text);
+    };
+    if (categories) {
+      for (int i = 0; i <= static_cast<int>(end - begin); ++i)
+        add(begin + i, kDistinct[static_cast<std::size_t>(i) % kDistinct.size()]);
+    } else {
+      for (std::size_t i = 0; i < kViridis.size(); ++i)
+        add(begin + static_cast<double>(i) / static_cast<double>(kViridis.size() - 1) * (end - begin), kViridis[i]);
+    }
+    return points;
+  }
+
+  void add_colors(const StateRange& range) {
+    const bool categories = has_categories(range.array);
+    const Object opacities = objects_.begin("piecewise_functions", "PiecewiseFunction");
+    objects_.set("Points", StateObjects::texts({range.range[0], 0, 0.5, 0, range.range[1], 1, 0.5, 0}));
+    objects_.set("ScalarRangeInitialized", 1);
+    objects_.end();
+    objects_.name("piecewise_functions", opacities, range.array + ".PiecewiseFunction");
+    const Object colors = objects_.begin("lookup_tables", "PVLookupTable");
+    objects_.set("RGBPoints", color_points(range, categories));
+    objects_.set("ColorSpace", categories ? 5 : 0);  // steps; red, green, blue
+    if (categories) objects_.set("Discretize", 0);
+    objects_.set("AutomaticRescaleRangeMode", scene_.last_step ? 3 : -1);  // to each step's range; never
+    objects_.set("ScalarRangeInitialized", 1);
+    objects_.link("ScalarOpacityFunction", {opacities});
+    objects_.end();
+    objects_.name("lookup_tables", colors, range.array + ".PVLookupTable");
+    colors_[range.array] = colors;
+  }
+
+  Object add_representation(const char* type) {
+    const Object object = objects_.begin("representations", type);
+    objects_.name("representations", object, std::string(type) + std::to_string(++shown_count_));
+    return object;
+  }
+
+  // The sphere, and the other shapes that ParaView's list of glyphs would miss.
+  std::vector<Object> add_glyphs() {
+    std::vector<Object> glyphs;
+    for (const char* shape :
+         {"SphereSource", "ArrowSource", "ConeSource", "CubeSource", "CylinderSource", "LineSource"}) {
+      glyphs.push_back(objects_.begin("sources", shape));
+      if (glyphs.size() == 1)
+        for (const char* property : {"ThetaResolution", "PhiResolution"}) objects_.set(property, 32);
+      objects_.end();
+    }
+    return glyphs;
+  }
+
+  void set_spheres(const StateLayer& layer, const std::vector<Object>& glyphs) {
+    objects_.set("Representation", "3D Glyphs");
+    objects_.link("GlyphType", {glyphs.front()}, glyphs);
+    objects_.set("Scaling", 1);
+    const bool fixed = layer.sphere_radius > 0;
+    objects_.set("ScaleMode", fixed ? 0 : 1);  // none; by magnitude
+    if (!fixed) objects_.set("SelectScaleArray", "radius");
+    objects_.set("ScaleFactor", fixed ? 2 * layer.sphere_radius : 2);  // ParaView's sphere has radius 1/2
+  }
+
+  Object show(std::size_t number) {
+    const StateLayer& layer = scene_.layers[number];
+    const bool spheres = layer.look == StateLayer::Look::spheres;
+    const std::vector<Object> glyphs = spheres ? add_glyphs() : std::vector<Object>{};
+    const Object shown = add_representation(layer.file.extension() == ".vtu" ? "UnstructuredGridRepresentation"
+                                                                             : "GeometryRepresentation");
+    objects_.link("Input", {files_[number]});
+    if (spheres) {
+      set_spheres(layer, glyphs);
+    } else {
+      objects_.set("Representation", layer.look == StateLayer::Look::edges ? "Wireframe" : "Surface");
+    }
+    objects_.set("LineWidth", layer.width);
+    objects_.set("Opacity", layer.opacity);
+    if (layer.array.empty()) {
+      for (const char* property : {"AmbientColor", "DiffuseColor"}) objects_.set(property, texts(layer.color));
+    } else {
+      objects_.set("ColorArrayName", {"0", "0", "0", layer.of_cells ? "1" : "0", layer.array});
+      objects_.link("LookupTable", {colors_.at(layer.array)});
+    }
+    objects_.end();
+    return shown;
+  }
+
+  Object add_legend(const StateRange& range) {
+    const Object legend = objects_.begin("representations", "ScalarBarWidgetRepresentation");
+    for (const char* property : {"Enabled", "Visibility"}) objects_.set(property, 1);
+    objects_.link("LookupTable", {colors_.at(range.array)});
+    objects_.set("Title", range.title);
+    objects_.set("ComponentTitle", "");
+    for (const char* property : {"TitleColor", "LabelColor"}) objects_.set(property, texts(kInk));
+    objects_.set("TitleFontSize", 14);
+    objects_.set("LabelFontSize", 12);
+    objects_.set("ScalarBarLength", 0.3);
+    objects_.set("ScalarBarThickness", 12);
+    for (const char* property : {"LabelFormat", "RangeLabelFormat"}) objects_.set(property, "%.3g");
+    objects_.end();
+    objects_.name("scalar_bars", legend, "ScalarBarWidgetRepresentation" + std::to_string(++legend_count_));
+    return legend;
+  }
+
+  Object add_title(const std::string& title) {
+    const Object text = objects_.begin("sources", "TextSource");
+    objects_.set("Text", title);
+    objects_.end();
+    objects_.name("sources", text, "title: " + title);
+    const Object shown = add_representation("TextSourceRepresentation");
+    objects_.link("Input", {text});
+    objects_.set("Color", texts(kInk));
+    objects_.set("WindowLocation", 6);  // above, in the middle
+    objects_.set("FontSize", 11);
+    objects_.end();
+    return shown;
+  }
+
+  // One legend is enough for all views, whose colours are the same.
+  bool is_last_with(const StateView& view, const std::string& array) const {
+    const StateView* last = nullptr;
+    for (const StateView& other : scene_.views) {
+      if (std::any_of(other.layers.begin(), other.layers.end(),
+                      [&](std::size_t layer) { return scene_.layers[layer].array == array; }))
+        last = &other;
+    }
+    return last == &view;
+  }
+
+  void add_view(const StateView& view) {
+    std::vector<Object> shown;
+    for (const std::size_t layer : view.layers) shown.push_back(show(layer));
+    for (const StateRange& range : scene_.ranges) {
+      if (!range.title.empty() && is_last_with(view, range.array)) shown.push_back(add_legend(range));
+    }
+    if (!view.title.empty()) shown.push_back(add_title(view.title));
+    const Object object = objects_.begin("views", "RenderView");
+    objects_.link("Representations", shown);
+    objects_.set("UseColorPaletteForBackground", 0);
+    objects_.set("BackgroundColorMode", 0);  // one colour
+    objects_.set("Background", StateObjects::texts({1, 1, 1}));
+    objects_.set("OrientationAxesLabelColor", texts(kInk));
+    set_camera();
+    if (scene_.last_step) objects_.set("ViewTime", *scene_.last_step);
+    objects_.end();
+    views_.push_back(object);
+    objects_.name("views", object, "RenderView" + std::to_string(views_.size()));
+  }
+
+  void set_camera() {
+    objects_.set("CameraParallelProjection", 1);
+    // Half of the height: where several are side by side, they are narrower than high.
+    const double narrow = scene_.views.size() > 1 ? 1.35 : 1;
+    objects_.set("CameraParallelScale", narrow * kParaViewRoom * scene_.radius);
+    for (const char* property : {"CameraFocalPoint", "CenterOfRotation"})
+      objects_.set(property, StateObjects::texts(scene_.center));
+    objects_.set("CameraPosition", StateObjects::texts(scene_.center + 4 * scene_.radius * towards_eye(scene_.up)));
+    objects_.set("CameraViewUp", StateObjects::texts(Vector::Unit(static_cast<int>(scene_.up))));
+  }
+
+  void add_time() {
+    if (!scene_.last_step) return;
+    const double last = *scene_.last_step;
+    const Object times = objects_.begin("misc", "TimeKeeper");
+    objects_.set("Time", last);
+    objects_.link("TimeSources", files_);
+    objects_.link("Views", views_);
+    objects_.end();
+    objects_.name("timekeeper", times, "TimeKeeper1");
+    const Object animation = objects_.begin("animation", "AnimationScene");
+    objects_.set("AnimationTime", last);
+    objects_.set("EndTime", last);
+    objects_.set("PlayMode", 2);  // from step to step
+    objects_.link("TimeKeeper", {times});
+    objects_.link("ViewModules", views_);
+    objects_.end();
+    objects_.name("animation", animation, "AnimationScene1");
+  }
+
+  const StateScene& scene_;
+  std::filesystem::path folder_;
+  StateObjects objects_;
+  std::vector<Object> files_, views_;
+  std::map<std::string, Object> colors_;
+  int shown_count_ = 0, legend_count_ = 0;
 };
 
 // Of what the colours stand for, among the spheres that the last level shows.
-std::array<double, 2> range(const SphereTree& tree, bool inaccuracy) {
+std::array<double, 2> range_of(const SphereTree& tree, bool inaccuracy) {
   std::array<double, 2> result{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const SphereNode& node : tree.nodes) {
     if (node.level != tree.depth() && node.child_count > 0) continue;
     const double value = inaccuracy ? node.inaccuracy : node.sphere.radius;
     result = {std::min(result[0], value), std::max(result[1], value)};
   }
-  // Two colours at one place are none.
-  result[1] = std::max(result[1], result[0] + 1e-9 * std::max(std::abs(result[0]), tree.nodes.front().sphere.radius));
   return result;
-}
-
-void add_files(State& state, const std::filesystem::path& files) {
-  state.begin("sources", "XMLPolyDataReader", kMeshFile);
-  state.set("FileName", files.string() + "-mesh.vtp");
-  state.end();
-  state.name("sources", kMeshFile, "mesh");
-  state.begin("sources", "PVDReader", kLevelsFile);
-  state.set("FileName", files.string() + ".pvd");
-  state.end();
-  state.name("sources", kLevelsFile, "levels");
-}
-
-void add_colors(State& state, const std::string& name, const std::array<double, 2>& range) {
-  constexpr std::array<std::array<double, 3>, 9> kViridis{{
-      {0.267, 0.005, 0.329},
-      {0.279, 0.175, 0.483},
-      {0.230, 0.322, 0.546},
-      {0.173, 0.449, 0.558},
-      {0.128, 0.567, 0.551},
-      {0.154, 0.680, 0.504},
-      {0.361, 0.786, 0.388},
-      {0.668, 0.862, 0.196},
-      {0.993, 0.906, 0.144},
-  }};
-  std::vector<std::string> points;
-  for (std::size_t i = 0; i < kViridis.size(); ++i) {
-    const double t = static_cast<double>(i) / static_cast<double>(kViridis.size() - 1);
-    for (const double value : {range[0] + t * (range[1] - range[0]), kViridis[i][0], kViridis[i][1], kViridis[i][2]})
-      points.push_back(digits(value));
-  }
-  state.begin("lookup_tables", "PVLookupTable", kColors);
-  state.set("RGBPoints", points);
-  state.set("ColorSpace", 0);                 // red, green, blue
-  state.set("AutomaticRescaleRangeMode", 3);  // to each level's range
-  state.set("ScalarRangeInitialized", 1);
-  state.link("ScalarOpacityFunction", {kOpacities});
-  state.end();
-  state.name("lookup_tables", kColors, name + ".PVLookupTable");
-  state.begin("piecewise_functions", "PiecewiseFunction", kOpacities);
-  state.set("Points", texts({range[0], 0, 0.5, 0, range[1], 1, 0.5, 0}));
-  state.set("ScalarRangeInitialized", 1);
-  state.end();
-  state.name("piecewise_functions", kOpacities, name + ".PiecewiseFunction");
-}
-
-void add_shown(State& state, const std::string& color) {
-  state.begin("representations", "GeometryRepresentation", kMeshShown);
-  state.link("Input", {kMeshFile});
-  state.set("Representation", "Surface");
-  state.set("Opacity", 0.25);
-  for (const char* property : {"AmbientColor", "DiffuseColor"}) state.set(property, texts({0.55, 0.62, 0.70}));
-  state.end();
-  state.name("representations", kMeshShown, "GeometryRepresentation1");
-
-  // The sphere, and the other shapes that ParaView's list of glyphs would miss.
-  std::vector<Object> glyphs;
-  for (const char* shape :
-       {"SphereSource", "ArrowSource", "ConeSource", "CubeSource", "CylinderSource", "LineSource"}) {
-    glyphs.push_back(static_cast<Object>(kGlyphs + glyphs.size()));
-    state.begin("sources", shape, glyphs.back());
-    if (glyphs.size() == 1)
-      for (const char* property : {"ThetaResolution", "PhiResolution"}) state.set(property, 32);
-    state.end();
-  }
-  state.begin("representations", "GeometryRepresentation", kSpheresShown);
-  state.link("Input", {kLevelsFile});
-  state.set("Representation", "3D Glyphs");
-  state.link("GlyphType", {kGlyphs}, glyphs);
-  state.set("Scaling", 1);
-  state.set("ScaleMode", 1);  // by magnitude
-  state.set("SelectScaleArray", "radius");
-  state.set("ScaleFactor", 2);  // ParaView's sphere has radius 1/2
-  state.set("ColorArrayName", {"0", "0", "0", "0", color});
-  state.link("LookupTable", {kColors});
-  state.end();
-  state.name("representations", kSpheresShown, "GeometryRepresentation2");
-}
-
-void add_legend(State& state, const std::string& title) {
-  state.begin("representations", "ScalarBarWidgetRepresentation", kLegend);
-  for (const char* property : {"Enabled", "Visibility"}) state.set(property, 1);
-  state.link("LookupTable", {kColors});
-  state.set("Title", title);
-  state.set("ComponentTitle", "");
-  for (const char* property : {"TitleColor", "LabelColor"}) state.set(property, texts({0.1, 0.1, 0.1}));
-  state.set("TitleFontSize", 14);
-  state.set("LabelFontSize", 12);
-  state.set("ScalarBarLength", 0.3);
-  state.set("ScalarBarThickness", 12);
-  for (const char* property : {"LabelFormat", "RangeLabelFormat"}) state.set(property, "%.3g");
-  state.end();
-  state.name("scalar_bars", kLegend, "ScalarBarWidgetRepresentation1");
-}
-
-void add_view(State& state, const detail::ParaViewScene& scene, double time) {
-  state.begin("views", "RenderView", kView);
-  state.link("Representations", {kMeshShown, kSpheresShown, kLegend});
-  state.set("UseColorPaletteForBackground", 0);
-  state.set("BackgroundColorMode", 0);  // one colour
-  state.set("Background", texts({1, 1, 1}));
-  state.set("OrientationAxesLabelColor", texts({0.1, 0.1, 0.1}));
-  state.set("CameraParallelProjection", 1);
-  state.set("CameraParallelScale", scene.half_height);
-  state.set("CameraFocalPoint", texts(scene.center));
-  state.set("CenterOfRotation", texts(scene.center));
-  state.set("CameraPosition", texts(scene.center + 4 * scene.radius * scene.to_eye));
-  state.set("CameraViewUp", texts(scene.up));
-  state.set("ViewTime", time);
-  state.end();
-  state.name("views", kView, "RenderView1");
-  state.begin("misc", "ViewLayout", kLayout);
-  state.layout_of(kView);
-  state.end();
-  state.name("layouts", kLayout, "Layout #1");
-}
-
-void add_time(State& state, Index levels) {
-  const double last = levels;
-  state.begin("misc", "TimeKeeper", kTimes);
-  state.set("Time", last);
-  state.link("TimeSources", {kMeshFile, kLevelsFile});
-  state.link("Views", {kView});
-  state.end();
-  state.name("timekeeper", kTimes, "TimeKeeper1");
-  state.begin("animation", "AnimationScene", kAnimation);
-  state.set("AnimationTime", last);
-  state.set("EndTime", last);
-  state.set("PlayMode", 2);  // from level to level
-  state.link("TimeKeeper", {kTimes});
-  state.link("ViewModules", {kView});
-  state.end();
-  state.name("animation", kAnimation, "AnimationScene1");
 }
 
 }  // namespace
 
+void write_paraview_state(const std::filesystem::path& pvsm, const StateScene& scene,
+                          const std::filesystem::path& folder) {
+  write_file(pvsm, SceneWriter(scene, folder).run());
+}
+
 void write_paraview_state(const std::filesystem::path& prefix, const PipelineValues& values,
                           const std::filesystem::path& folder) {
-  const detail::ParaViewScene scene = detail::paraview_scene(values);
-  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
-  State state;
-  add_files(state, whole / prefix.filename());
-  add_colors(state, scene.color, range(*values.tree, scene.color == "inaccuracy"));
-  add_shown(state, scene.color);
-  add_legend(state, scene.color);
-  add_view(state, scene, values.tree->depth());
-  add_time(state, values.tree->depth());
-  write_file(with_ending(prefix, ".pvsm"), state.whole());
+  const ParaViewScene seen = paraview_scene(values);
+  const std::string name = prefix.filename().string();
+  const StateScene scene{
+      .layers = {{.name = "mesh", .file = name + "-mesh.vtp", .opacity = 0.25},
+                 {.name = "levels", .file = name + ".pvd", .look = StateLayer::Look::spheres, .array = seen.color}},
+      .ranges = {{seen.color, range_of(*values.tree, seen.color == "inaccuracy"), seen.color}},
+      .views = {{.title = {}, .layers = {0, 1}}},
+      .center = seen.center,
+      .radius = seen.radius,
+      .up = values.up,
+      .last_step = values.tree->depth()};
+  write_paraview_state(with_ending(prefix, ".pvsm"), scene, folder);
 }
 
 }  // namespace orchard

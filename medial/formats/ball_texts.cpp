@@ -108,6 +108,7 @@ ForeignAxis parse_swc_axis(TextLines lines) {
     add_ball(axis, lines, center, lines.real("a radius"));
     const std::int64_t parent = lines.whole();
     if (parent == own) lines.fail("a node that is its own parent");
+    if (parent < -1) lines.fail("a parent that is no node; -1 stands for none");
     if (parent >= 0 && !number.contains(parent)) lines.fail("a parent that is not on a line before");
     if (!number.emplace(own, axis.mesh.size() - 1).second) lines.fail("the number of a node twice");
     if (parent >= 0) axis.mesh.edges.push_back({number.at(parent), axis.mesh.size() - 1});

@@ -87,6 +87,37 @@ TEST(Leaderboard, GoesOnWhereItWasAndGivesTheSameBytes) {
   EXPECT_EQ(test::without_provenance(here.files("out").at("leaderboard.csv")), test::without_provenance(first));
 }
 
+TEST(Leaderboard, WritesAStateForParaViewWhoseFilesAreThereAndMakesLostOnesAgain) {
+  const Workplace here;
+  const std::string in = folder_of_results(here, true), out = (here / "out").string();
+  ASSERT_EQ(here.run(words(in, out)).exit_code, 0);
+  const auto files = here.files("out");
+  if (!files.contains("rod-worst.pvsm")) GTEST_SKIP() << "built without VTK";
+  const std::string& state = files.at("rod-worst.pvsm");
+  std::size_t named = 0;
+  for (std::size_t at = state.find(out); at != std::string::npos; at = state.find(out, at + 1), ++named) {
+    const std::string file = state.substr(at, state.find('"', at) - at);
+    EXPECT_TRUE(fs::exists(file)) << file;
+  }
+  EXPECT_GE(named, 7u) << "the mesh, and two files of each of three axes";
+  EXPECT_NE(state.find("some_system, 3 balls"), std::string::npos);
+  EXPECT_NE(state.find("CameraLink"), std::string::npos);
+  EXPECT_EQ(state.find("not measured"), std::string::npos);
+  fs::remove(here / "out/worst/rod-some_system-3.ma-axis.vtp");
+  ASSERT_EQ(here.run(words(in, out)).exit_code, 0);
+  EXPECT_TRUE(fs::exists(here / "out/worst/rod-some_system-3.ma-axis.vtp"));
+}
+
+TEST(Leaderboard, HasARowForEachBuilderOfOrchardAtEveryNumberOfBalls) {
+  const Workplace here;
+  std::vector<std::string> both = words(folder_of_results(here), (here / "out").string());
+  const json report = json::parse(here.run(both).out);
+  EXPECT_EQ(row_of(report, "orchard")["asked"], 3);
+  EXPECT_EQ(row_of(report, "orchard-raw")["asked"], 3);
+  both.insert(both.end(), {"--builders", "raw", "--force"});
+  for (const json& row : json::parse(here.run(both).out)["rows"]) EXPECT_NE(row["system"], "orchard");
+}
+
 TEST(Leaderboard, TakesMeshAndSystemFromATable) {
   const Workplace here;
   const std::string in = folder_of_results(here);

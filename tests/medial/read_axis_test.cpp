@@ -234,6 +234,7 @@ TEST_F(ReadAxis, NamesFileAndLineOfWhatIsWrong) {
   refuses("b.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n", "may be cut off");
   refuses("c.off", "COFF\n1 0 0\n0 0 0\n", "begins with \"OFF\"");
   refuses("a.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 3\n", "line 2: a parent");
+  refuses("c.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 -3\n", "line 2: a parent that is no node");
   refuses("b.swc", "1 1 0 0 0 -1 -1\n", "line 1: a negative radius");
   refuses("a.polylines.txt", "3 0 0 0 1 0 0\n", "line 1");
   refuses("a.stl", "solid\n", "is no kind of medial axis that is read");

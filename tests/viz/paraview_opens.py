@@ -99,6 +99,20 @@ def check_state(folder, of_script):
     assert overlap > 0.99, overlap
 
 
+def check_worst_places(folder):
+    """Every system's axis in its mesh, with its worst places, side by side."""
+    simple.ResetSession()
+    simple.LoadState(os.path.join(folder, "axes/out/lamp-worst.pvsm"))
+    names = {name for name, _ in simple.GetSources()}
+    assert {"mesh", "other at 100: axis", "other at 100: worst places", "orchard-raw at 100: axis"} <= names, names
+    (layout,) = simple.GetLayouts().values()
+    assert len(simple.GetViews()) == 2
+    picture = os.path.join(folder, "worst.png")
+    simple.SaveScreenshot(picture, layout, ImageResolution=[1200, 900])
+    drawn = check_picture(picture).reshape(900, -1)
+    assert drawn[:, :500].any() and drawn[:, -500:].any()
+
+
 def main():
     plugin, folder = sys.argv[1:]
     runpy.run_path(plugin, run_name="__main__")  # the way that works in Debian's ParaView, too
@@ -106,6 +120,7 @@ def main():
     check_levels_in_time(folder)
     check_axis_and_diagram(folder)
     check_state(folder, check_picture(os.path.join(folder, "view.png")))
+    check_worst_places(folder)
     print("ParaView opens all of it")
 
 

@@ -20,6 +20,10 @@ grep -q 'agree on' "$folder/words.txt" && ! grep -E 'Traceback|Error' "$folder/e
 # What opens right by itself: the script and the state that were written beside the views, and orchard's own files by the plugin.
 "$orchard" medial "$source/data/lamp.obj" -o "$folder" --raw --samples 1500 --no-views --quiet
 "$orchard" voronoi "$source/data/lamp.obj" -o "$folder" --samples 300 --quiet
+mkdir "$folder/axes"
+cp "$source/data/lamp.obj" "$folder/axes/lamp.obj"
+grep -v '^#' "$folder/lamp.ma" > "$folder/axes/lamp-other-100.ma"
+"$orchard" leaderboard "$folder/axes" -o "$folder/axes/out" --builders raw --samples 300 --quality-samples 300 --quiet
 "$source/tools/paraview" pvbatch "$folder/lamp-build-view.py" -o "$folder/view.png" --level 1 2> "$folder/errors.txt" || true
 "$source/tools/paraview" pvbatch "$source/tests/viz/paraview_opens.py" "$source/viz/paraview/orchard_reader.py" "$folder" \
   2>> "$folder/errors.txt" | tee "$folder/words.txt" || true
