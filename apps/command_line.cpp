@@ -479,6 +479,29 @@ void add_leaderboard(CLI::App& app, Request& request) {
   });
 }
 
+void add_figure(CLI::App& command, ViewCommand& view) {
+  CLI::Option* color = command.add_option(
+      "--color", view.color,
+      "Colour by an array: radius, structure of axes; radius, error, inaccuracy, level of trees; any of .vtp files");
+  command.add_option("--range", view.range, "A,B: of these colours (default: of all values)")->needs(color);
+  CLI::Option* place = command.add_option("--look-at", view.look_at, "X,Y,Z: the middle of the picture");
+  command.add_option("--width", view.width, "Of what is seen around it, in mesh units (default: everything)")
+      ->needs(place)
+      ->check(CLI::PositiveNumber);
+  command.add_option("--clip", view.clip, "A,B,C,D: cut away what has A x + B y + C z > D");
+  command.add_flag("--edges", view.edges,
+                   "Lines at borders (dark) and seams (orange) of axes, and at feature edges of .vtp files");
+  command.add_flag("--balls", view.balls, "The balls of axes, not their sheets");
+  command
+      .add_option("--layout", view.layout, "Files over each other, or each beside the others with the meshes around it")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"over", "beside"}));
+  command.add_flag("!--no-captions", view.captions, "No words below the pictures");
+  command.add_flag("--transparent", view.transparent, "No white ground");
+  command.add_option("--turn", view.turn, "So many pictures from all around: PICTURE-001.png ..")
+      ->check(CLI::Range(2, 3600));
+}
+
 void add_view(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("view", "Draw files, one in the other, or look at them in a window");
   ViewCommand& view = request.view;
@@ -501,6 +524,7 @@ void add_view(CLI::App& app, Request& request) {
   command.add_option("--opacity", view.opacity, "Of meshes, where there is something else to see: 0 to 1")
       ->check(ANumber(CLI::Range(0.0, 1.0)))
       ->capture_default_str();
+  add_figure(command, view);
   command.add_flag("--window", view.window,
                    "Open a window: up, down and digits choose the level, o and O the opacity of meshes; a click on a "
                    "sphere prints its record, s saves what is seen, r shows all again, q closes");

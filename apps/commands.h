@@ -181,7 +181,13 @@ struct ViewCommand {
   std::vector<Index> levels;                 // of the trees, a panel for each; empty: the deepest
   std::string camera, size;                  // "azimuth,elevation" in degrees, "widthxheight" in pixels; empty: as fits
   std::string up = "y";
-  double opacity = 0.16;  // of meshes beside other things
+  double opacity = 0.16;        // of meshes beside other things
+  std::string color, range;     // an array; "a,b"
+  std::string look_at, clip;    // "x,y,z"; "a,b,c,d"
+  std::optional<double> width;  // of what is seen around look_at, in mesh units
+  std::string layout = "over";  // or beside
+  bool edges = false, balls = false, captions = true, transparent = false;
+  Index turn = 0;  // frames of a turntable; 0: one picture
   bool window = false, quiet = false;
   Invocation run;  // which the picture says
 };

@@ -12,6 +12,9 @@
 #include "orchard/medial/structure.h"
 #include "stamp.h"
 #include "svg_plot.h"
+#ifdef ORCHARD_HAS_VIZ
+#include "orchard/viz/medial_writer.h"
+#endif
 
 namespace orchard::apps {
 namespace {
@@ -112,7 +115,7 @@ std::vector<std::string> few_balls_names(const MedialCommand& command) {
   std::vector<std::string> names;
   const auto add = [&](const char* ending) { names.push_back(named(model_of(command), ending)); };
   if (simplifies(command)) {
-    for (const char* ending : {"-simplified.ma", "-simplified.ply", "-simplified.obj"}) add(ending);
+    for (const char* ending : {"-simplified.ma", "-simplified.ply", "-simplified.obj", "-simplified.vtp"}) add(ending);
   }
   if (command.curve) {
     for (const char* ending : {"-curve.csv", "-curve.svg"}) add(ending);
@@ -178,6 +181,10 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
                to_ma(with_feature_flags(mesh)) + to_structure_section(medial_structure(mesh)));
     write_file(outputs.add(name("-simplified.ply"), "the same with edges and radii"), to_ply(mesh));
     write_file(outputs.add(name("-simplified.obj"), "its sheets"), to_obj(mesh));
+#ifdef ORCHARD_HAS_VIZ
+    if (command.views)
+      write_medial_mesh(outputs.add(name("-simplified.vtp"), "the same for ParaView, with radius and structure"), mesh);
+#endif
   }
   if (!few.curve.empty()) {
     json rows = json::array();

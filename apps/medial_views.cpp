@@ -9,7 +9,9 @@
 #include "picture.h"
 
 #ifdef ORCHARD_HAS_VIZ
+#include "orchard/medial/structure.h"
 #include "orchard/viz/medial_writer.h"
+#include "orchard/viz/paraview_state.h"
 #include "orchard/viz/render.h"
 #include "orchard/viz/vtk_writer.h"
 #endif
@@ -90,7 +92,7 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
 
 std::vector<std::string> view_names(const std::filesystem::path& model) {
   std::vector<std::string> names;
-  for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-vertices.vtp", "-medial-edges.vtp",
+  for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial.pvsm", "-medial-vertices.vtp", "-medial-edges.vtp",
                              "-medial-faces.vtp", "-medial-contacts.vtp", "-medial-mesh.vtp", "-medial-points.vtp",
                              "-medial-thickness.vtp", "-medial-skeleton.vtp", "-medial-worst.vtp", "-medial.png"})
     names.push_back(named(model, ending));
@@ -136,6 +138,38 @@ ViewArrays arrays_of(const SurfaceErrors& errors) {
   return {{"coverage", errors.coverage}, {"protrusion", errors.protrusion}};
 }
 
+constexpr double kMark = 0.015;  // of the bounding radius: the balls at worst places
+
+// The axis by radius in its transparent solid, with the lines where sheets end and meet. Its sheets in colours of their
+// own are in ParaView's list.
+StateScene state_of(const MedialCommand& command, const MedialViews& views) {
+  const auto file = [&](const char* ending) { return named(command.mesh, std::string("-medial") + ending); };
+  const std::vector<double>& radii = views.build.axis.radii;
+  const Sphere& ball = views.surface.bounding_ball();
+  const auto parts = static_cast<double>(medial_structure(views.mesh).parts.size());
+  const auto [least, largest] = std::minmax_element(radii.begin(), radii.end());
+  StateScene scene{
+      .layers =
+          {{.name = "mesh", .file = file("-mesh.vtp"), .opacity = 0.15},
+           {.name = "axis by radius", .file = file(".vtu"), .array = "radius"},
+           {.name = "borders and seams", .file = file("-skeleton.vtp"), .width = 2, .color = {0.13, 0.16, 0.20}},
+           {.name = "axis by sheet", .file = file(".vtu"), .array = "structure", .of_cells = true, .categories = true}},
+      .ranges = {{"radius", {least == radii.end() ? 0 : *least, largest == radii.end() ? 1 : *largest}, "radius"},
+                 {"structure", {0, parts}, ""}},
+      .views = {{.layers = {0, 1, 2}}},
+      .center = ball.center,
+      .radius = ball.radius,
+      .up = parse_up(command.up)};
+  if (views.errors == nullptr) return scene;
+  scene.layers.push_back({.name = "worst places",
+                          .file = file("-worst.vtp"),
+                          .look = StateLayer::Look::spheres,
+                          .sphere_radius = kMark * ball.radius,
+                          .color = {0.70, 0.07, 0.11}});
+  scene.views.front().layers.push_back(4);
+  return scene;
+}
+
 }  // namespace
 
 void write_views(const MedialCommand& command, const MedialViews& views, Outputs& outputs) {
@@ -173,6 +207,8 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
   if (views.errors != nullptr)
     write_worst_places(add("-worst.vtp", "worst places", "where it is worst, numbered as above"), views.worst);
   write_multiblock(add(".vtm", "", "open this in ParaView: mesh, points, axis and skeleton at once"), shown);
+  write_paraview_state(add(".pvsm", "", "a double click shows the axis in its transparent solid"),
+                       state_of(command, views), command.folder);
 }
 
 void write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,

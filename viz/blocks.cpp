@@ -7,6 +7,7 @@
 #include <vtkNew.h>
 #include <vtkXMLMultiBlockDataReader.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace orchard::detail {
@@ -20,12 +21,12 @@ Blocks::Blocks(const std::filesystem::path& vtm) {
   for (unsigned i = 0; blocks != nullptr && i < blocks->GetNumberOfBlocks(); ++i) {
     auto* data = vtkDataSet::SafeDownCast(blocks->GetBlock(i));
     const char* name = blocks->HasMetaData(i) != 0 ? blocks->GetMetaData(i)->Get(vtkCompositeDataSet::NAME()) : nullptr;
-    if (data != nullptr && name != nullptr && data->GetNumberOfPoints() > 0) blocks_.emplace(name, data);
+    if (data != nullptr && name != nullptr && data->GetNumberOfPoints() > 0) blocks_.emplace_back(name, data);
   }
 }
 
 Data Blocks::operator[](const std::string& name) const {
-  const auto block = blocks_.find(name);
+  const auto block = std::find_if(blocks_.begin(), blocks_.end(), [&](const auto& own) { return own.first == name; });
   return block == blocks_.end() ? nullptr : vtkPolyData::SafeDownCast(block->second);
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 #include <filesystem>
-#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "actors.h"
 
@@ -9,16 +10,17 @@ class vtkDataObject;
 
 namespace orchard::detail {
 
-// The blocks of a .vtm by their names, but for empty ones. Throws std::runtime_error if there is no such file.
+// The blocks of a .vtm with their names, in the file's order, but for empty ones. Throws std::runtime_error if there is
+// no such file.
 class Blocks {
  public:
   explicit Blocks(const std::filesystem::path& vtm);
 
   Data operator[](const std::string& name) const;  // null: there is no such block, or it is no PolyData
-  const std::map<std::string, vtkSmartPointer<vtkDataObject>>& all() const { return blocks_; }
+  const std::vector<std::pair<std::string, vtkSmartPointer<vtkDataObject>>>& all() const { return blocks_; }
 
  private:
-  std::map<std::string, vtkSmartPointer<vtkDataObject>> blocks_;
+  std::vector<std::pair<std::string, vtkSmartPointer<vtkDataObject>>> blocks_;
 };
 
 }  // namespace orchard::detail

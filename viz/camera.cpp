@@ -48,6 +48,24 @@ View make_view(const Direction& request, const std::vector<Extent>& extents) {
   return view;
 }
 
+View look_at(View view, const Vector3d& center, double span) {
+  view.center = center;
+  view.width = view.height = span;
+  return view;
+}
+
+View steady(View view, const std::vector<Extent>& extents) {
+  Eigen::AlignedBox3d box;
+  for (const Extent& extent : extents) box.extend(Vector3d(extent.center.data()));
+  view.center = box.center();
+  double radius = 0;
+  for (const Extent& extent : extents)
+    radius = std::max(radius, (Vector3d(extent.center.data()) - view.center).norm() + extent.radius);
+  view.width = view.height = 2 * radius;
+  view.depth = radius;
+  return view;
+}
+
 void aim(vtkCamera* camera, const View& view, int width, int height, int caption_height) {
   const double unit = kMargin * std::max(view.height / (height - caption_height), view.width / width);  // per pixel
   camera->ParallelProjectionOn();

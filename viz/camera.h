@@ -26,6 +26,11 @@ View looking(const Direction& direction);
 // Everything in view. Throws std::runtime_error if there is nothing.
 View make_view(const Direction& direction, const std::vector<Extent>& extents);
 
+// The same direction, at a part of what there is: `span` wide and high.
+View look_at(View view, const Eigen::Vector3d& center, double span);
+// The same direction, with room for everything from all directions: for pictures that are shown one after the other.
+View steady(View view, const std::vector<Extent>& extents);
+
 // The model in a rectangle of pixels, above its lowest `caption_height`.
 void aim(vtkCamera* camera, const View& view, int width, int height, int caption_height);
 

@@ -23,6 +23,7 @@
 
 #include "camera.h"
 #include "panels.h"
+#include "render_request.h"
 #include "window.h"
 
 namespace {
@@ -34,23 +35,14 @@ constexpr int kOversampling = 2;  // pixels drawn per pixel kept, along each axi
 
 constexpr double kWidestPanel = 1.3;  // of its height
 constexpr double kLabelPrint = 0.2;   // of numbers of places, of the height of captions
+constexpr int kWidestBar = 160;       // pixels
 constexpr int kRowHeight = 560;       // pixels, where no height is asked for
 
 struct Layout {
   int width, height;  // of the picture, in pixels as all of these
   int columns, rows;
   int title_height, panel_width, panel_height, caption_height;
-};
-
-struct Request {
-  std::filesystem::path vtm;
-  std::string png, title;
-  int width = 0, height = 0;  // pixels; 0: chosen here
-  Direction direction;
-  bool window = false;
-  int level = -1;         // that the window begins with
-  double opacity = 0.16;  // of meshes beside other things
-  bool whole = false;     // Voronoi cells, which their box cuts open
+  int bar_width;  // of the colours', on the right of all panels
 };
 
 // The size of print, at most `pixels`, in which `text` is not wider than `width`; all in pixels.
@@ -60,7 +52,8 @@ double fitting(const std::string& text, double pixels, double width) {
 }
 
 // A line of text around (x, y).
-void add_text(vtkRenderer* renderer, const std::string& text, double x, double y, double pixels, bool bold) {
+void add_text(vtkRenderer* renderer, const std::string& text, double x, double y, double pixels, bool bold,
+              bool on_scene = false) {
   vtkNew<vtkTextActor> actor;
   actor->SetInput(text.c_str());
   vtkTextProperty* property = actor->GetTextProperty();
@@ -70,6 +63,10 @@ void add_text(vtkRenderer* renderer, const std::string& text, double x, double y
   property->SetColor(bold ? 0.13 : 0.38, bold ? 0.16 : 0.41, bold ? 0.20 : 0.45);
   property->SetJustificationToCentered();
   property->SetVerticalJustificationToCentered();
+  if (on_scene) {
+    property->SetBackgroundColor(1, 1, 1);
+    property->SetBackgroundOpacity(0.8);
+  }
   actor->SetPosition(x, y);
   renderer->AddViewProp(actor);
 }
@@ -93,8 +90,10 @@ void add_label(vtkRenderer* renderer, const Label& label, const View& view, cons
   renderer->AddViewProp(actor);
 }
 
-// What one renderer shows, averaged down to width x height.
-vtkSmartPointer<vtkImageData> draw(vtkRenderWindow* window, vtkRenderer* renderer, int width, int height) {
+// What one renderer shows on a ground of one brightness, averaged down to width x height.
+vtkSmartPointer<vtkImageData> draw_on(double ground, vtkRenderWindow* window, vtkRenderer* renderer, int width,
+                                      int height) {
+  renderer->SetBackground(ground, ground, ground);
   window->SetSize(width * kOversampling, height * kOversampling);
   window->AddRenderer(renderer);
   window->Render();
@@ -112,32 +111,62 @@ vtkSmartPointer<vtkImageData> draw(vtkRenderWindow* window, vtkRenderer* rendere
   return shrink->GetOutput();
 }
 
+// How much of the ground is seen through each pixel is what a white ground adds to a black one; without it remains the
+// pixel's own colour.
+vtkSmartPointer<vtkImageData> without_ground(vtkImageData* on_white, vtkImageData* on_black) {
+  const int* size = on_white->GetDimensions();
+  auto result = vtkSmartPointer<vtkImageData>::New();
+  result->SetDimensions(size[0], size[1], 1);
+  result->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
+  const auto* white = static_cast<const unsigned char*>(on_white->GetScalarPointer());
+  const auto* black = static_cast<const unsigned char*>(on_black->GetScalarPointer());
+  auto* pixel = static_cast<unsigned char*>(result->GetScalarPointer());
+  for (std::ptrdiff_t i = 0; i < std::ptrdiff_t{size[0]} * size[1]; ++i, white += 3, black += 3, pixel += 4) {
+    const int through = std::clamp((white[0] - black[0] + white[1] - black[1] + white[2] - black[2]) / 3, 0, 255);
+    const int own = 255 - through;
+    for (int c = 0; c < 3; ++c)
+      pixel[c] = static_cast<unsigned char>(own == 0 ? 0 : std::min(255, (255 * black[c] + own / 2) / own));
+    pixel[3] = static_cast<unsigned char>(own);
+  }
+  return result;
+}
+
+vtkSmartPointer<vtkImageData> draw(vtkRenderWindow* window, vtkRenderer* renderer, int width, int height,
+                                   bool transparent) {
+  auto on_white = draw_on(1, window, renderer, width, height);
+  if (!transparent) return on_white;
+  return without_ground(on_white, draw_on(0, window, renderer, width, height));
+}
+
 void paste(vtkImageData* picture, vtkImageData* part, int left, int bottom) {
   const int* size = part->GetDimensions();
   for (int y = 0; y < size[1]; ++y) {
     std::memcpy(picture->GetScalarPointer(left, bottom + y, 0), part->GetScalarPointer(0, y, 0),
-                static_cast<std::size_t>(size[0]) * 3);
+                static_cast<std::size_t>(size[0] * part->GetNumberOfScalarComponents()));
   }
 }
 
 // Where no width is asked for, as wide as the model needs, and its captions.
-Layout make_layout(const Request& request, int panels, const View& view) {
+Layout make_layout(const Request& request, const Panels& content, const View& view) {
+  const int panels = static_cast<int>(content.panels.size());
   Layout layout{};
   layout.columns = panels <= 4 ? panels : (panels + 1) / 2;
   layout.rows = (panels + layout.columns - 1) / layout.columns;
   layout.height = request.height > 0 ? request.height : kRowHeight * layout.rows;
   layout.title_height = request.title.empty() ? 0 : layout.height / (7 * layout.rows);
   layout.panel_height = (layout.height - layout.title_height) / layout.rows;
-  layout.caption_height = layout.panel_height / 5;
+  layout.caption_height = request.captions ? layout.panel_height / 5 : 0;
+  layout.bar_width = content.color_bar ? std::min(layout.panel_height / 4, kWidestBar) : 0;
   if (request.width > 0) {
     layout.width = request.width;
-    layout.panel_width = layout.width / layout.columns;
+    layout.bar_width = std::min(layout.bar_width, layout.width / 5);
+    layout.panel_width = (layout.width - layout.bar_width) / layout.columns;
     layout.caption_height = std::min(layout.caption_height, layout.panel_width / 5);
   } else {
     const double needed = (layout.panel_height - layout.caption_height) * view.width / view.height;
     layout.panel_width =
         static_cast<int>(std::clamp(needed, 5.0 * layout.caption_height, kWidestPanel * layout.panel_height));
-    layout.width = layout.panel_width * layout.columns;
+    layout.width = layout.panel_width * layout.columns + layout.bar_width;
   }
   return layout;
 }
@@ -148,7 +177,8 @@ void render(const Request& request) {
   Panels content = make_panels(request.vtm, {.line_width = 1.5 * kOversampling,
                                              .backward = {backward.x(), backward.y(), backward.z()},
                                              .opacity = request.opacity,
-                                             .whole = request.whole});
+                                             .whole = request.whole,
+                                             .figure = request.figure});
   Direction behind = request.direction;
   behind.azimuth += 180;
   View view = make_view(request.direction, content.extents), back = make_view(behind, content.extents);
@@ -158,23 +188,31 @@ void render(const Request& request) {
     view.width = back.width = std::max(view.width, back.width);
     view.height = back.height = std::max(view.height, back.height);
   }
-  const Layout layout = make_layout(request, static_cast<int>(content.panels.size()), view);
+  if (request.steady) view = steady(view, content.extents);
+  if (request.look_at) {
+    const Vector3d center(request.look_at->data());
+    view = look_at(view, center, request.span > 0 ? request.span : std::max(view.width, view.height));
+  }
+  const Layout layout = make_layout(request, content, view);
   const int width = layout.width, height = layout.height;
 
   vtkNew<vtkImageData> picture;
   picture->SetDimensions(width, height, 1);
-  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  std::memset(picture->GetScalarPointer(), 255, static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  const int components = request.transparent ? 4 : 3;
+  picture->AllocateScalars(VTK_UNSIGNED_CHAR, components);
+  std::memset(
+      picture->GetScalarPointer(), request.transparent ? 0 : 255,
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(components));
   vtkNew<vtkRenderWindow> window;
   window->SetOffScreenRendering(1);
   window->SetMultiSamples(0);
 
   if (layout.title_height > 0) {
     vtkNew<vtkRenderer> renderer;
-    renderer->SetBackground(1, 1, 1);
     const double line = layout.title_height * kOversampling, span = width * kOversampling;
     add_text(renderer, title, span / 2, line / 2, fitting(title, 0.5 * line, span), true);
-    paste(picture, draw(window, renderer, width, layout.title_height), 0, height - layout.title_height);
+    paste(picture, draw(window, renderer, width, layout.title_height, request.transparent), 0,
+          height - layout.title_height);
   }
   const double line = layout.caption_height * kOversampling, span = layout.panel_width * kOversampling;
   double caption_print = 0.30 * line, detail_print = 0.24 * line;
@@ -187,15 +225,24 @@ void render(const Request& request) {
     const Panel& panel = content.panels[static_cast<std::size_t>(i)];
     const int row = i / layout.columns, column = i % layout.columns;
     const int in_row = std::min(layout.columns, count - row * layout.columns);
-    add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true);
-    add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false);
+    if (request.captions) {
+      const bool on_scene = request.look_at.has_value();  // which goes on behind them
+      add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true, on_scene);
+      add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false, on_scene);
+    }
     const View& from = panel.from_behind ? back : view;
     aim(panel.renderer->GetActiveCamera(), from, layout.panel_width, layout.panel_height, layout.caption_height);
     for (const Label& label : panel.labels)
       add_label(panel.renderer, label, from, panel.from_behind ? view : back, kLabelPrint * line);
-    const int left = (width - in_row * layout.panel_width) / 2 + column * layout.panel_width;
+    const int left = (width - layout.bar_width - in_row * layout.panel_width) / 2 + column * layout.panel_width;
     const int bottom = height - layout.title_height - (row + 1) * layout.panel_height;
-    paste(picture, draw(window, panel.renderer, layout.panel_width, layout.panel_height), left, bottom);
+    paste(picture, draw(window, panel.renderer, layout.panel_width, layout.panel_height, request.transparent), left,
+          bottom);
+  }
+  if (layout.bar_width > 0) {
+    const int room = height - layout.title_height;
+    const auto bar = content.color_bar(layout.bar_width * kOversampling, room * kOversampling);
+    paste(picture, draw(window, bar, layout.bar_width, room, request.transparent), width - layout.bar_width, 0);
   }
   vtkNew<vtkPNGWriter> writer;
   writer->SetFileName(request.png.c_str());
@@ -204,72 +251,14 @@ void render(const Request& request) {
   if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + request.png);
 }
 
-constexpr const char* kUsage =
-    "usage: orchard-render VIEWS.vtm PICTURE.png [options]\n"
-    "Draws what \"orchard build\" or \"orchard medial\" wrote for ParaView, or a scene of \"orchard view\". Needs an X "
-    "display, for instance by "
-    "xvfb-run.\n"
-    "  --width N      pixels, 64 to 8192; 0 (default): as wide as the model needs\n"
-    "  --height N     pixels, 64 to 8192; 0 (default): 560 for each row of panels\n"
-    "  --up x|y|z     the model's axis that points up (y)\n"
-    "  --azimuth A    degrees from the model's front to its right (35)\n"
-    "  --elevation A  degrees above its middle, -80 to 80 (23)\n"
-    "  --title TEXT   above the panels\n"
-    "  --opacity A    of meshes in a scene that has more than them, 0 to 1 (0.16)\n"
-    "  --whole        all Voronoi cells of a scene, not those of the half away from the eye: where a box has cut them\n"
-    "  --window       a window instead of a picture, of a scene; s saves what it shows to PICTURE.png\n"
-    "  --level K      of the trees, that the window begins with (the last)\n";
-
-double number(const std::string& text, double low, double high) {
-  std::size_t used = 0;
-  const double value = std::stod(text, &used);
-  if (used != text.size() || !(value >= low && value <= high)) throw std::out_of_range(text);
-  return value;
-}
-
-// Throws std::logic_error if an argument makes no sense.
-Request parse(const std::vector<std::string>& arguments) {
-  Request request;
-  request.vtm = arguments.at(0);
-  request.png = arguments.at(1);
-  for (std::size_t i = 2; i < arguments.size(); i += 2) {
-    if (arguments[i] == "--window" || arguments[i] == "--whole") {
-      (arguments[i] == "--window" ? request.window : request.whole) = true;
-      --i;
-      continue;
-    }
-    const std::string &option = arguments[i], &value = arguments.at(i + 1);
-    if (option == "--width") {
-      request.width = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
-    } else if (option == "--height") {
-      request.height = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
-    } else if (option == "--up" && (value == "x" || value == "y" || value == "z")) {
-      request.direction.up = value[0];
-    } else if (option == "--azimuth") {
-      request.direction.azimuth = number(value, -360, 360);
-    } else if (option == "--elevation") {
-      request.direction.elevation = number(value, -80, 80);
-    } else if (option == "--opacity") {
-      request.opacity = number(value, 0, 1);
-    } else if (option == "--level") {
-      request.level = static_cast<int>(number(value, 0, 1e6));
-    } else if (option == "--title") {
-      request.title = value;
-    } else {
-      throw std::invalid_argument(option);
-    }
-  }
-  return request;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   Request request;
   try {
-    request = parse({argv + 1, argv + argc});
+    request = parse_request({argv + 1, argv + argc});
   } catch (const std::logic_error&) {
-    std::fputs(kUsage, stderr);
+    std::fputs(usage(), stderr);
     return 2;
   }
   try {

@@ -5,8 +5,11 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "figure.h"
 
 // What orchard-render draws: one panel per stage of the pipeline.
 namespace orchard::detail {
@@ -34,6 +37,8 @@ struct Panels {
   std::vector<Panel> panels;
   std::vector<Extent> extents;  // of everything, so that all panels share one camera
   double size = 1;              // a length of the model's order
+  // Draws what the colours of all panels stand for, in so many pixels; empty: nothing that needs saying.
+  std::function<vtkSmartPointer<vtkRenderer>(int width, int height)> color_bar = {};
 };
 
 struct PanelOptions {
@@ -41,6 +46,7 @@ struct PanelOptions {
   std::array<double, 3> backward{};  // a unit vector towards the eye
   double opacity = 0.16;             // of meshes, where a scene has more than them
   bool whole = false;                // Voronoi cells are not cut open: their box does so
+  FigureOptions figure = {};         // of a scene
 };
 
 // Panels for the files that a .vtm of write_pipeline() opens, by the names that it gives them; where there is a block

@@ -1,6 +1,9 @@
 #include "orchard/viz/view.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <regex>
 #include <set>
 
 #include "drawing.h"
@@ -45,6 +48,7 @@ void write_scene(const fs::path& prefix, const Scene& scene, const std::set<Inde
   for (const auto& [name, axis] : scene.axes) write_medial_mesh(files.add("view/axis/" + name, ".vtp"), axis);
   for (const auto& [name, diagram] : scene.diagrams)
     write_voronoi_cells(files.add("view/cells/" + name, ".vtu"), diagram);
+  for (const auto& [name, file] : scene.data) std::filesystem::copy_file(file, files.add("view/data/" + name, ".vtp"));
   for (const auto& [name, points] : scene.points) {
     SurfaceSampling sampling;
     sampling.points = points;
@@ -58,13 +62,70 @@ void write_scene(const fs::path& prefix, const Scene& scene, const std::set<Inde
   files.write();
 }
 
+std::string digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+template <class Numbers>
+std::string listed(const Numbers& numbers) {
+  std::string list;
+  for (const double value : numbers) list += (list.empty() ? "" : ",") + digits(value);
+  return list;
+}
+
+std::vector<std::string> arguments_of(const Figure& figure) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* option, const std::string& value) {
+    arguments.emplace_back(option);
+    arguments.push_back(value);
+  };
+  if (!figure.color.empty()) add("--color", figure.color);
+  if (figure.range) add("--range", listed(*figure.range));
+  if (figure.look_at)
+    add("--look-at", listed(std::array{figure.look_at->x(), figure.look_at->y(), figure.look_at->z()}));
+  if (figure.span > 0) add("--span", digits(figure.span));
+  if (figure.clip) add("--clip", listed(*figure.clip));
+  for (const auto& [flag, on] : {std::pair{"--edges", figure.edges},
+                                 {"--balls", figure.balls},
+                                 {"--beside", figure.beside},
+                                 {"--no-captions", !figure.captions},
+                                 {"--transparent", figure.transparent},
+                                 {"--steady", figure.steady}})
+    if (on) arguments.emplace_back(flag);
+  return arguments;
+}
+
 }  // namespace
+
+std::vector<std::string> color_arrays(const Scene& scene) {
+  std::set<std::string> names;
+  if (!scene.axes.empty()) names.insert({"radius", "structure", "structure_kind"});
+  if (!scene.trees.empty())
+    names.insert({"radius", "error", "inaccuracy", "level", "node", "parent", "branch", "carried"});
+  if (!scene.meshes.empty()) names.insert("cluster");
+  const std::regex array("<DataArray[^>]* Name=\"([^\"]*)\"[^>]*>");
+  for (const auto& [name, file] : scene.data) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+      std::smatch found;
+      if (line.find("<DataArray") == std::string::npos || !std::regex_search(line, found, array)) continue;
+      const std::string& own = found[1];
+      if (own != "Points" && own != "connectivity" && own != "offsets" &&
+          line.find("NumberOfComponents") == std::string::npos)
+        names.insert(own);
+    }
+  }
+  return {names.begin(), names.end()};
+}
 
 PictureStatus draw_view(const fs::path& png, const Scene& scene, const PipelinePicture& picture) {
   std::set<Index> levels(scene.levels.begin(), scene.levels.end());
   if (levels.empty()) levels.insert(depth_of(scene));
-  return detail::draw(png, picture, {"--opacity", std::to_string(scene.opacity)},
-                      [&](const fs::path& prefix) { write_scene(prefix, scene, levels); });
+  std::vector<std::string> more = arguments_of(scene.figure);
+  more.insert(more.end(), {"--opacity", std::to_string(scene.opacity)});
+  return detail::draw(png, picture, more, [&](const fs::path& prefix) { write_scene(prefix, scene, levels); });
 }
 
 PictureStatus show_view(const fs::path& png, const Scene& scene, const PipelinePicture& picture) {

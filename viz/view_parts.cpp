@@ -2,6 +2,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkFeatureEdges.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -12,6 +13,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+
+#include "coloring.h"
 
 namespace orchard::detail {
 namespace {
@@ -114,12 +117,71 @@ vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Backward& 
   return actor;
 }
 
-vtkSmartPointer<vtkActor> make_axis(vtkPolyData* axis, double line_width) {
+vtkSmartPointer<vtkActor> make_axis(vtkPolyData* axis, const PartLook& look) {
+  if (look.coloring != nullptr && has_colors(*look.coloring, axis)) {
+    auto sheet = make_actor(axis, kStone);
+    apply(*look.coloring, axis, sheet);
+    sheet->GetProperty()->SetLineWidth(static_cast<float>(1.5 * look.line_width));
+    return sheet;
+  }
   double range[2];
   require_array(axis->GetPointData(), "radius", axis->GetNumberOfPoints())->GetRange(range);
   auto sheet = make_sheet(axis, "radius", viridis(range));
-  sheet->GetProperty()->SetLineWidth(static_cast<float>(1.5 * line_width));
+  sheet->GetProperty()->SetLineWidth(static_cast<float>(1.5 * look.line_width));
   return sheet;
+}
+
+// Edges of one triangle (borders), or those of three or more (seams).
+vtkSmartPointer<vtkActor> axis_lines(vtkPolyData* axis, bool seams, const Color& color, double width) {
+  vtkNew<vtkFeatureEdges> filter;
+  filter->SetInputData(axis);
+  filter->SetBoundaryEdges(!seams);
+  filter->SetNonManifoldEdges(seams);
+  filter->FeatureEdgesOff();
+  filter->ManifoldEdgesOff();
+  filter->ColoringOff();
+  filter->Update();
+  auto actor = make_actor(filter->GetOutput(), color);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetLineWidth(static_cast<float>(width));
+  return actor;
+}
+
+void add_axis(vtkRenderer* renderer, vtkPolyData* axis, const PartLook& look) {
+  if (!look.balls) renderer->AddActor(make_axis(axis, look));
+  if (look.balls) {
+    const Coloring* coloring = look.coloring;
+    if (coloring != nullptr && has_colors(*coloring, axis)) {
+      color_points(*coloring, axis);
+    } else {
+      set_colors(axis->GetPointData(), axis->GetNumberOfPoints(), [](vtkIdType) { return kStone; });
+    }
+    renderer->AddActor(make_spheres(axis));
+  }
+  if (!look.edges) return;
+  renderer->AddActor(axis_lines(axis, false, kInk, 1.5 * look.line_width));
+  renderer->AddActor(axis_lines(axis, true, rgb(0xd55e00), 2 * look.line_width));
+}
+
+// Any .vtp: faces and lines, or dots where it has points alone.
+void add_data(vtkRenderer* renderer, vtkPolyData* data, const PartLook& look) {
+  const bool colored = look.coloring != nullptr && has_colors(*look.coloring, data);
+  if (data->GetNumberOfPolys() + data->GetNumberOfLines() + data->GetNumberOfStrips() == 0) {
+    vtkNew<vtkPolyData> dots;
+    dots->ShallowCopy(data);
+    if (colored) {
+      color_points(*look.coloring, dots);
+    } else {
+      set_colors(dots->GetPointData(), dots->GetNumberOfPoints(), [](vtkIdType) { return kOriginColors[0]; });
+    }
+    renderer->AddActor(make_dots(dots, look.size));
+    return;
+  }
+  auto actor = make_actor(data, kStone);
+  if (colored) apply(*look.coloring, data, actor);
+  actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * look.line_width));
+  renderer->AddActor(actor);
+  if (look.edges) renderer->AddActor(edges(data, kFeatureAngle, 1.2 * look.line_width));
 }
 
 vtkSmartPointer<vtkActor> make_points(vtkPolyData* points, double size) {
@@ -160,6 +222,7 @@ ViewParts view_parts(const Blocks& blocks) {
     const Data poly = vtkPolyData::SafeDownCast(data);
     if (named_as(block, "mesh", name) && poly != nullptr) parts.meshes.emplace_back(name, poly);
     if (named_as(block, "axis", name) && poly != nullptr) parts.axes.emplace_back(name, poly);
+    if (named_as(block, "data", name) && poly != nullptr) parts.data.emplace_back(name, poly);
     if (named_as(block, "points", name) && poly != nullptr) parts.points.emplace_back(name, poly);
     if (named_as(block, "cells", name) && vtkUnstructuredGrid::SafeDownCast(data) != nullptr)
       parts.cells.emplace_back(name, vtkUnstructuredGrid::SafeDownCast(data));
@@ -171,7 +234,7 @@ ViewParts view_parts(const Blocks& blocks) {
 
 std::vector<Extent> extents_of(const ViewParts& parts) {
   std::vector<Extent> extents;
-  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points})
+  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points, &parts.data})
     for (const auto& part : *list) extend(extents, part.second, nullptr);
   for (const auto& [level, trees] : parts.levels)
     for (const auto& part : trees) extend(extents, part.second, "radius");
@@ -196,33 +259,41 @@ double size_of(const ViewParts& parts) {
   return 1;
 }
 
-std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts, double size,
-                                                       double line_width, double opacity, const Backward& backward) {
-  for (const auto& part : parts.points) renderer->AddActor(make_points(part.second, size));
-  for (const auto& part : parts.axes) renderer->AddActor(make_axis(part.second, line_width));
-  for (const auto& part : parts.cells) renderer->AddActor(make_cells(part.second, backward, line_width));
+std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts,
+                                                       const PartLook& look) {
+  for (const auto& part : parts.points) renderer->AddActor(make_points(part.second, look.size));
+  for (const auto& part : parts.axes) add_axis(renderer, part.second, look);
+  for (const auto& part : parts.data) add_data(renderer, part.second, look);
+  for (const auto& part : parts.cells) renderer->AddActor(make_cells(part.second, look.backward, look.line_width));
   std::vector<vtkSmartPointer<vtkActor>> glass;
   for (const auto& part : parts.meshes) {
     if (parts.meshes_alone()) {
-      add_mesh(renderer, part.second, line_width);
+      add_mesh(renderer, part.second, look.line_width);
     } else {
-      glass.push_back(add_glass(renderer, part.second, line_width, opacity));
+      glass.push_back(add_glass(renderer, part.second, look.line_width, look.opacity));
     }
   }
   return glass;
 }
 
-std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees) {
+std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees, const Coloring* coloring) {
   std::vector<vtkSmartPointer<vtkActor>> actors;
-  for (std::size_t i = 0; i < trees.size(); ++i)
-    actors.push_back(trees.size() == 1 ? make_level(trees[i].second)
-                                       : in_one_color(trees[i].second, kBranchColors.at(i % kBranchColors.size())));
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const Data& spheres = trees[i].second;
+    if (coloring != nullptr && has_colors(*coloring, spheres)) {
+      color_points(*coloring, spheres);
+      actors.push_back(make_spheres(spheres));
+    } else {
+      actors.push_back(trees.size() == 1 ? make_level(spheres)
+                                         : in_one_color(spheres, kBranchColors.at(i % kBranchColors.size())));
+    }
+  }
   return actors;
 }
 
 std::string caption_of(const ViewParts& parts, int level) {
   std::string caption;
-  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points})
+  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points, &parts.data})
     for (const auto& part : *list) append(caption, part.first);
   for (const auto& part : parts.cells) append(caption, part.first);
   if (const auto trees = parts.levels.find(level); trees != parts.levels.end()) {
@@ -236,7 +307,8 @@ std::string detail_of(const ViewParts& parts, int level) {
   std::string detail;
   for (const auto& part : parts.meshes) append(detail, counted(part.second->GetNumberOfPolys(), "triangle"));
   for (const auto& part : parts.axes) append(detail, counted(part.second->GetNumberOfPoints(), "medial sphere"));
-  for (const auto& part : parts.points) append(detail, counted(part.second->GetNumberOfPoints(), "point"));
+  for (const auto* list : {&parts.points, &parts.data})
+    for (const auto& part : *list) append(detail, counted(part.second->GetNumberOfPoints(), "point"));
   for (const auto& part : parts.cells) {
     append(detail, counted(part.second->GetNumberOfCells(), "cell"));
     if (!is_wrong(part.second)) continue;

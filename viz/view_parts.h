@@ -19,11 +19,14 @@ using NamedParts = std::vector<std::pair<std::string, Value>>;
 
 struct ViewParts {
   NamedParts<Data> meshes, axes, points;
+  NamedParts<Data> data;  // .vtp files
   NamedParts<vtkSmartPointer<vtkUnstructuredGrid>> cells;
   std::map<int, NamedParts<Data>> levels;  // of all trees, by number
 
-  bool any() const { return !(meshes.empty() && axes.empty() && points.empty() && cells.empty() && levels.empty()); }
-  bool meshes_alone() const { return axes.empty() && points.empty() && cells.empty() && levels.empty(); }
+  bool any() const { return !(meshes.empty() && meshes_alone()); }
+  bool meshes_alone() const {
+    return axes.empty() && points.empty() && data.empty() && cells.empty() && levels.empty();
+  }
 };
 
 // Empty where the blocks are not those of a scene.
@@ -33,13 +36,23 @@ ViewParts view_parts(const Blocks& blocks);
 double size_of(const ViewParts& parts);
 std::vector<Extent> extents_of(const ViewParts& parts);
 
-// What is seen whatever the level, cells cut open towards `backward`, if that is given. Of meshes beside other things
-// the faces' actors come back, for their opacity.
-std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts, double size,
-                                                       double line_width, double opacity,
-                                                       const std::optional<std::array<double, 3>>& backward);
+struct Coloring;
+
+// How the parts are drawn.
+struct PartLook {
+  double size = 1, line_width = 1;
+  double opacity = 0.16;                               // of meshes beside other things
+  std::optional<std::array<double, 3>> backward = {};  // cells are cut open towards it
+  bool edges = false;                                  // borders and seams of axes, feature edges of .vtp files
+  bool balls = false;                                  // the balls of axes
+  const Coloring* coloring = nullptr;                  // null: each thing in its own colours
+};
+
+// What is seen whatever the level. Of meshes beside other things the faces' actors come back, for their opacity.
+std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts,
+                                                       const PartLook& look);
 // The spheres of a level: one tree's by branch, several trees' by tree.
-std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees);
+std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees, const Coloring* coloring = nullptr);
 
 // "lamp.obj, lamp.orchard, level 2", and the figures of what is seen. level < 0: there is none.
 std::string caption_of(const ViewParts& parts, int level);

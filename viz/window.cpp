@@ -46,8 +46,11 @@ class Scene {
     if (!parts_.any()) throw std::runtime_error(request.vtm.string() + " is no scene");
     const View view = make_view(request.direction, extents_of(parts_));
     renderer_ = make_renderer(size_of(parts_));
-    glass_ = add_still_parts(renderer_, parts_, size_of(parts_), 1.5, request.opacity,
-                             std::array{view.backward.x(), view.backward.y(), view.backward.z()});
+    glass_ = add_still_parts(renderer_, parts_,
+                             {.size = size_of(parts_),
+                              .line_width = 1.5,
+                              .opacity = request.opacity,
+                              .backward = std::array{view.backward.x(), view.backward.y(), view.backward.z()}});
     opacity_ = request.opacity;
     add_text(caption_, 0.96, 18, true);
     add_text(help_, 0.02, 13, false);

@@ -70,6 +70,30 @@ TEST(View, DrawsAPanelForEachLevel) {
   EXPECT_EQ(width("0,1,2"), 3 * width("1"));
 }
 
+TEST(View, MakesFiguresWithAColorBarPartsBesideEachOtherAndNoGround) {
+  if (no_display()) GTEST_SKIP() << "Xvfb is not in PATH";
+  const Workplace here;
+  const std::string mesh = here.add("rod.obj", test::box({0, 0, 0}, {6, 2, 2})), picture = (here / "v.png").string();
+  const std::string axis = here.add("rod.ma", std::string("3 2 0\nv 1 1 1 1\nv 3 1 1 1\nv 5 1 1 .5\ne 0 1\ne 1 2\n"));
+  const auto drawn = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"view", axis, mesh, "-o", picture, "--quiet"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Finished run = here.run(all);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return here.files("").at("v.png");
+  };
+  const unsigned plain = size_of(drawn({})).first;
+  EXPECT_GT(size_of(drawn({"--color", "radius", "--range", "0,1"})).first, plain) << "the bar is beside the picture";
+  EXPECT_EQ(size_of(drawn({"--layout", "beside"})).first, plain) << "one axis, with the mesh around it";
+  const std::string glass =
+      drawn({"--transparent", "--balls", "--clip", "1,0,0,3", "--look-at", "3,1,1", "--width", "4"});
+  EXPECT_EQ(glass.at(25), 6) << "red, green, blue and opacity";
+  const Finished run = here.run({"view", axis, "-o", picture, "--turn", "2", "--size", "64x64", "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto files = here.files("");
+  EXPECT_NE(files.at("v-001.png"), files.at("v-002.png"));
+}
+
 TEST(View, RefusesWhatItCannotDraw) {
   const Workplace here;
   const std::string mesh = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
@@ -85,6 +109,12 @@ TEST(View, RefusesWhatItCannotDraw) {
                {{tree, "-o", picture, "--camera", "30"}, "two angles"},
                {{tree, "-o", picture, "--camera", "30,95"}, "-80 to 80"},
                {{tree, "-o", picture, "--size", "30x40"}, "64 to 8192"},
+               {{tree, "-o", picture, "--color", "colour"}, "they have branch, carried, error"},
+               {{tree, "-o", picture, "--color", "radius", "--range", "3"}, "two numbers"},
+               {{tree, "-o", picture, "--color", "radius", "--range", "3,3"}, "below the second"},
+               {{tree, "-o", picture, "--look-at", "1,2"}, "three coordinates"},
+               {{tree, "-o", picture, "--clip", "0,0,0,1"}, "no plane"},
+               {{tree, "--window", "--edges"}, "no options of a figure"},
                {{(here / "none.obj").string(), "-o", picture}, "none.obj"}};
   for (const auto& [arguments, named] : cases) {
     std::vector<std::string> all{"view"};

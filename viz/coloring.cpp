@@ -1,0 +1,212 @@
+#include "coloring.h"
+
+#include <vtkActor2D.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+namespace orchard::detail {
+namespace {
+
+constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
+// Of Okabe and Ito, which colour-blind people can tell apart.
+constexpr std::array kDistinct{rgb(0x0072b2), rgb(0xe69f00), rgb(0x009e73), rgb(0xcc79a7),
+                               rgb(0x56b4e9), rgb(0xd55e00), rgb(0xf0e442), rgb(0x808080)};
+const std::set<std::string> kCategories{"branch",  "carried",   "cluster",        "component", "kind",
+                                        "measure", "node",      "origin",         "parent",    "segment",
+                                        "sheet",   "structure", "structure_kind", "trunk",     "wall"};
+
+std::vector<vtkPolyData*> all_of(const ViewParts& parts) {
+  std::vector<vtkPolyData*> all;
+  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points, &parts.data})
+    for (const auto& part : *list) all.push_back(part.second);
+  for (const auto& [level, trees] : parts.levels)
+    for (const auto& part : trees) all.push_back(part.second);
+  return all;
+}
+
+vtkDataArray* array_in(vtkDataSetAttributes* data, const std::string& name) {
+  vtkDataArray* array = data->GetArray(name.c_str());
+  return array != nullptr && array->GetNumberOfComponents() == 1 ? array : nullptr;
+}
+
+// Numbers of things belong to cells rather than to the points between them.
+bool of_cells(const Coloring& coloring, vtkPolyData* data) {
+  const bool cells = array_in(data->GetCellData(), coloring.array) != nullptr;
+  return cells && (coloring.categories || array_in(data->GetPointData(), coloring.array) == nullptr);
+}
+
+vtkDataSetAttributes* attributes_of(const Coloring& coloring, vtkPolyData* data) {
+  if (of_cells(coloring, data)) return data->GetCellData();
+  return data->GetPointData();
+}
+
+void add_range(vtkDataArray* values, std::array<double, 2>& range) {
+  for (vtkIdType i = 0; values != nullptr && i < values->GetNumberOfTuples(); ++i) {
+    const double value = values->GetComponent(i, 0);
+    if (std::isfinite(value)) range = {std::min(range[0], value), std::max(range[1], value)};
+  }
+}
+
+void add_names(vtkDataSetAttributes* data, std::set<std::string>& names) {
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    if (const char* name = data->GetArrayName(i); name != nullptr && array_in(data, name) != nullptr)
+      names.insert(name);
+}
+
+[[noreturn]] void fail_without(const std::string& array, const ViewParts& parts) {
+  std::set<std::string> names;
+  for (vtkPolyData* data : all_of(parts)) add_names(data->GetPointData(), names), add_names(data->GetCellData(), names);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  throw std::runtime_error("no file has an array '" + array + "' to colour by; they have " +
+                           (list.empty() ? "none" : list));
+}
+
+void add_print(vtkRenderer* renderer, const std::string& text, double x, double y, int pixels, bool upright) {
+  vtkNew<vtkTextActor> actor;
+  actor->SetInput(text.c_str());
+  vtkTextProperty* property = actor->GetTextProperty();
+  property->SetFontFamilyToArial();
+  property->SetFontSize(pixels);
+  property->SetColor(kInk[0], kInk[1], kInk[2]);
+  property->SetVerticalJustificationToCentered();
+  if (upright) property->SetJustificationToCentered();
+  if (upright) property->SetOrientation(90);
+  actor->SetPosition(x, y);
+  renderer->AddViewProp(actor);
+}
+
+// Rectangles one above the other.
+vtkSmartPointer<vtkPolyData> bar(const Coloring& coloring, double left, double right, double low, double high) {
+  constexpr int kSteps = 128;
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> quads;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double y = low + (high - low) * i / kSteps;
+    points->InsertNextPoint(left, y, 0);
+    points->InsertNextPoint(right, y, 0);
+    if (i == kSteps) break;
+    const std::array<vtkIdType, 4> corners{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2};
+    quads->InsertNextCell(4, corners.data());
+  }
+  data->SetPoints(points);
+  data->SetPolys(quads);
+  set_colors(data->GetCellData(), kSteps, [&](vtkIdType i) {
+    const double t = (static_cast<double>(i) + 0.5) / kSteps;
+    return coloring.color_of(coloring.range[0] + t * (coloring.range[1] - coloring.range[0]));
+  });
+  return data;
+}
+
+}  // namespace
+
+Color Coloring::color_of(double value) const {
+  if (!std::isfinite(value)) return kUndefined;
+  if (categories) {
+    if (value < 0) return kUndefined;
+    return kDistinct.at(static_cast<std::size_t>(value) % kDistinct.size());
+  }
+  Color color{};
+  colors->GetColor(value, color.data());
+  return color;
+}
+
+std::optional<Coloring> coloring_of(const ViewParts& parts, const FigureOptions& figure) {
+  if (figure.color.empty()) return std::nullopt;
+  Coloring coloring{.array = figure.color, .categories = kCategories.contains(figure.color), .colors = {}};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 2> range{kInfinity, -kInfinity};
+  bool found = false;
+  for (vtkPolyData* data : all_of(parts)) {
+    if (!has_colors(coloring, data)) continue;
+    found = true;
+    add_range(attributes_of(coloring, data)->GetArray(coloring.array.c_str()), range);
+  }
+  if (!found) fail_without(figure.color, parts);
+  if (range[0] > range[1]) range = {0, 1};  // no value is defined
+  if (figure.range) range = *figure.range;
+  if (range[0] == range[1]) range[1] = range[0] + std::max(1e-9, 1e-9 * std::abs(range[0]));
+  coloring.range = range;
+  coloring.colors = viridis(range.data());
+  coloring.colors->SetNanColor(kUndefined[0], kUndefined[1], kUndefined[2]);
+  return coloring;
+}
+
+bool has_colors(const Coloring& coloring, vtkPolyData* data) {
+  return array_in(data->GetPointData(), coloring.array) != nullptr ||
+         array_in(data->GetCellData(), coloring.array) != nullptr;
+}
+
+void apply(const Coloring& coloring, vtkPolyData* data, vtkActor* actor) {
+  vtkMapper* mapper = actor->GetMapper();
+  vtkDataSetAttributes* attributes = attributes_of(coloring, data);
+  vtkDataArray* values = attributes->GetArray(coloring.array.c_str());
+  mapper->ScalarVisibilityOn();
+  if (of_cells(coloring, data)) {
+    mapper->SetScalarModeToUseCellFieldData();
+  } else {
+    mapper->SetScalarModeToUsePointFieldData();
+  }
+  if (coloring.categories) {
+    set_colors(attributes, values->GetNumberOfTuples(),
+               [&](vtkIdType i) { return coloring.color_of(values->GetComponent(i, 0)); });
+    mapper->SelectColorArray("color");
+    mapper->SetColorModeToDirectScalars();
+    mapper->InterpolateScalarsBeforeMappingOff();
+  } else {
+    mapper->SelectColorArray(coloring.array.c_str());
+    mapper->SetLookupTable(coloring.colors);
+    mapper->UseLookupTableScalarRangeOn();
+    mapper->InterpolateScalarsBeforeMappingOn();
+  }
+  // Colours that stand for values are not to be changed much by light.
+  actor->GetProperty()->SetAmbient(0.35);
+  actor->GetProperty()->SetDiffuse(0.65);
+  actor->GetProperty()->SetSpecular(0);
+}
+
+void color_points(const Coloring& coloring, vtkPolyData* data) {
+  vtkDataArray* values = array_in(data->GetPointData(), coloring.array);
+  set_colors(data->GetPointData(), data->GetNumberOfPoints(), [&](vtkIdType i) {
+    return values == nullptr ? kUndefined : coloring.color_of(values->GetComponent(i, 0));
+  });
+}
+
+vtkSmartPointer<vtkRenderer> color_bar(const Coloring& coloring, int width, int height) {
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetBackground(1, 1, 1);
+  const double low = 0.22 * height, high = 0.78 * height, left = 0.30 * width, right = 0.46 * width;
+  vtkNew<vtkPolyDataMapper2D> mapper;
+  mapper->SetInputData(bar(coloring, left, right, low, high));
+  mapper->SetScalarModeToUseCellFieldData();
+  mapper->ColorByArrayComponent("color", 0);
+  mapper->SetColorModeToDirectScalars();
+  vtkNew<vtkActor2D> actor;
+  actor->SetMapper(mapper);
+  renderer->AddViewProp(actor);
+  const int print = std::max(8, width / 8);
+  constexpr int kLabels = 5;
+  for (int i = 0; i < kLabels; ++i) {
+    const double t = static_cast<double>(i) / (kLabels - 1);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", coloring.range[0] + t * (coloring.range[1] - coloring.range[0]));
+    add_print(renderer, text, right + 0.06 * width, low + t * (high - low), print, false);
+  }
+  add_print(renderer, coloring.array, 0.16 * width, 0.5 * (low + high), print, true);
+  return renderer;
+}
+
+}  // namespace orchard::detail
