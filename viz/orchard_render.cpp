@@ -171,84 +171,117 @@ Layout make_layout(const Request& request, const Panels& content, const View& vi
   return layout;
 }
 
-void render(const Request& request) {
-  const std::string& title = request.title;
-  const Vector3d backward = looking(request.direction).backward;
-  Panels content = make_panels(request.vtm, {.line_width = 1.5 * kOversampling,
-                                             .backward = {backward.x(), backward.y(), backward.z()},
-                                             .opacity = request.opacity,
-                                             .whole = request.whole,
-                                             .figure = request.figure});
+// From where the panels are seen: from the front and from behind, at one scale.
+struct Views {
+  View front, back;
+};
+
+Views views_of(const Request& request, const Panels& content) {
   Direction behind = request.direction;
   behind.azimuth += 180;
-  View view = make_view(request.direction, content.extents), back = make_view(behind, content.extents);
-  const bool both =
-      std::any_of(content.panels.begin(), content.panels.end(), [](const Panel& panel) { return panel.from_behind; });
-  if (both) {  // at one scale
-    view.width = back.width = std::max(view.width, back.width);
-    view.height = back.height = std::max(view.height, back.height);
+  Views views{make_view(request.direction, content.extents), make_view(behind, content.extents)};
+  if (std::any_of(content.panels.begin(), content.panels.end(), [](const Panel& panel) { return panel.from_behind; })) {
+    views.front.width = views.back.width = std::max(views.front.width, views.back.width);
+    views.front.height = views.back.height = std::max(views.front.height, views.back.height);
   }
-  if (request.steady) view = steady(view, content.extents);
+  if (request.steady) views.front = steady(views.front, content.extents);
   if (request.look_at) {
-    const Vector3d center(request.look_at->data());
-    view = look_at(view, center, request.span > 0 ? request.span : std::max(view.width, view.height));
+    const double all = std::max(views.front.width, views.front.height);
+    views.front = look_at(views.front, Vector3d(request.look_at->data()), request.span > 0 ? request.span : all);
   }
-  const Layout layout = make_layout(request, content, view);
-  const int width = layout.width, height = layout.height;
+  return views;
+}
 
-  vtkNew<vtkImageData> picture;
-  picture->SetDimensions(width, height, 1);
-  const int components = request.transparent ? 4 : 3;
-  picture->AllocateScalars(VTK_UNSIGNED_CHAR, components);
-  std::memset(
-      picture->GetScalarPointer(), request.transparent ? 0 : 255,
-      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(components));
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);
+// The picture, into which its parts are drawn one after the other.
+class Sheet {
+ public:
+  Sheet(const Request& request, const Layout& layout) : request_(request), layout_(layout) {
+    const int components = request.transparent ? 4 : 3;
+    picture_->SetDimensions(layout.width, layout.height, 1);
+    picture_->AllocateScalars(VTK_UNSIGNED_CHAR, components);
+    std::memset(picture_->GetScalarPointer(), request.transparent ? 0 : 255,
+                static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height) *
+                    static_cast<std::size_t>(components));
+    window_->SetOffScreenRendering(1);
+    window_->SetMultiSamples(0);
+  }
 
-  if (layout.title_height > 0) {
+  void add_title() {
+    if (layout_.title_height == 0) return;
     vtkNew<vtkRenderer> renderer;
-    const double line = layout.title_height * kOversampling, span = width * kOversampling;
-    add_text(renderer, title, span / 2, line / 2, fitting(title, 0.5 * line, span), true);
-    paste(picture, draw(window, renderer, width, layout.title_height, request.transparent), 0,
-          height - layout.title_height);
+    const double line = layout_.title_height * kOversampling, span = layout_.width * kOversampling;
+    add_text(renderer, request_.title, span / 2, line / 2, fitting(request_.title, 0.5 * line, span), true);
+    put(renderer, layout_.width, layout_.title_height, 0, layout_.height - layout_.title_height);
   }
-  const double line = layout.caption_height * kOversampling, span = layout.panel_width * kOversampling;
-  double caption_print = 0.30 * line, detail_print = 0.24 * line;
-  for (const Panel& panel : content.panels) {
-    caption_print = fitting(panel.caption, caption_print, span);
-    detail_print = fitting(panel.detail, detail_print, span);
-  }
-  const int count = static_cast<int>(content.panels.size());
-  for (int i = 0; i < count; ++i) {
-    const Panel& panel = content.panels[static_cast<std::size_t>(i)];
-    const int row = i / layout.columns, column = i % layout.columns;
-    const int in_row = std::min(layout.columns, count - row * layout.columns);
-    if (request.captions) {
-      const bool on_scene = request.look_at.has_value();  // which goes on behind them
-      add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true, on_scene);
-      add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false, on_scene);
+
+  void add_panels(const std::vector<Panel>& panels, const Views& views) {
+    const double line = layout_.caption_height * kOversampling, span = layout_.panel_width * kOversampling;
+    double caption_print = 0.30 * line, detail_print = 0.24 * line;
+    for (const Panel& panel : panels) {
+      caption_print = fitting(panel.caption, caption_print, span);
+      detail_print = fitting(panel.detail, detail_print, span);
     }
-    const View& from = panel.from_behind ? back : view;
-    aim(panel.renderer->GetActiveCamera(), from, layout.panel_width, layout.panel_height, layout.caption_height);
-    for (const Label& label : panel.labels)
-      add_label(panel.renderer, label, from, panel.from_behind ? view : back, kLabelPrint * line);
-    const int left = (width - layout.bar_width - in_row * layout.panel_width) / 2 + column * layout.panel_width;
-    const int bottom = height - layout.title_height - (row + 1) * layout.panel_height;
-    paste(picture, draw(window, panel.renderer, layout.panel_width, layout.panel_height, request.transparent), left,
-          bottom);
+    const int count = static_cast<int>(panels.size());
+    for (int i = 0; i < count; ++i) {
+      const Panel& panel = panels[static_cast<std::size_t>(i)];
+      if (request_.captions) {
+        const bool on_scene = request_.look_at.has_value();  // which goes on behind them
+        add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true, on_scene);
+        add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false, on_scene);
+      }
+      const View& from = panel.from_behind ? views.back : views.front;
+      aim(panel.renderer->GetActiveCamera(), from, layout_.panel_width, layout_.panel_height, layout_.caption_height);
+      for (const Label& label : panel.labels)
+        add_label(panel.renderer, label, from, panel.from_behind ? views.front : views.back, kLabelPrint * line);
+      const int row = i / layout_.columns, column = i % layout_.columns;
+      const int in_row = std::min(layout_.columns, count - row * layout_.columns);
+      const int room = layout_.width - layout_.bar_width;
+      put(panel.renderer, layout_.panel_width, layout_.panel_height,
+          (room - in_row * layout_.panel_width) / 2 + column * layout_.panel_width,
+          layout_.height - layout_.title_height - (row + 1) * layout_.panel_height);
+    }
   }
-  if (layout.bar_width > 0) {
-    const int room = height - layout.title_height;
-    const auto bar = content.color_bar(layout.bar_width * kOversampling, room * kOversampling);
-    paste(picture, draw(window, bar, layout.bar_width, room, request.transparent), width - layout.bar_width, 0);
+
+  void add_bar(const Panels& content) {
+    if (layout_.bar_width == 0) return;
+    const int room = layout_.height - layout_.title_height;
+    put(content.color_bar(layout_.bar_width * kOversampling, room * kOversampling), layout_.bar_width, room,
+        layout_.width - layout_.bar_width, 0);
   }
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetFileName(request.png.c_str());
-  writer->SetInputData(picture);
-  writer->Write();
-  if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + request.png);
+
+  void save() {
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetFileName(request_.png.c_str());
+    writer->SetInputData(picture_);
+    writer->Write();
+    if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + request_.png);
+  }
+
+ private:
+  void put(vtkRenderer* renderer, int width, int height, int left, int bottom) {
+    paste(picture_, draw(window_, renderer, width, height, request_.transparent), left, bottom);
+  }
+
+  const Request& request_;
+  const Layout& layout_;
+  vtkNew<vtkImageData> picture_;
+  vtkNew<vtkRenderWindow> window_;
+};
+
+void render(const Request& request) {
+  const Vector3d backward = looking(request.direction).backward;
+  const Panels content = make_panels(request.vtm, {.line_width = 1.5 * kOversampling,
+                                                   .backward = {backward.x(), backward.y(), backward.z()},
+                                                   .opacity = request.opacity,
+                                                   .whole = request.whole,
+                                                   .figure = request.figure});
+  const Views views = views_of(request, content);
+  const Layout layout = make_layout(request, content, views.front);
+  Sheet sheet(request, layout);
+  sheet.add_title();
+  sheet.add_panels(content.panels, views);
+  sheet.add_bar(content);
+  sheet.save();
 }
 
 }  // namespace
