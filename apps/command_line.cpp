@@ -12,6 +12,7 @@
 #include "command_list.h"
 #include "list_option.h"
 #include "orchard/geometry/tolerance.h"
+#include "set_options.h"
 #include "tree_options.h"
 
 namespace orchard::apps {
@@ -188,6 +189,77 @@ void add_verify(CLI::App& app, Request& request) {
   command.callback([&request, &command] {
     request.verify.output.run = invocation_of(command, request.typed);
     request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? kSucceeded : kFailed; };
+  });
+}
+
+void add_spheres(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("spheres", "Make a set of spheres for a mesh, with a promise and its proof");
+  SpheresCommand& spheres = request.spheres;
+  command.add_option("mesh", spheres.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", spheres.folder, "Folder for the spheres, the views and the report")->required();
+  add_set_options(command, spheres);
+  add_mesh_options(command, spheres.reading);
+  auto* exports =
+      add_list(command, "--export", spheres.exports,
+               "The spheres in further formats: json, csv, urdf (a link's collision geometry), yaml (cuRobo's)",
+               {"json", "csv", "urdf", "yaml"});
+  command.add_option("--link", spheres.link, "The link's name in urdf and yaml (default: the mesh's)")->needs(exports);
+  command.add_flag("--tree", spheres.tree,
+                   "Write an .orchard file of two levels over the spheres of a cover, for the run-time");
+  command.add_flag("!--no-views", spheres.views, "Write no files for ParaView");
+  command.add_flag("--picture", spheres.picture, "Draw the spheres");
+  command.add_option("--up", spheres.up, "The mesh's axis that points up in the picture")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  add_accept(command, spheres.accept);
+  add_force(command, spheres.output);
+  add_output_flags(command, spheres.output);
+  command.footer(
+      "Examples:\n  orchard spheres data/lamp.obj -o out/lamp-spheres -n 20\n"
+      "  orchard spheres data/lamp.obj -o out/lamp-inside -n 40 --fit inside --export json,csv\n"
+      "  orchard spheres data/lamp.obj -o out/lamp-balanced -n 30 --fit balanced");
+  command.callback([&request, &command] {
+    request.spheres.output.run = invocation_of(command, request.typed);
+    request.spheres.given = given_of(command);
+    request.run = [&request] { request.exit_code = orchard::apps::spheres(request.spheres); };
+  });
+}
+
+void add_audit(CLI::App& app, Request& request) {
+  CLI::App& command =
+      *app.add_subcommand("audit", "Prove what a set of spheres of any origin leaves open of a mesh, and measure it");
+  AuditCommand& audit = request.audit;
+  command
+      .add_option(
+          "spheres", audit.spheres,
+          "The spheres, in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .ply with "
+          "radii, .sph, .orchard")
+      ->required();
+  command.add_option("mesh", audit.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("--link", audit.link, "The link, where a file has several");
+  command
+      .add_option("--buffer", audit.buffer,
+                  "Audit the spheres with this much on every radius, too, in place of the file's own buffer")
+      ->check(ANumber(CLI::Range(-1e15, 1e15)));
+  add_join(command, audit.join);
+  auto* folder = command.add_option("-o,--output", audit.folder, "Folder for the views and the report");
+  auto* picture =
+      command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres stick out")
+          ->needs(folder);
+  command.add_option("--up", audit.up, "The mesh's axis that points up in the picture")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->needs(picture)
+      ->capture_default_str();
+  add_force(command, audit.output)->needs(folder);
+  add_output_flags(command, audit.output);
+  command.footer(
+      "Exit code 3 if some of the surface is open.\n"
+      "Example:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit");
+  command.callback([&request, &command] {
+    request.audit.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { request.exit_code = orchard::apps::audit(request.audit); };
   });
 }
 
@@ -636,6 +708,8 @@ void add_commands(CLI::App& app, Request& request) {
   add_inspect(app, request);
   add_sample(app, request);
   add_compare(app, request);
+  add_spheres(app, request);
+  add_audit(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
   add_leaderboard(app, request);

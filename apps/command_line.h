@@ -14,6 +14,8 @@ struct Request {
   CollideCommand collide;
   VerifyCommand verify;
   InspectCommand inspect;
+  SpheresCommand spheres;
+  AuditCommand audit;
   CompareCommand compare;
   SampleCommand sample;
   VoronoiCommand voronoi;

@@ -9,6 +9,7 @@
 #include "load_solid.h"
 #include "medial_tuning.h"
 #include "orchard/spheretree/build.h"
+#include "orchard/spheretree/sphere_set.h"
 #include "orchard/voronoi/algorithms.h"
 #include "provenance.h"
 
@@ -57,6 +58,35 @@ struct VerifyCommand {
   Output output;
 };
 bool verify(const VerifyCommand& command);  // false: something is not proven
+
+struct AuditCommand {
+  std::filesystem::path spheres, mesh;
+  std::filesystem::path folder;  // for the views and the report; empty: none
+  std::string link;              // of a file of several; empty: there is one
+  std::optional<double> buffer;  // on every radius, in place of the file's own
+  std::optional<double> join;
+  bool picture = false;
+  std::string up = "z";  // the mesh's axis that points up in the picture
+  Output output;
+};
+ExitCode audit(const AuditCommand& command);
+
+struct SpheresCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  SphereSetOptions options;
+  double error = 0, volume_error = 0;  // percent
+  std::vector<Index> curve;            // numbers of spheres to try as well
+  std::vector<std::string> exports;    // json, csv, urdf, yaml; x y z r as text always
+  std::string link;                    // the name in robots' files; empty: the mesh's
+  bool tree = false;                   // an .orchard file over the spheres
+  bool views = true, picture = false;
+  std::string up = "z";
+  std::vector<std::string> given;  // as of BuildCommand
+  bool accept = false;             // likewise
+  Output output;
+};
+ExitCode spheres(const SpheresCommand& command);
 
 struct SampleCommand {
   std::filesystem::path mesh, folder;

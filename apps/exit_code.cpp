@@ -13,7 +13,7 @@ std::span<const ExitCodeRow> exit_codes() {
       ExitCodeRow{kBadInput,
                   "The command line, a file or a folder cannot be used; nothing is written, and one line on the "
                   "standard error output says why"},
-      ExitCodeRow{kAuditOpen, "Reserved: an audit is left open; no command returns it yet"},
+      ExitCodeRow{kAuditOpen, "audit found surface that is in no sphere; everything is written"},
       ExitCodeRow{kTooThin, "Reserved: the solid is thinner than --fail-below; no command returns it yet"},
       ExitCodeRow{kPromiseNotKept,
                   "All files are written, but the result lacks a property that the command promises; the report names "

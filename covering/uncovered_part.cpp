@@ -41,7 +41,7 @@ class Measurer {
         settled_area_ += cell.area;
         continue;
       }
-      for_each_quarter(cell, [&](const auto& corners) { classify(corners, cell.area / 4); });
+      for_each_half(cell, [&](const auto& corners) { classify(corners, cell.area / 2); });
     }
     part_.area = {sure_area_, sure_area_ + std::max(0.0, open_area_) + settled_area_};
     part_.likely_area = sure_area_;
@@ -57,14 +57,19 @@ class Measurer {
   // Areas below this fraction of R^2 are not worth telling from nothing.
   static constexpr double kNoArea = 1e-9;
 
+  // Across the longest side, so that the parts of a needle are no needles for long.
   template <class Visit>
-  static void for_each_quarter(const Cell& cell, Visit visit) {
-    const auto& [a, b, c] = cell.corners;
-    const Point ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    visit(std::array<Point, 3>{a, ab, ca});
-    visit(std::array<Point, 3>{b, bc, ab});
-    visit(std::array<Point, 3>{c, ca, bc});
-    visit(std::array<Point, 3>{ab, bc, ca});
+  static void for_each_half(const Cell& cell, Visit visit) {
+    std::size_t longest = 0;
+    double length = 0;
+    for (std::size_t side = 0; side < 3; ++side) {
+      const double own = (cell.corners[(side + 1) % 3] - cell.corners[side]).squaredNorm();
+      if (own > length) length = own, longest = side;
+    }
+    const Point &a = cell.corners[longest], &b = cell.corners[(longest + 1) % 3], &c = cell.corners[(longest + 2) % 3];
+    const Point middle = (a + b) / 2;
+    visit(std::array<Point, 3>{a, middle, c});
+    visit(std::array<Point, 3>{middle, b, c});
   }
 
   // Files the cell under uncovered or undecided, or forgets it if it is covered.
@@ -114,13 +119,13 @@ class Measurer {
       return std::max(options_.distance_tolerance.of_radius * radius_,
                       options_.distance_tolerance.of_distance * part_.distance.lower);
     };
-    for (Index spent = 0; !cells.empty() && spent < options_.max_cells; spent += 4) {
+    for (Index spent = 0; !cells.empty() && spent < options_.max_cells; spent += 2) {
       const Cell cell = cells.top();
       if (cell.farthest() <= part_.distance.lower + width()) break;
       cells.pop();
-      for_each_quarter(cell, [&](const auto& corners) {
-        const Cell quarter = make_cell(corners, cell.area / 4);
-        if (quarter.farthest() > 0 && (quarter.distance > quarter.reach || !covered(corners))) cells.push(quarter);
+      for_each_half(cell, [&](const auto& corners) {
+        const Cell half = make_cell(corners, cell.area / 2);
+        if (half.farthest() > 0 && (half.distance > half.reach || !covered(corners))) cells.push(half);
       });
     }
     part_.distance.upper =

@@ -16,7 +16,15 @@ constexpr int kShrinks = 12;             // of the ball that touches the surface
 constexpr double kEmpty = 1 - 1e-3;      // a ball whose centre is as far from the surface, in radii, touches it
 constexpr double kSmallestStart = 0.01;  // radius of such a ball, in R
 
-// The centre of the largest ball in the solid that touches the surface there, shrunk from R.
+std::vector<Index> without_repair(const SurfaceSampling& sampling) {
+  std::vector<Index> sampled;
+  for (Index p = 0; p < sampling.size(); ++p)
+    if (sampling.origins[p] != PointOrigin::repair) sampled.push_back(p);
+  return sampled;
+}
+
+}  // namespace
+
 Point touching_center(const Surface& surface, const Point& point, const Vector& outward) {
   double radius = surface.bounding_radius();
   const double min = kSmallestStart * radius;
@@ -34,15 +42,6 @@ Point touching_center(const Surface& surface, const Point& point, const Vector& 
   }
   return point - radius * outward;
 }
-
-std::vector<Index> without_repair(const SurfaceSampling& sampling) {
-  std::vector<Index> sampled;
-  for (Index p = 0; p < sampling.size(); ++p)
-    if (sampling.origins[p] != PointOrigin::repair) sampled.push_back(p);
-  return sampled;
-}
-
-}  // namespace
 
 Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling) {
   const std::vector<Index> sampled = without_repair(sampling);

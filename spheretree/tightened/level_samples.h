@@ -10,6 +10,10 @@ struct Samples {
   Index size() const { return static_cast<Index>(points.size()); }
 };
 
+// The centre of the largest ball in the solid that touches the surface at a point of it, shrunk from R; `outward`:
+// where the surface faces there.
+Point touching_center(const Surface& surface, const Point& point, const Vector& outward);
+
 // The surface points but for those that gap repair added, which come out otherwise with the last digits of the others:
 // each with the centre of the largest ball in the solid that touches it; and the mesh's corners if they are not too
 // many. `surface` is one in its frame (canonical_frame.h). Relaxed points are taken roughly and put back on it, so that

@@ -21,7 +21,7 @@ struct UncoveredPartOptions {
   Index max_cells = 100'000;  // of all triangles together; where they run out, the bounds are wider
 };
 
-// Splits the given triangles into four until the boundary lemma or the distance at a cell's middle, which is
+// Halves the given triangles until the boundary lemma or the distance at a cell's middle, which is
 // 1-Lipschitz, settles what is covered and what is not. Other triangles count as covered. Triangles are taken relative
 // to `origin`, as the balls are.
 UncoveredPart uncovered_part(const Surface& surface, std::span<const Index> triangles, const PathForest& forest,

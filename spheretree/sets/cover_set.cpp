@@ -1,0 +1,125 @@
+#include "cover_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "canonical_frame.h"
+#include "orchard/covering/coverage.h"
+#include "orchard/covering/inaccuracy.h"
+#include "orchard/geometry/tolerance.h"
+#include "orchard/spheretree/build.h"
+#include "orchard/spheretree/cover.h"
+#include "orchard/spheretree/outside_volume.h"
+#include "sampled_distances.h"
+#include "tightened/tightened_in_frame.h"
+
+namespace orchard::detail {
+namespace {
+
+// How a set is judged: few samples, the same for all sets that are compared.
+constexpr std::uint64_t kJudgingRays = 8000;
+constexpr Index kJudgingSamples = 4000;
+
+// Sets of few spheres depend on where their search begins and on what it looks at, and have the time for several.
+struct Search {
+  Objective objective;
+  Effort effort;
+  std::uint64_t seed = 0;  // beside that of the options
+};
+
+constexpr Index kFew = 32;  // spheres
+// Points of the surface with low effort.
+constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;
+
+std::vector<Search> searches_for(Index spheres, Effort effort) {
+  if (effort == Effort::low || (effort == Effort::standard && spheres > kFew)) return {{Objective::balanced, effort}};
+  std::vector<Search> searches{{Objective::balanced, Effort::standard}};
+  for (const Objective objective : {Objective::volume, Objective::mean}) searches.push_back({objective, Effort::low});
+  if (effort == Effort::standard) return searches;
+  for (const std::uint64_t seed : {0, 1})
+    for (const Objective objective : {Objective::balanced, Objective::maximum, Objective::volume, Objective::mean})
+      searches.push_back({objective, Effort::standard, seed});
+  searches.erase(searches.begin());
+  return searches;
+}
+
+Index samples_for_cover(const SphereSetOptions& options) {
+  const Index needed = samples_needed({.spheres = {options.spheres}});
+  return options.effort == Effort::low
+             ? std::min(needed, std::max(kFewestSamples, kFewSamplesPerBall * options.spheres))
+             : needed;
+}
+
+std::vector<Sphere> leaves_of(const SphereTree& tree) {
+  std::vector<Sphere> leaves;
+  for (const SphereNode& node : tree.nodes)
+    if (node.child_count == 0) leaves.push_back(node.sphere);
+  return leaves;
+}
+
+bool is_covered(const Surface& surface, const std::vector<Sphere>& balls) {
+  const Point origin = surface.bounding_box().center();
+  std::vector<PathBall> path_balls;
+  for (const Sphere& ball : balls) path_balls.push_back({ball.center - origin, ball.radius, kNone, true});
+  return surface_coverage(surface, path_balls, origin).complete();
+}
+
+// The spheres of one search, which hold the surface by themselves, without the tree's root.
+std::vector<Sphere> searched(const Surface& surface, const FramedSurface& framed, const SurfaceSampling& sampling,
+                             const TightenOptions& options, const Progress& progress) {
+  TightenBuild build = tightened_in_frame(framed.surface(), sampling, options, progress);
+  framed.take_out(build.tree);
+  std::vector<Sphere> balls = leaves_of(build.tree);
+  if (!is_covered(surface, balls)) {
+    cover(build.tree, surface, progress);
+    balls = leaves_of(build.tree);
+  }
+  return balls;
+}
+
+// The largest distance outside times the mean one times the volume: neither is bought with much of another.
+double looseness(const Surface& surface, const std::vector<Sphere>& balls) {
+  double max = 0;
+  for (const Sphere& ball : balls) max = std::max(max, inaccuracy(surface, ball, {1e-3, 1e-2}).upper);
+  const UnionBoundary boundary(balls, kJudgingSamples);
+  double sum = 0;
+  for (const UnionBoundary::Sample& sample : boundary.samples())
+    sum += sample.area * std::max(0.0, surface.signed_distance(sample.at));
+  return max * sum / boundary.area() * outside_volume(surface, balls, kJudgingRays);
+}
+
+}  // namespace
+
+std::vector<Sphere> cover_set(const Surface& surface, const SphereSetOptions& options, const Progress& progress) {
+  if (options.spheres == 1) {
+    const Sphere& bounds = surface.bounding_ball();
+    return {{bounds.center, bounds.radius * (1 + tolerance::kCoverMargin)}};
+  }
+  const FramedSurface framed(surface);
+  const Index samples = samples_for_cover(options);
+  SamplingOptions sampling_options{.face_points = samples - samples / 5, .edge_points = samples / 5};
+  sampling_options.seed = options.seed;
+  const SurfaceSampling sampling = sample_surface(framed.surface(), sampling_options, progress);
+  const std::vector<Search> searches = searches_for(options.spheres, options.effort);
+  std::vector<Sphere> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < searches.size(); ++i) {
+    TightenOptions own{.depth = 1,
+                       .spheres = {options.spheres},
+                       .objective = searches[i].objective,
+                       .seed = options.seed + searches[i].seed};
+    own.effort = searches[i].effort;
+    const Progress share = [&](std::string_view stage, double fraction) {
+      return !progress || progress(stage, (static_cast<double>(i) + fraction) / static_cast<double>(searches.size()));
+    };
+    std::vector<Sphere> balls = searched(surface, framed, sampling, own, share);
+    const double own_looseness = searches.size() > 1 ? looseness(surface, balls) : 0;
+    if (!(own_looseness < least) && !best.empty()) continue;
+    least = own_looseness;
+    best = std::move(balls);
+  }
+  return best;
+}
+
+}  // namespace orchard::detail

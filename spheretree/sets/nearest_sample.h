@@ -1,0 +1,50 @@
+#pragma once
+#include <vector>
+
+#include "orchard/geometry/mesh.h"
+
+namespace orchard::detail {
+
+// Finds the nearest of some points: a tree of halves along the longest side of each box.
+class NearestSample {
+ public:
+  explicit NearestSample(std::vector<Point> points);
+
+  // Calls visit(index) for the points that are no farther from the query than the number it returned last, near ones
+  // first as far as the tree tells; `limit` is the first such number. Some that are farther may come, too.
+  template <class Visit>
+  void visit(const Point& query, double limit, const Visit& visit) const {
+    if (!points_.empty()) descend(0, static_cast<Index>(points_.size()), query, limit, visit);
+  }
+  const Point& operator[](Index i) const { return points_[i]; }
+
+ private:
+  static constexpr Index kLeaf = 8;  // points that are not divided any further
+  struct Split {
+    int axis = 0;
+    double at = 0;
+  };
+  void divide(Index begin, Index end);
+
+  template <class Visit>
+  void descend(Index begin, Index end, const Point& query, double& limit, const Visit& visit) const {
+    if (end - begin <= kLeaf) {
+      for (Index i = begin; i < end; ++i)
+        if ((points_[order_[i]] - query).squaredNorm() <= limit * limit) limit = visit(order_[i]);
+      return;
+    }
+    const Index middle = begin + (end - begin) / 2;
+    const Split& split = splits_[middle];
+    const double offset = query[split.axis] - split.at;
+    const bool low_first = offset < 0;
+    low_first ? descend(begin, middle, query, limit, visit) : descend(middle, end, query, limit, visit);
+    if (offset * offset > limit * limit) return;
+    low_first ? descend(middle, end, query, limit, visit) : descend(begin, middle, query, limit, visit);
+  }
+
+  std::vector<Point> points_;
+  std::vector<Index> order_;
+  std::vector<Split> splits_;  // of each range, at its middle
+};
+
+}  // namespace orchard::detail
