@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -520,6 +522,77 @@ void add_inspect(CLI::App& app, Request& request) {
   });
 }
 
+void add_angle(CLI::App& command, const std::string& option, double& radians, const std::string& help, double most) {
+  command
+      .add_option_function<double>(
+          option, [&radians](double degrees) { radians = degrees * std::numbers::pi / 180; }, help)
+      ->check(ANumber(CLI::Range(most < 180 ? 0.01 : 0.0, most)));
+}
+
+void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
+  command
+      .add_option_function<std::string>(
+          "--definition",
+          [&thickness](const std::string& name) {
+            thickness.options.definition = name == "ray" ? ThicknessDefinition::ray : ThicknessDefinition::ball;
+          },
+          "The diameter of the largest ball in the solid that touches the place, or the way of a ray inward [ball]")
+      ->check(CLI::IsMember({"ball", "ray"}));
+  add_angle(
+      command, "--facing", thickness.options.facing,
+      "Degrees from which the two ends of a diameter face each other; with less, the place has no thickness [120]",
+      180);
+  add_angle(command, "--smooth", thickness.options.smooth,
+            "Degrees: edges that turn by less are those of a smooth surface, not edges where balls vanish [40]", 90);
+  command
+      .add_option("--samples", thickness.options.samples,
+                  "Triangles that the surface is divided into, about; at their middles and corners it is measured")
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
+  const auto add_limit = [&](const char* option, std::optional<double>& limit, const char* help) {
+    return command.add_option(option, limit, help)->check(ANumber(CLI::Range(0.0, kMaxCoordinate)));
+  };
+  CLI::Option* below = add_limit("--below", thickness.below,
+                                 "Say what area is thinner than this, in mesh units, in which places, and how thin");
+  add_limit("--fail-below", thickness.fail_below, "The same, and exit with 4 if anything is")->excludes(below);
+  command.add_option("--bins", thickness.bins, "Of the histogram")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  command
+      .add_option("--unit", thickness.unit, "The name of the mesh's unit, such as mm, for what is printed and written")
+      ->check(CLI::Validator(
+          [](std::string& name) {
+            const bool word = !name.empty() && name.size() <= 16 && std::all_of(name.begin(), name.end(), [](char c) {
+              return std::isalnum(static_cast<unsigned char>(c)) != 0;
+            });
+            return word ? std::string() : "expected a word of at most 16 letters and digits, such as mm";
+          },
+          "{a word}"));
+}
+
+void add_thickness(CLI::App& app, Request& request) {
+  CLI::App& command =
+      *app.add_subcommand("thickness", "Measure how thick a solid is everywhere, and say where it is too thin");
+  ThicknessCommand& thickness = request.thickness;
+  command.add_option("mesh", thickness.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", thickness.folder, "Folder for the mesh with its thickness, histogram and report")
+      ->required();
+  add_thickness_options(command, thickness);
+  add_mesh_options(command, thickness.reading);
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", thickness.views, "Write no files for ParaView");
+  add_force(command, thickness.output);
+  add_output_flags(command, thickness.output);
+  command.footer(
+      "Examples:\n  orchard thickness data/lamp.obj -o out/lamp --below 0.1\n"
+      "  orchard thickness data/lamp.obj -o out/lamp --fail-below 0.01 --unit mm");
+  command.callback([&request, &command] {
+    request.thickness.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { request.exit_code = orchard::apps::thickness(request.thickness); };
+  });
+}
+
 void add_leaderboard(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand(
       "leaderboard", "Measure the medial axes of all systems in a folder, and orchard's beside them");
@@ -713,6 +786,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_voronoi(app, request);
   add_medial(app, request);
   add_leaderboard(app, request);
+  add_thickness(app, request);
   add_view(app, request);
   add_completion(app, request);
   add_reference(app, request);

@@ -21,6 +21,7 @@ struct Request {
   VoronoiCommand voronoi;
   MedialCommand medial;
   LeaderboardCommand leaderboard;
+  ThicknessCommand thickness;
   ViewCommand view;
   std::string shell, format;  // of completion and reference
   ProfileCommand profile;

@@ -8,6 +8,7 @@
 #include "exit_code.h"
 #include "load_solid.h"
 #include "medial_tuning.h"
+#include "orchard/medial/thickness.h"
 #include "orchard/spheretree/build.h"
 #include "orchard/spheretree/sphere_set.h"
 #include "orchard/voronoi/algorithms.h"
@@ -196,6 +197,19 @@ struct SimulateCommand {
   Output output;
 };
 void simulate(const SimulateCommand& command);
+
+struct ThicknessCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  ThicknessOptions options;
+  std::optional<double> below;       // mesh units: say where the solid is thinner
+  std::optional<double> fail_below;  // the same, and the exit code is kTooThin if it is anywhere
+  std::string unit;                  // of the mesh, for what is printed and written; empty: "mesh units"
+  Index bins = 50;                   // of the histogram
+  bool views = true;                 // ParaView files, where the program was built with them
+  Output output;
+};
+ExitCode thickness(const ThicknessCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;

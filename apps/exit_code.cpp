@@ -14,7 +14,8 @@ std::span<const ExitCodeRow> exit_codes() {
                   "The command line, a file or a folder cannot be used; nothing is written, and one line on the "
                   "standard error output says why"},
       ExitCodeRow{kAuditOpen, "audit found surface that is in no sphere; everything is written"},
-      ExitCodeRow{kTooThin, "Reserved: the solid is thinner than --fail-below; no command returns it yet"},
+      ExitCodeRow{kTooThin,
+                  "All files are written, and the solid is somewhere thinner than --fail-below; the report says where"},
       ExitCodeRow{kPromiseNotKept,
                   "All files are written, but the result lacks a property that the command promises; the report names "
                   "it"},

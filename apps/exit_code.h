@@ -9,7 +9,7 @@ enum ExitCode : int {
   kFailed = 1,          // any other failure; `verify` did not prove everything
   kBadInput = 2,        // an InputError or a mistake on the command line
   kAuditOpen = 3,       // `audit` found surface that is in no sphere
-  kTooThin = 4,         // reserved: a measured thickness is below --fail-below
+  kTooThin = 4,         // everything is written, and a measured thickness is below --fail-below
   kPromiseNotKept = 5,  // everything is written, and the result lacks a property that the command promises
   kInterrupted = 130,   // 128 + SIGINT; interrupt.h ends with 128 + the number of any other signal
 };

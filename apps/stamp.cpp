@@ -29,7 +29,10 @@ std::string with_last_line(std::string bytes, const std::string& line) {
 }
 
 std::string with_ply_comment(std::string bytes, const std::string& line) {
-  return inserted_behind(std::move(bytes), "format ascii 1.0\n", "comment " + line + "\n");
+  const std::string comment = "comment " + line + "\n";
+  const bool binary = bytes.starts_with("ply\nformat binary_little_endian 1.0\n");
+  return inserted_behind(std::move(bytes), binary ? "format binary_little_endian 1.0\n" : "format ascii 1.0\n",
+                         comment);
 }
 
 // VTK writes texts as the numbers of their characters, each text with a zero behind it.

@@ -28,6 +28,7 @@ struct Models {
       all.push_back({"medial", mesh, "--samples", "150"});
       all.push_back({"medial", mesh, "--sweep", "samples=100", "--quality-samples", "100"});
       all.push_back({"sample", mesh, "--samples", "200"});
+      all.push_back({"thickness", mesh, "--samples", "100"});
       all.push_back({"voronoi", mesh, "--samples", "150"});
     }
     for (auto& run : all) run.insert(run.end(), {"-o", (here / folder).string(), "--quiet"});

@@ -1,0 +1,175 @@
+#include "tangent_ball.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "orchard/geometry/angle.h"
+#include "smooth_normal.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSame = 1e-12;     // of a radius: two that differ by less are the same
+constexpr double kLevel = 1e-9;     // descents below this are the rounding of normals
+constexpr double kParallel = 1e-6;  // radians: normals that differ by less give the same ball
+
+// Radians: an angle that is smaller by less is as large.
+constexpr double kSameAngle = 1e-7;
+
+// Between a place and another one, from the centre of the ball that touches both.
+double seen_angle(const TangentPlace& place, const Point& other) {
+  const Vector way = place.position - other;
+  return 2 * std::asin(std::clamp(place.normal.dot(way) / way.norm(), 0.0, 1.0));
+}
+
+// The part of a triangle that a part of another one, which shares it, is.
+Feature feature_on(const std::array<Index, 3>& triangle, const std::array<Index, 3>& other, Feature feature) {
+  if (feature == Feature::face) return feature;
+  const bool at_edge = feature <= Feature::edge2;
+  const Feature first = at_edge ? Feature::edge0 : Feature::vertex0;
+  const auto i = static_cast<std::size_t>(feature) - static_cast<std::size_t>(first);
+  const Index a = other[i], b = at_edge ? other[(i + 1) % 3] : a;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index c = triangle[k], d = at_edge ? triangle[(k + 1) % 3] : c;
+    if ((a == c && b == d) || (a == d && b == c)) return static_cast<Feature>(static_cast<std::size_t>(first) + k);
+  }
+  return Feature::face;
+}
+
+}  // namespace
+
+ThicknessAt TangentBallSearch::at(const SurfacePlace& place) {
+  surface_.triangles_at(place.triangle, place.feature, around_);
+  const auto& triangles = surface_.mesh().triangles;
+  parts_.clear();
+  for (const Index triangle : around_)
+    parts_.emplace_back(triangle, feature_on(triangles[triangle], triangles[place.triangle], place.feature));
+  std::sort(around_.begin(), around_.end());
+
+  ThicknessAt best;
+  best.diameter = best.thickness = kNaN;
+  best.contact = place.position;
+  const Vector main = smooth_normal(surface_, place, std::cos(options_.smooth));
+  best.normal = main;
+  if (!(main.norm() > 0)) return best;
+  try_normal(place, main, best);
+  if (place.feature == Feature::face || options_.definition == ThicknessDefinition::ray) return best;
+  for (const auto& [triangle, feature] : parts_) {
+    const Vector& normal = surface_.normal(triangle);
+    if (normal.isZero(0) || angle_between(normal, main) < kParallel) continue;
+    const bool concave = std::all_of(parts_.begin(), parts_.end(), [&](const auto& part) {
+      return descent_at(normal, surface_.corners(part.first), surface_.normal(part.first), part.second) <= kLevel;
+    });
+    if (concave) try_normal(place, normal, best);
+  }
+  return best;
+}
+
+void TangentBallSearch::try_normal(const SurfacePlace& place, const Vector& normal, ThicknessAt& best) {
+  const TangentPlace tangent{place.position, normal, std::sin(options_.smooth / 2)};
+  const bool rays = options_.definition == ThicknessDefinition::ray;
+  const bool vanishes = !rays && std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) {
+    return descent_at(normal, surface_.corners(part.first), surface_.normal(part.first), part.second) > tangent.sine;
+  });
+  if (vanishes) {
+    if (std::isnan(best.diameter)) best.diameter = 0;
+    return;
+  }
+  run(first_, tangent, std::numeric_limits<double>::infinity());
+  if (touched_ == kNone || 2 * found_.radius <= best.diameter) return;
+  best.diameter = 2 * found_.radius;
+  best.error = 2 * (found_.radius - low_);
+  best.normal = normal;
+  best.contact = found_.at;
+  best.angle = rays ? angle_between(normal, surface_.normal(touched_)) : seen_angle(tangent, found_.at);
+  set_thickness(tangent, best);
+}
+
+// The contact that faces the place need not be the nearest: facets of a smooth surface are all a little off.
+void TangentBallSearch::set_thickness(const TangentPlace& place, ThicknessAt& at) {
+  at.thickness = at.angle >= options_.facing - kSameAngle ? at.diameter : kNaN;
+  if (!std::isnan(at.thickness) || options_.definition == ThicknessDefinition::ray) return;
+  run(facing_, {place.position, place.normal, std::sin(options_.facing / 2)},
+      at.diameter / (2 * std::cos(options_.smooth / 2)));
+  if (touched_ == kNone) return;
+  at.thickness = 2 * found_.radius;
+  at.contact = found_.at;
+  at.angle = seen_angle(place, found_.at);
+}
+
+double TangentBallSearch::bound(const SlabTree::Node& node, const TangentPlace& place) const {
+  return options_.definition == ThicknessDefinition::ray ? SlabTree::min_ray(node, place)
+                                                         : SlabTree::min_touch(node, place);
+}
+
+void TangentBallSearch::run(Search& search, const TangentPlace& place, double limit) {
+  found_ = {limit, place.position};
+  touched_ = kNone;
+  work_ = 0;
+  if (search.touched != kNone && look_at(place, search.touched)) slide(place);
+  this->search(place);
+  if (low_ < found_.radius && touched_ != kNone) slide(place);
+  search.touched = touched_;
+}
+
+// The part that promises the smallest ball first, until none promises a smaller one than was found.
+void TangentBallSearch::search(const TangentPlace& place) {
+  waiting_.assign(1, {bound(tree_.nodes()[0], place), 0});
+  while (!waiting_.empty()) {
+    const Entry top = waiting_.front();
+    low_ = top.bound;
+    if (low_ >= (1 - kSame) * found_.radius) break;
+    if (work_ >= options_.work && std::isfinite(found_.radius)) return;
+    std::pop_heap(waiting_.begin(), waiting_.end());
+    waiting_.pop_back();
+    descend(place, top.node);
+  }
+  low_ = found_.radius;
+}
+
+// To the leaf that promises the smallest ball, at every fork the nearer way; the other ways wait.
+void TangentBallSearch::descend(const TangentPlace& place, Index index) {
+  const auto& nodes = tree_.nodes();
+  while (nodes[index].count == 0) {
+    const Index first = nodes[index].children;
+    Entry near{bound(nodes[first], place), first}, far{bound(nodes[first + 1], place), first + 1};
+    work_ += 2;
+    if (far.bound < near.bound) std::swap(near, far);
+    if (far.bound < found_.radius) {
+      waiting_.push_back(far);
+      std::push_heap(waiting_.begin(), waiting_.end());
+    }
+    if (!(near.bound < found_.radius)) return;
+    index = near.node;
+  }
+  for (const Index triangle : tree_.triangles(nodes[index])) look_at(place, triangle);
+}
+
+// From triangle to triangle across edges, as long as balls get smaller: to a place where the ball touches the surface
+// and cuts nothing beside it, if the search ended before.
+void TangentBallSearch::slide(const TangentPlace& place) {
+  for (bool better = true; better;) {
+    better = false;
+    const std::array<Index, 3> neighbors = surface_.neighbors(touched_);
+    for (const Index next : neighbors) {
+      if (next != kNone && look_at(place, next)) better = true;
+    }
+  }
+}
+
+bool TangentBallSearch::look_at(const TangentPlace& place, Index triangle) {
+  if (std::binary_search(around_.begin(), around_.end(), triangle)) return false;
+  ++work_;
+  const auto corners = surface_.corners(triangle);
+  const Touch touch = options_.definition == ThicknessDefinition::ray
+                          ? ray_through_triangle(place, corners, surface_.normal(triangle))
+                          : touch_of_triangle(place, corners, surface_.normal(triangle), found_.radius);
+  if (!(touch.radius < found_.radius)) return false;
+  found_ = touch;
+  touched_ = triangle;
+  return true;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,137 @@
+#include "tangent_touch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace orchard::detail {
+namespace {
+
+// A ray that passes a corner or an edge by a rounding meets it, so that none slips through between two triangles.
+constexpr double kOnBorder = 1e-12;  // of the triangle's area
+
+void take(Touch& best, const TangentPlace& place, const Point& at) {
+  const Vector way = place.position - at;
+  const double depth = place.normal.dot(way);
+  if (!(depth > 0)) return;
+  const double radius = way.squaredNorm() / (2 * depth);
+  if (radius < best.radius) best = {radius, at};
+}
+
+bool is_in_cone(const TangentPlace& place, const Point& q) {
+  const Vector way = place.position - q;
+  const double depth = place.normal.dot(way);
+  return depth > 0 && depth >= place.sine * way.norm();
+}
+
+bool is_in_triangle(const Point& q, const std::array<Point, 3>& corners, const Vector& normal, double slack = 0) {
+  for (int i = 0; i < 3; ++i) {
+    const Point &a = corners[static_cast<std::size_t>(i)], &b = corners[static_cast<std::size_t>((i + 1) % 3)];
+    if ((b - a).cross(q - a).dot(normal) < -slack) return false;
+  }
+  return true;
+}
+
+struct Interval {
+  double begin, end;
+};
+
+// The part of the segment a + t e, t in [0, 1], that is in the cone, which is convex.
+std::optional<Interval> part_in_cone(const TangentPlace& place, const Point& a, const Vector& e) {
+  const bool first = is_in_cone(place, a), last = is_in_cone(place, a + e);
+  if (first && last) return Interval{0, 1};
+  const Vector way = place.position - a;
+  const double depth = place.normal.dot(way), slope = place.normal.dot(e), sine2 = place.sine * place.sine;
+  const double qa = slope * slope - sine2 * e.squaredNorm(), qb = depth * slope - sine2 * way.dot(e),
+               qc = depth * depth - sine2 * way.squaredNorm();
+  const double discriminant = qb * qb - qa * qc;
+  std::array<double, 2> roots{};
+  std::size_t count = 0;
+  if (discriminant >= 0) {
+    const double sum = qb + std::copysign(std::sqrt(discriminant), qb);
+    for (const double root : {qa != 0 ? sum / qa : -1, sum != 0 ? qc / sum : -1}) {
+      if (root > 0 && root < 1 && depth - root * slope > 0) roots[count++] = root;
+    }
+    if (count == 2 && roots[1] < roots[0]) std::swap(roots[0], roots[1]);
+  }
+  if (first) return Interval{0, count > 0 ? roots[0] : 0};
+  if (last) return Interval{count > 0 ? roots[count - 1] : 1, 1};
+  if (count < 2) return std::nullopt;
+  return Interval{roots[0], roots[1]};
+}
+
+// Along a line the radius falls and rises again: what is nearest to the lowest place within the cone is lowest.
+void take_edge(Touch& best, const TangentPlace& place, const Point& a, const Point& b) {
+  const Vector e = b - a, way = place.position - a;
+  const double squared = e.squaredNorm();
+  if (!(squared > 0)) return;
+  const std::optional<Interval> part = part_in_cone(place, a, e);
+  if (!part) return;
+  const double along = way.dot(e) / squared, slope = place.normal.dot(e) / squared;
+  const Vector across = way - along * e, turned = place.normal - slope * e;
+  const double product = across.dot(turned), distance2 = across.squaredNorm();
+  const double denominator = product + std::sqrt(product * product + slope * slope * squared * distance2);
+  // Where no ball touches the line, it comes ever nearer to p without end: to the foot of p.
+  const double radius = denominator > 0 ? distance2 / denominator : 0;
+  const double t = std::clamp(along - radius * slope, part->begin, part->end);
+  take(best, place, a + t * e);
+}
+
+// The place of a plane inside the cone that the smallest ball touches. `height`, of p above the plane, is above 0.
+Point lowest_of_plane(const TangentPlace& place, const Vector& up, double height) {
+  const double cosine = place.normal.dot(up);
+  if ((1 + cosine) / 2 >= place.sine * place.sine) return place.position - height / (1 + cosine) * (place.normal + up);
+  // What the ball touches is outside the cone, so it is on the cone's border, straight down.
+  const Vector level = (up - cosine * place.normal).normalized();
+  const Vector down = -place.sine * place.normal - std::sqrt(1 - place.sine * place.sine) * level;
+  const double steepness = -down.dot(up);
+  return steepness > 0 ? Point(place.position + height / steepness * down) : place.position;
+}
+
+}  // namespace
+
+Touch touch_of_triangle(const TangentPlace& place, const std::array<Point, 3>& corners, const Vector& normal,
+                        double limit) {
+  Touch best;
+  const double height = normal.dot(place.position - corners[0]);
+  if (height != 0) {
+    const Vector up = height > 0 ? normal : Vector(-normal);
+    if (std::abs(height) >= limit * (1 + place.normal.dot(up))) return best;  // the whole plane is too far
+    const Point lowest = lowest_of_plane(place, up, std::abs(height));
+    if (is_in_triangle(lowest, corners, normal)) {
+      take(best, place, lowest);
+      return best;
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) take_edge(best, place, corners[i], corners[(i + 1) % 3]);
+  return best;
+}
+
+Touch ray_through_triangle(const TangentPlace& place, const std::array<Point, 3>& corners, const Vector& normal) {
+  const double slope = normal.dot(place.normal);
+  if (slope == 0) return {};
+  const double way = normal.dot(place.position - corners[0]) / slope;
+  const Point at = place.position - way * place.normal;
+  const double area2 = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+  if (!(way > 0) || !is_in_triangle(at, corners, normal, kOnBorder * area2)) return {};
+  return {way / 2, at};
+}
+
+double descent_at(const Vector& place_normal, const std::array<Point, 3>& corners, const Vector& normal,
+                  Feature feature) {
+  const auto down = [&](const Vector& way) { return way.isZero(0) ? 0.0 : -place_normal.dot(way) / way.norm(); };
+  const Vector steepest = place_normal.dot(normal) * normal - place_normal;
+  if (feature == Feature::face) return steepest.norm();
+  const bool at_edge = feature <= Feature::edge2;
+  const auto i =
+      static_cast<std::size_t>(feature) - static_cast<std::size_t>(at_edge ? Feature::edge0 : Feature::vertex0);
+  const Vector next = corners[(i + 1) % 3] - corners[i], last = corners[(i + 2) % 3] - corners[i];
+  if (at_edge) {
+    if (next.cross(steepest).dot(normal) >= 0) return steepest.norm();
+    return std::abs(down(next));
+  }
+  const bool between = next.cross(steepest).dot(normal) >= 0 && steepest.cross(last).dot(normal) >= 0;
+  return between ? steepest.norm() : std::max(down(next), down(last));
+}
+
+}  // namespace orchard::detail
