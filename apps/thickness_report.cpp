@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "orchard/plot/svg_plot.h"
+#include "svg_plot.h"
 
 namespace orchard::apps {
 namespace {
