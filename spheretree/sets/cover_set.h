@@ -5,7 +5,7 @@
 
 namespace orchard::detail {
 
-// A set that covers the surface of a solid; no more spheres than asked for. `samples`: as sample_surface() makes them.
+// A set that covers the surface of a solid; no more spheres than asked for.
 std::vector<Sphere> cover_set(const Surface& surface, const SphereSetOptions& options, const Progress& progress);
 
 // Corners of the voids that a union of balls has in the solid, each void's together; precondition as covers_solid().
