@@ -15,6 +15,9 @@ constexpr double kSame = 1e-12;     // of a radius: two that differ by less are 
 constexpr double kLevel = 1e-9;     // descents below this are the rounding of normals
 constexpr double kParallel = 1e-6;  // radians: normals that differ by less give the same ball
 
+// By how much of its radius facets that turn by almost ThicknessOptions::smooth make a ball smaller at contacts that
+// are just far enough away to end it: (1 - cos(smooth / 2)) / (1 - cos(smooth)).
+constexpr double kFacets = 0.25;
 // Radians: an angle that is smaller by less is as large.
 constexpr double kSameAngle = 1e-7;
 
@@ -87,12 +90,28 @@ void TangentBallSearch::try_normal(const SurfacePlace& place, const Vector& norm
   set_thickness(tangent, best);
 }
 
-// The contact that faces the place need not be the nearest: facets of a smooth surface are all a little off.
+// How far the facets around a triangle turn, as far as they are those of a smooth surface.
+double TangentBallSearch::turn_around(Index triangle) const {
+  double most = 0;
+  for (const Index next : surface_.neighbors(triangle)) {
+    if (next == kNone) continue;
+    const double turn = angle_between(surface_.normal(triangle), surface_.normal(next));
+    if (turn < options_.smooth) most = std::max(most, turn);
+  }
+  return most;
+}
+
+// The contact that faces the place need not be the nearest: facets of a smooth surface are all a little off. A wall
+// that ended the ball at a smaller angle is no such contact where the ball would cut it farther away.
 void TangentBallSearch::set_thickness(const TangentPlace& place, ThicknessAt& at) {
   at.thickness = at.angle >= options_.facing - kSameAngle ? at.diameter : kNaN;
   if (!std::isnan(at.thickness) || options_.definition == ThicknessDefinition::ray) return;
-  run(facing_, {place.position, place.normal, std::sin(options_.facing / 2)},
-      at.diameter / (2 * std::cos(options_.smooth / 2)));
+  double turn = turn_around(touched_);
+  for (const auto& [triangle, feature] : parts_) turn = std::max(turn, turn_around(triangle));
+  const double limit = at.diameter / 2 / (1 - kFacets * turn / options_.smooth);
+  max_cosine_ = std::cos(std::max(options_.facing - turn / 2 - kSameAngle, 0.0));
+  run(facing_, {place.position, place.normal, std::sin(options_.facing / 2)}, limit * (1 + kSame));
+  max_cosine_ = 1;
   if (touched_ == kNone) return;
   at.thickness = 2 * found_.radius;
   at.contact = found_.at;
@@ -162,6 +181,7 @@ void TangentBallSearch::slide(const TangentPlace& place) {
 bool TangentBallSearch::look_at(const TangentPlace& place, Index triangle) {
   if (std::binary_search(around_.begin(), around_.end(), triangle)) return false;
   ++work_;
+  if (max_cosine_ < 1 && surface_.normal(triangle).dot(place.normal) > max_cosine_) return false;
   const auto corners = surface_.corners(triangle);
   const Touch touch = options_.definition == ThicknessDefinition::ray
                           ? ray_through_triangle(place, corners, surface_.normal(triangle))

@@ -29,6 +29,7 @@ class TangentBallSearch {
     Index touched = kNone;
   };
   void try_normal(const SurfacePlace& place, const Vector& normal, ThicknessAt& best);
+  double turn_around(Index triangle) const;
   void set_thickness(const TangentPlace& place, ThicknessAt& at);
   // Only what is touched by smaller balls than `limit` counts.
   void run(Search& search, const TangentPlace& place, double limit);
@@ -45,6 +46,8 @@ class TangentBallSearch {
   std::vector<std::pair<Index, Feature>> parts_;  // of them, and the part of each that the place is on
   Search first_, facing_;
   std::vector<Entry> waiting_;
+  // Triangles whose normal has a larger part along that of the place do not count: they do not face it.
+  double max_cosine_ = 1;
   Touch found_;
   Index touched_ = kNone;  // the triangle that found_ is on
   Index work_ = 0;

@@ -80,7 +80,7 @@ TEST(Thickness, OfABoxIsTheWayToItsOtherSideOrTwiceThatToTheNearestEdge) {
     if (2 * to_edge > size[axis] - kExact) {
       EXPECT_NEAR(found.at_triangles.thickness[i], expected, kExact);
       EXPECT_NEAR(found.at_triangles.contact_angle[i], kPi, 1e-6);
-    } else if (2 * to_edge < size[axis] * std::cos(degrees(20)) - kExact) {
+    } else if (2 * to_edge < size[axis] - kExact) {
       EXPECT_TRUE(std::isnan(found.at_triangles.thickness[i]));
     }
   }
@@ -133,6 +133,17 @@ TEST(Thickness, OfACylinderIsTwiceItsApothem) {
     places.push_back({on.position, on.triangle, on.feature});
   }
   for (const ThicknessAt& at : thickness_at(surface, places)) EXPECT_NEAR(at.diameter, 2 * apothem, kExact);
+}
+
+TEST(Thickness, IsNotDefinedBesideTheSharpRimOfAFacetedCylinder) {
+  const Surface surface(test::turned({{1, -4}, {1, 4}}, 12));
+  const LocalThickness found = local_thickness(surface, {.samples = 3000});
+  for (Index i = 0; i < found.mesh.triangles.size(); ++i) {
+    const double thickness = found.at_triangles.thickness[i];
+    if (std::isnan(thickness)) continue;
+    EXPECT_GT(thickness, 2 * std::cos(kPi / 12) * 0.95);
+    EXPECT_LE(thickness, 8 + kExact);
+  }
 }
 
 TEST(Thickness, OfAMitredRingIsThatOfItsCrossSection) {

@@ -23,10 +23,10 @@ struct ThicknessOptions {
   // is: 120 degrees by default.
   double facing = 2.0943951023931953;
   // Radians in (0, pi / 2]. A mesh that turns by less than this around a place stands for a smooth surface: contacts
-  // that a ball sees at less than this from the place do not end it, and contacts are at one distance that differ by no
-  // more than a circle and its polygon of such turns, 1 / cos(smooth / 2) - 1 of the radius. Edges that turn by more
-  // are edges, where balls vanish: 40 degrees by default. With next to nothing, balls are those of the mesh's own
-  // polyhedron.
+  // that a ball sees at less than this from the place do not end it, and a ball may be up to a quarter smaller than the
+  // one that ends at a contact that faces the place, in proportion to how much the facets there turn. Edges that turn
+  // by more are edges, where balls vanish: 40 degrees by default. With next to nothing, balls are those of the mesh's
+  // own polyhedron.
   double smooth = 0.6981317007977318;
   // Edges are divided until the surface has about as many triangles, the values at whose middles and corners are the
   // result. Larger meshes are not made coarser.
@@ -49,7 +49,7 @@ struct ThicknessAt {
   double diameter = 0;  // mesh units
   double error = 0;     // proven: the diameter is too large by no more than this; above 0 where work ended the search
   // Mesh units: the diameter of the ball that ends at a contact that faces the place; NaN if it has none. It is larger
-  // than `diameter` by no more than facets may differ (see ThicknessOptions::smooth).
+  // than `diameter` by no more than facets cause (see ThicknessOptions::smooth).
   double thickness = 0;
   Point contact = Point::Zero();   // the other end: of `thickness`, or else of `diameter`
   double angle = 0;                // radians between both ends, as of ThicknessOptions::facing
