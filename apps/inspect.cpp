@@ -20,13 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 struct LevelSummary {
   Index spheres = 0, leaves = 0;
   double mean_radius = 0, max_radius = 0, max_error = 0;

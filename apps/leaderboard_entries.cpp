@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "input_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/text_lines.h"
 #include "orchard/medial/read_axis.h"
@@ -17,13 +18,6 @@ namespace orchard::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 bool one_of(const std::string& word, std::initializer_list<const char*> words) {
   return std::find(words.begin(), words.end(), word) != words.end();

@@ -108,13 +108,6 @@ PipelinePicture picture_of(const ViewCommand& command) {
   return picture;
 }
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 void add(const std::filesystem::path& file, Scene& scene, bool talk) {
   const std::string extension = lower_extension(file), name = file.filename().string();
   if (extension == ".orchard" || extension == ".sph") {
