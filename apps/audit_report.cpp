@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "json_values.h"
+
 namespace orchard::apps {
 namespace {
 
@@ -13,9 +15,6 @@ using nlohmann::json;
 constexpr double kOtherUnit = 0.05;
 
 double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
-
-json bounds_json(const Bounds& bounds, double unit = 1) { return {bounds.lower / unit, bounds.upper / unit}; }
-json point_json(const Point& point) { return {point.x(), point.y(), point.z()}; }
 
 json to_json(const CuroboFigures& figures) {
   return {{"curobo_num_spheres", figures.num_spheres},

@@ -188,14 +188,9 @@ std::string write_views(const BuildCommand& command, const Surface&, const Spher
 }
 #endif
 
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // The page, with the picture in it; a picture that nobody asked for by itself goes.
 void write_page(const BuildCommand& command, BuildPage page, const std::string& picture, Outputs& outputs) {
-  if (!picture.empty()) page.picture = content(outputs.staged(picture));
+  if (!picture.empty()) page.picture = content_of(outputs.staged(picture));
   if (!picture.empty() && !command.picture) fs::remove(outputs.staged(picture));
   write_file(outputs.add(named(command.mesh, "-report.html"), "this report as a page, with everything in it"),
              to_html(page));

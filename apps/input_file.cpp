@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "orchard/geometry/error.h"
@@ -17,6 +19,12 @@ void check_input(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     throw InputError(file.string() + ": is a folder; name a file in it");
+}
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string() + ": cannot be opened");
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

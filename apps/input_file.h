@@ -8,6 +8,9 @@ namespace orchard::apps {
 // may not be read.
 void check_input(const std::filesystem::path& file);
 
+// All bytes of a file. Throws InputError if it cannot be opened.
+std::string content_of(const std::filesystem::path& file);
+
 // What a file is by the ending of its name, in lower case, with its dot: ".obj" of "LAMP.OBJ".
 std::string lower_extension(const std::filesystem::path& file);
 

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
+#include "input_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/ply_tables.h"
 #include "orchard/geometry/text_lines.h"
@@ -18,19 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 bool begins_number(std::string_view word) {
   return !word.empty() &&
          (std::isdigit(static_cast<unsigned char>(word[0])) != 0 || word[0] == '-' || word[0] == '+' || word[0] == '.');
 }
 
 SphereFile read_text(const fs::path& file) {
-  std::string text = content(file);
+  std::string text = content_of(file);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
   // A header has no number where the first coordinate is to be; its line stays, so that lines count as they do in the
@@ -79,8 +72,7 @@ SphereFile read_tree(const fs::path& file) {
 }
 
 SphereFile read_by_ending(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_extension(file);
   if (ending == ".json") return read_json_spheres(file);
   if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return read_yaml_spheres(file);
   if (ending == ".ply") return read_ply(file);

@@ -22,13 +22,13 @@ struct SphereFile {
 };
 
 // Reads spheres by the ending of the file:
-//   .txt .csv .xyz        x y z r a line, parted by blanks, commas or semicolons; a header and further columns are left
-//   out .json                 lists of [x, y, z, r] or of objects with origin (or center) and radius, levels of such
-//   lists, of
-//                         which the deepest counts, {centers, radii}, or one of these for each link by name
-//   .yml .yaml .xrdf      robots of cuRobo and of Isaac, with their buffers
-//   .ply                  vertices with a radius
-//   .sph .orchard         the leaves of a tree
+//   - .txt .csv .xyz: x y z r a line, parted by blanks, commas or semicolons; a header and further columns are left
+//   out;
+//   - .json: lists of [x, y, z, r] or of objects with origin (or center) and radius, levels of such lists, of which the
+//     deepest counts, {centers, radii}, or one of these for each link by name;
+//   - .yml .yaml .xrdf: robots of cuRobo and of Isaac, with their buffers;
+//   - .ply: vertices with a radius;
+//   - .sph .orchard: the leaves of a tree.
 // A radius of zero or below switches its sphere off. Throws InputError naming file, line (of JSON and PLY: link or row)
 // and fault, also for what is not a finite number and for files without a sphere.
 SphereFile read_sphere_file(const std::filesystem::path& file);

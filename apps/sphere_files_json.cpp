@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "input_file.h"
 #include "orchard/geometry/error.h"
 #include "sphere_files.h"
 
@@ -80,9 +79,7 @@ SphereFile spheres_of(const json& root, const std::string& file) {
 }  // namespace
 
 SphereFile read_json_spheres(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = content_of(file);
   try {
     return spheres_of(json::parse(text), file.string());
   } catch (const json::parse_error& error) {

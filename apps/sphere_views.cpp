@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 
 #include "orchard/spheretree/sphere_set.h"
 #include "picture.h"
@@ -21,16 +21,10 @@ namespace {
 #ifdef ORCHARD_HAS_VIZ
 constexpr Index kViewPoints = 20'000;  // of the surface
 
-double gap_at(const Point& point, std::span<const Sphere> spheres) {
-  double gap = std::numeric_limits<double>::infinity();
-  for (const Sphere& sphere : spheres) gap = std::min(gap, (point - sphere.center).norm() - sphere.radius);
-  return gap;
-}
-
 // The spheres as a mesh of points of no size, for a picture that colours meshes.
 MedialMesh as_triangles(std::span<const Sphere> spheres) {
   constexpr Index kRings = 12, kPerRing = 20;
-  constexpr double kPi = 3.14159265358979323846;
+  using std::numbers::pi;
   MedialMesh mesh;
   for (const Sphere& sphere : spheres) {
     const auto first = static_cast<Index>(mesh.centers.size());
@@ -40,9 +34,9 @@ MedialMesh as_triangles(std::span<const Sphere> spheres) {
       mesh.radii.push_back(0);
     };
     add(0, 0);
-    add(kPi, 0);
+    add(pi, 0);
     for (Index ring = 0; ring < kRings; ++ring)
-      for (Index k = 0; k < kPerRing; ++k) add(kPi * (ring + 1) / (kRings + 1), 2 * kPi * k / kPerRing);
+      for (Index k = 0; k < kPerRing; ++k) add(pi * (ring + 1) / (kRings + 1), 2 * pi * k / kPerRing);
     const auto at = [&](Index ring, Index k) { return first + 2 + ring * kPerRing + k % kPerRing; };
     for (Index k = 0; k < kPerRing; ++k) {
       mesh.triangles.push_back({first, at(0, k), at(0, k + 1)});
@@ -74,7 +68,7 @@ void write_sphere_views(const std::filesystem::path& mesh, const std::string& pr
   const auto name = [&](const char* ending) { return named(mesh, prefix + ending); };
   const SurfaceSampling points = points_of(surface);
   ViewArray gaps{.name = "gap", .values = {}};
-  for (const Point& point : points.points) gaps.values.push_back(gap_at(point, spheres));
+  for (const Point& point : points.points) gaps.values.push_back(gap_from(spheres, point));
   write_mesh(outputs.add(name("-mesh.vtp")), surface);
   write_points(outputs.add(name("-points.vtp")), points, {gaps});
   write_tree_level(outputs.add(name("-spheres.vtp")), tree_over(spheres, surface.bounding_ball()), 1);
@@ -97,7 +91,7 @@ void draw_holes(const std::filesystem::path& mesh, const std::string& up, const 
                              .protrusion = std::vector<double>(balls.centers.size(), 0),
                              .worst = {}};
   for (const Point& point : points.points)
-    errors.coverage.push_back(100 / diagonal * std::max(0.0, gap_at(point, spheres)));
+    errors.coverage.push_back(100 / diagonal * std::max(0.0, gap_from(spheres, point)));
   for (std::size_t i = 0; surface.solid() && i < balls.centers.size(); ++i)
     errors.protrusion[i] = 100 / diagonal * std::max(0.0, surface.signed_distance(balls.centers[i]));
   const std::string name = named(mesh, "-audit.png");

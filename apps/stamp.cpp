@@ -1,13 +1,10 @@
 #include "stamp.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
+#include "input_file.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/xml_escaped.h"
 
@@ -107,23 +104,15 @@ Place place_of(const std::string& extension) {
   return nullptr;
 }
 
-std::string content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 std::string stamped(std::string bytes, const std::filesystem::path& name, const std::string& line) {
-  std::string extension = name.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const Place place = place_of(extension);
+  const Place place = place_of(lower_extension(name));
   return place == nullptr ? bytes : place(std::move(bytes), line);
 }
 
 void stamp(const std::filesystem::path& file, const std::string& line) {
-  const std::string bytes = content(file), with_line = stamped(bytes, file, line);
+  const std::string bytes = content_of(file), with_line = stamped(bytes, file, line);
   if (with_line != bytes) write_file(file, with_line);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "json_values.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -14,8 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kPrinted = 10;  // regions that the table has; the report has all
-
-json to_json(const Point& point) { return {point.x(), point.y(), point.z()}; }
 
 // The least, the area-weighted quantiles and the largest of the values that are defined.
 struct Summary {
@@ -80,8 +79,8 @@ json to_json(const ThicknessReport& report) {
   for (const ThinRegion& region : report.thin.regions)
     regions.push_back({{"area", region.area},
                        {"min_thickness", region.min_thickness},
-                       {"thinnest", to_json(region.thinnest)},
-                       {"box", {to_json(region.box.min()), to_json(region.box.max())}},
+                       {"thinnest", point_json(region.thinnest)},
+                       {"box", {point_json(region.box.min()), point_json(region.box.max())}},
                        {"triangles", region.triangles}});
   result["below"] = {{"limit", *report.below}, {"area", report.thin.area}, {"regions", std::move(regions)}};
   return result;

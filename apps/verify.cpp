@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "console.h"
 #include "input_file.h"
+#include "json_values.h"
 #include "load_solid.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
@@ -115,8 +116,6 @@ Verification verify_tree(const Subject& subject, Tree& tree, bool box_centered, 
     for (SphereNode& node : tree.text.nodes) node.sphere.center += subject.surface.bounding_box().center();
   return verify_path_rule(subject.surface, path_balls(tree.text), {}, progress);
 }
-
-json bounds_json(const Bounds& bounds, double unit) { return {bounds.lower / unit, bounds.upper / unit}; }
 
 json to_json(const Verification& result, const Subject& subject) {
   const double radius = subject.surface.bounding_radius();

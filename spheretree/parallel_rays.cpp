@@ -17,7 +17,7 @@ double left_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::
   const bool turned = b.x() < a.x() || (b.x() == a.x() && b.y() < a.y());
   const Eigen::Vector2d &from = turned ? b : a, &to = turned ? a : b;
   double area = (to.x() - from.x()) * (p.y() - from.y()) - (to.y() - from.y()) * (p.x() - from.x());
-  if (area == 0) area = std::numeric_limits<double>::denorm_min();  // on the edge: left of it, whoever asks
+  if (area == 0) area = std::numeric_limits<double>::denorm_min();  // on the edge: taken for its left
   return turned ? -area : area;
 }
 

@@ -45,6 +45,13 @@ std::vector<PathBall> path_balls(const SphereTree& tree) {
   return balls;
 }
 
+std::vector<PathBall> path_balls(std::span<const Sphere> balls, const Point& origin) {
+  std::vector<PathBall> result;
+  result.reserve(balls.size());
+  for (const Sphere& ball : balls) result.push_back({ball.center - origin, ball.radius, kNone, true});
+  return result;
+}
+
 std::vector<LevelFigures> level_figures(const SphereTree& tree, double bounding_radius) {
   std::vector<LevelFigures> levels(tree.nodes.empty() ? 0 : tree.depth() + 1);
   for (const SphereNode& node : tree.nodes) {

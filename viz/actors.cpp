@@ -174,7 +174,6 @@ vtkSmartPointer<vtkActor> make_level(vtkPolyData* spheres) {
 }
 
 vtkSmartPointer<vtkColorTransferFunction> viridis(const double range[2]) {
-  constexpr std::array kViridis{rgb(0x440154), rgb(0x3b528b), rgb(0x21918c), rgb(0x5ec962), rgb(0xfde725)};
   auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
   for (std::size_t i = 0; i < kViridis.size(); ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(kViridis.size() - 1);

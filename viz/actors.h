@@ -13,15 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "palette.h"
 #include "panels.h"
 
 // What the panels are put together from: one look for all of them.
 namespace orchard::detail {
 
-using Color = std::array<double, 3>;
 using Data = vtkSmartPointer<vtkPolyData>;
-
-constexpr Color rgb(int hex) { return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0}; }
 
 inline constexpr Color kInk{0.13, 0.16, 0.20};
 inline constexpr Color kStone{0.73, 0.77, 0.82};

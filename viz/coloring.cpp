@@ -20,9 +20,6 @@ namespace orchard::detail {
 namespace {
 
 constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
-// Of Okabe and Ito, which colour-blind people can tell apart.
-constexpr std::array kDistinct{rgb(0x0072b2), rgb(0xe69f00), rgb(0x009e73), rgb(0xcc79a7),
-                               rgb(0x56b4e9), rgb(0xd55e00), rgb(0xf0e442), rgb(0x808080)};
 const std::set<std::string> kCategories{"branch",  "carried",   "cluster",        "component", "kind",
                                         "measure", "node",      "origin",         "parent",    "segment",
                                         "sheet",   "structure", "structure_kind", "trunk",     "wall"};

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "orchard/geometry/atomic_file.h"
+#include "palette.h"
 #include "paraview_script.h"
 #include "state_objects.h"
 
@@ -16,30 +17,6 @@ using namespace detail;
 namespace {
 
 using Object = StateObjects::Object;
-using Color = std::array<double, 3>;
-
-constexpr std::array<Color, 9> kViridis{{
-    {0.267, 0.005, 0.329},
-    {0.279, 0.175, 0.483},
-    {0.230, 0.322, 0.546},
-    {0.173, 0.449, 0.558},
-    {0.128, 0.567, 0.551},
-    {0.154, 0.680, 0.504},
-    {0.361, 0.786, 0.388},
-    {0.668, 0.862, 0.196},
-    {0.993, 0.906, 0.144},
-}};
-// Of Okabe and Ito, which colour-blind people can tell apart.
-constexpr std::array<Color, 8> kDistinct{{
-    {0.000, 0.447, 0.698},
-    {0.902, 0.624, 0.000},
-    {0.000, 0.620, 0.451},
-    {0.800, 0.475, 0.655},
-    {0.337, 0.706, 0.914},
-    {0.835, 0.369, 0.000},
-    {0.941, 0.894, 0.259},
-    {0.500, 0.500, 0.500},
-}};
 constexpr Color kInk{0.1, 0.1, 0.1};
 
 std::vector<std::string> texts(const Color& color) { return StateObjects::texts({color[0], color[1], color[2]}); }

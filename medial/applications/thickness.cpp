@@ -54,12 +54,6 @@ ThicknessValues values_of(const std::vector<ThicknessAt>& found) {
   return values;
 }
 
-double area_of(const Surface& surface) {
-  double area = 0;
-  for (Index i = 0; i < surface.mesh().triangles.size(); ++i) area += surface.area(i);
-  return area;
-}
-
 }  // namespace
 
 std::vector<ThicknessAt> thickness_at(const Surface& surface, std::span<const SurfacePlace> places,
@@ -74,7 +68,7 @@ LocalThickness local_thickness(const Surface& surface, const ThicknessOptions& o
     throw InputError("thickness: not a closed, consistently oriented manifold: " + surface.report().faults());
   report_progress(progress, "thickness", 0);
   detail::DividedMesh divided =
-      detail::divided_mesh(surface, std::sqrt(area_of(surface) / (kAreaOfEdge * options.samples)));
+      detail::divided_mesh(surface, std::sqrt(surface.report().area / (kAreaOfEdge * options.samples)));
   std::vector<SurfacePlace> middles;
   for (std::size_t i = 0; i < divided.mesh.triangles.size(); ++i) {
     const auto& [a, b, c] = divided.mesh.triangles[i];

@@ -12,7 +12,7 @@ constexpr double kCrowding = 4;                         // lines read per entry 
 constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
 constexpr double kNearlyAll = 0.9;                      // of many, at each step so far: one step is enough
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
-constexpr unsigned kPlansKept = 8;         // a plan that fits is made anew after as many updates of all windows
+constexpr unsigned kPlansKept = 8;         // a plan that fits is made again after so many updates of all windows
 constexpr double kFarthestWay = 0x1p20;    // spacings, which cells are not much smaller than
 constexpr double kFewPairsPerBody = 1e-3;  // per body: too few to say anything about the prediction
 

@@ -60,9 +60,7 @@ std::vector<Sphere> leaves_of(const SphereTree& tree) {
 
 bool is_covered(const Surface& surface, const std::vector<Sphere>& balls) {
   const Point origin = surface.bounding_box().center();
-  std::vector<PathBall> path_balls;
-  for (const Sphere& ball : balls) path_balls.push_back({ball.center - origin, ball.radius, kNone, true});
-  return surface_coverage(surface, path_balls, origin).complete();
+  return surface_coverage(surface, path_balls(balls, origin), origin).complete();
 }
 
 // The spheres of one search, which hold the surface by themselves, without the tree's root.

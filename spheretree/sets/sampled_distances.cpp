@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "orchard/geometry/random.h"
@@ -13,7 +14,6 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = 2.39996322972865332;  // radians
 // A point that lies less deep in another ball than this part of the largest radius is on the boundary: roundings.
 constexpr double kOnBoundary = 1e-12;
@@ -55,12 +55,6 @@ double quantile(std::vector<double> values, double share) {
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-double gap_to(std::span<const Sphere> balls, const Point& point) {
-  double gap = kInfinity;
-  for (const Sphere& ball : balls) gap = std::min(gap, (point - ball.center).norm() - ball.radius);
-  return gap;
-}
-
 }  // namespace
 
 Vector on_sphere(Index i, Index n) {
@@ -80,7 +74,7 @@ UnionBoundary::UnionBoundary(std::span<const Sphere> balls, Index count)
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t b) {
     const Sphere& ball = balls[b];
     const Index n = std::max(kLeastSamples, static_cast<Index>(count * ball.radius * ball.radius / squares));
-    const double area = 4 * kPi * ball.radius * ball.radius / n;
+    const double area = 4 * std::numbers::pi * ball.radius * ball.radius / n;
     for (Index i = 0; i < n; ++i) {
       const Point at = ball.center + ball.radius * on_sphere(i, n);
       if (is_free(at, static_cast<Index>(b))) of_ball[b].push_back({at, static_cast<Index>(b), area});
@@ -118,8 +112,6 @@ bool UnionBoundary::is_free(const Point& point, Index ball, Index other) const {
   }
   return true;
 }
-
-double UnionBoundary::gap(const Point& point) const { return gap_to(balls_, point); }
 
 double UnionBoundary::depth(const Point& point) const {
   double best = kInfinity;
@@ -170,21 +162,27 @@ double UnionBoundary::through_circles(const Point& point, Index ball, double lea
   return least;
 }
 
-MeanDistances mean_distances(const Surface& surface, std::span<const Sphere> balls, const SphereAuditOptions& options) {
+SurfaceGaps surface_gaps(const Surface& surface, std::span<const Sphere> balls, const SphereAuditOptions& options) {
+  SurfaceGaps result{surface_points(surface, options.surface_samples, options.seed), {}};
+  result.gaps.resize(result.points.size());
+  tbb::parallel_for(std::size_t{0}, result.points.size(),
+                    [&](std::size_t i) { result.gaps[i] = std::max(0.0, gap_from(balls, result.points[i])); });
+  return result;
+}
+
+MeanDistances mean_distances(const Surface& surface, std::span<const Sphere> balls, const SurfaceGaps& from,
+                             const SphereAuditOptions& options) {
   const UnionBoundary boundary(balls, options.sphere_samples);
-  const std::vector<Point> points = surface_points(surface, options.surface_samples, options.seed);
-  std::vector<double> gaps(points.size()), to_union(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    const double gap = boundary.gap(points[i]);
-    gaps[i] = std::max(0.0, gap);
-    to_union[i] = gap >= 0 ? gap : boundary.depth(points[i]);
+  std::vector<double> to_union = from.gaps;
+  tbb::parallel_for(std::size_t{0}, to_union.size(), [&](std::size_t i) {
+    if (from.gaps[i] == 0) to_union[i] = boundary.depth(from.points[i]);
   });
   const auto samples = boundary.samples();
   std::vector<double> distances(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(),
                     [&](std::size_t i) { distances[i] = surface.signed_distance(samples[i].at); });
   MeanDistances result;
-  result.gap = mean(gaps);
+  result.gap = mean(from.gaps);
   result.surface_to_union = mean(to_union);
   result.boundary_area = boundary.area();
   double outside = 0;
@@ -201,7 +199,7 @@ MeanDistances mean_distances(const Surface& surface, std::span<const Sphere> bal
 }
 
 CuroboFigures curobo_figures(const Surface& surface, std::span<const Sphere> balls, const UnionVolume& volume,
-                             const SphereAuditOptions& options) {
+                             const SurfaceGaps& from) {
   CuroboFigures figures;
   figures.num_spheres = static_cast<Index>(balls.size());
   figures.coverage = volume.solid > 0 ? 1 - volume.uncovered.value / volume.solid : 0;
@@ -216,15 +214,11 @@ CuroboFigures curobo_figures(const Surface& surface, std::span<const Sphere> bal
   figures.protrusion = static_cast<double>(distances.size()) / all;
   figures.protrusion_dist_mean = mean(distances);
   figures.protrusion_dist_p95 = quantile(distances, kCuroboPercentile);
-  const std::vector<Point> points = surface_points(surface, options.surface_samples, options.seed);
-  std::vector<double> gaps(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(),
-                    [&](std::size_t i) { gaps[i] = std::max(0.0, gap_to(balls, points[i])); });
-  figures.surface_gap_mean = mean(gaps);
-  figures.surface_gap_p95 = quantile(gaps, kCuroboPercentile);
-  figures.max_uncovered_gap = gaps.empty() ? 0 : *std::max_element(gaps.begin(), gaps.end());
+  figures.surface_gap_mean = mean(from.gaps);
+  figures.surface_gap_p95 = quantile(from.gaps, kCuroboPercentile);
+  figures.max_uncovered_gap = from.gaps.empty() ? 0 : *std::max_element(from.gaps.begin(), from.gaps.end());
   double sum = 0;
-  for (const Sphere& ball : balls) sum += 4 * kPi / 3 * ball.radius * ball.radius * ball.radius;
+  for (const Sphere& ball : balls) sum += 4 * std::numbers::pi / 3 * ball.radius * ball.radius * ball.radius;
   figures.volume_ratio = volume.solid > 0 ? sum / volume.solid : 0;
   return figures;
 }

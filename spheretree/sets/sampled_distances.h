@@ -21,8 +21,6 @@ class UnionBoundary {
   // Those on the boundary, ball by ball.
   std::span<const Sample> samples() const { return samples_; }
   double area() const { return area_; }
-  // How far a point is from the union, below 0 inside: the largest depth in a single ball.
-  double gap(const Point& point) const;
   // The distance from a point of the union to its boundary: by the nearest sample, its projection onto spheres and onto
   // the circles where two spheres meet. Never too small, and exact as a rule.
   double depth(const Point& point) const;
@@ -43,10 +41,18 @@ class UnionBoundary {
 // Point `i` of `n` spread evenly over the unit sphere.
 Vector on_sphere(Index i, Index n);
 
-MeanDistances mean_distances(const Surface& surface, std::span<const Sphere> balls, const SphereAuditOptions& options);
+// Random points of a surface, as many on equal areas, and how far each is from the union of the balls: 0 in it.
+struct SurfaceGaps {
+  std::vector<Point> points;
+  std::vector<double> gaps;
+};
+SurfaceGaps surface_gaps(const Surface& surface, std::span<const Sphere> balls, const SphereAuditOptions& options);
+
+MeanDistances mean_distances(const Surface& surface, std::span<const Sphere> balls, const SurfaceGaps& from,
+                             const SphereAuditOptions& options);
 
 // `volume` as union_volume() has it.
 CuroboFigures curobo_figures(const Surface& surface, std::span<const Sphere> balls, const UnionVolume& volume,
-                             const SphereAuditOptions& options);
+                             const SurfaceGaps& from);
 
 }  // namespace orchard::detail

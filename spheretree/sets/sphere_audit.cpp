@@ -3,12 +3,14 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "orchard/covering/coverage.h"
 #include "orchard/covering/uncovered_part.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
+#include "orchard/spheretree/tree.h"
 #include "sampled_distances.h"
 
 namespace orchard {
@@ -25,23 +27,16 @@ void require_balls(std::span<const Sphere> balls) {
                        " has no finite centre or no positive, finite radius; leave it out");
 }
 
-std::vector<PathBall> as_path_balls(std::span<const Sphere> balls, const Point& origin) {
-  std::vector<PathBall> result;
-  result.reserve(balls.size());
-  for (const Sphere& ball : balls) result.push_back({ball.center - origin, ball.radius, kNone, true});
-  return result;
-}
-
 void find_open(const Surface& surface, std::span<const Sphere> balls, const SphereAuditOptions& options,
                const Progress& progress, SphereAudit& audit) {
   const Point origin = surface.bounding_box().center();
-  const std::vector<PathBall> path_balls = as_path_balls(balls, origin);
-  const Coverage coverage = surface_coverage(surface, path_balls, origin, progress);
+  const std::vector<PathBall> leaves = path_balls(balls, origin);
+  const Coverage coverage = surface_coverage(surface, leaves, origin, progress);
   audit.covered = coverage.complete();
   if (audit.covered) return;
   std::vector<Index> triangles;
   for (const UncoveredTriangle& uncovered : coverage.uncovered) triangles.push_back(uncovered.triangle);
-  const UncoveredPart part = uncovered_part(surface, triangles, PathForest(path_balls), origin,
+  const UncoveredPart part = uncovered_part(surface, triangles, PathForest(leaves), origin,
                                             {options.area_tolerance, kGapTolerance, options.max_cells});
   audit.open_area = part.area;
   audit.likely_open_area = part.likely_area;
@@ -73,6 +68,12 @@ void find_protrusion(const Surface& surface, std::span<const Sphere> balls, Sphe
 
 }  // namespace
 
+double gap_from(std::span<const Sphere> balls, const Point& point) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const Sphere& ball : balls) gap = std::min(gap, (point - ball.center).norm() - ball.radius);
+  return gap;
+}
+
 bool SphereAudit::only_tangent(double bounding_radius) const {
   return !covered && largest_gap.upper <= tolerance::kTangent * bounding_radius;
 }
@@ -92,8 +93,9 @@ SphereAudit audit_spheres(const Surface& surface, std::span<const Sphere> balls,
   report_progress(progress, "measuring spheres", 0.3);
   beside.volume = union_volume(surface, balls, options.rays);
   report_progress(progress, "measuring spheres", 0.5);
-  beside.mean = detail::mean_distances(surface, balls, options);
-  beside.curobo = detail::curobo_figures(surface, balls, beside.volume, options);
+  const detail::SurfaceGaps gaps = detail::surface_gaps(surface, balls, options);
+  beside.mean = detail::mean_distances(surface, balls, gaps, options);
+  beside.curobo = detail::curobo_figures(surface, balls, beside.volume, gaps);
   return audit;
 }
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "cover_set.h"
-#include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard {
@@ -29,8 +28,8 @@ std::vector<std::vector<Index>> later_neighbors(std::span<const Sphere> balls) {
   return result;
 }
 
-// The two points that three spheres share, or none. Where their centres lie on a line, spheres that meet share a circle
-// if they share anything: then its nearest point to the middle of the solid stands for it, which is as good as any.
+// The two points that three spheres share, or none. Where their centres lie on a line, they share a circle if anything:
+// that is an edge, of which no place is a corner.
 void append_corners(const Sphere& a, const Sphere& b, const Sphere& c, std::vector<Point>& points) {
   const Vector ab = b.center - a.center, ac = c.center - a.center, normal = ab.cross(ac);
   const double squared = normal.squaredNorm(), scale = ab.squaredNorm() * ac.squaredNorm();
@@ -121,7 +120,6 @@ void detail::close_voids(const Surface& surface, std::vector<Sphere>& balls) {
       balls[best].radius += std::max(0.0, least) + margin * std::ldexp(1.0, std::min(round, 20));
     }
   }
-  throw Error("the solid is still not covered after growing spheres many times; ask for more spheres");
 }
 
 bool covers_solid(const Surface& surface, std::span<const Sphere> balls) {

@@ -95,39 +95,27 @@ Box box_around(const Sphere& ball) {
 
 }  // namespace
 
-double VolumePoints::gain_of(const Sphere& ball) const {
-  double gain = 0;
-  for_each_near(box_around(ball), [&](Index i) {
-    if (held_[i] == 0 &&
-        squared(x_[i] - ball.center.x()) + squared(y_[i] - ball.center.y()) + squared(z_[i] - ball.center.z()) <=
-            ball.radius * ball.radius)
-      gain += worth_[i];
-  });
-  return gain;
+bool VolumePoints::is_in(const Sphere& ball, Index i) const {
+  return squared(x_[i] - ball.center.x()) + squared(y_[i] - ball.center.y()) + squared(z_[i] - ball.center.z()) <=
+         ball.radius * ball.radius;
 }
 
-double VolumePoints::loss_of(const Sphere& ball) const {
-  double loss = 0;
+// Of the points in a ball that so many balls of the set hold.
+double VolumePoints::worth_in(const Sphere& ball, std::uint16_t holders) const {
+  double worth = 0;
   for_each_near(box_around(ball), [&](Index i) {
-    if (held_[i] == 1 &&
-        squared(x_[i] - ball.center.x()) + squared(y_[i] - ball.center.y()) + squared(z_[i] - ball.center.z()) <=
-            ball.radius * ball.radius)
-      loss += worth_[i];
+    if (held_[i] == holders && is_in(ball, i)) worth += worth_[i];
   });
-  return loss;
+  return worth;
 }
 
 double VolumePoints::gain_of_change(const Sphere& from, const Sphere& to) const {
-  const double from_squared = from.radius * from.radius, to_squared = to.radius * to.radius;
   double gain = 0;
   for_each_near(box_around(from).merged(box_around(to)), [&](Index i) {
     if (held_[i] > 1) return;
-    const bool was =
-        squared(x_[i] - from.center.x()) + squared(y_[i] - from.center.y()) + squared(z_[i] - from.center.z()) <=
-        from_squared;
+    const bool was = is_in(from, i);
     if (held_[i] == 1 && !was) return;  // by another ball
-    const bool is =
-        squared(x_[i] - to.center.x()) + squared(y_[i] - to.center.y()) + squared(z_[i] - to.center.z()) <= to_squared;
+    const bool is = is_in(to, i);
     if (was != is) gain += is ? worth_[i] : -worth_[i];
   });
   return gain;
@@ -135,9 +123,7 @@ double VolumePoints::gain_of_change(const Sphere& from, const Sphere& to) const 
 
 void VolumePoints::count(const Sphere& ball, int change) {
   for_each_near(box_around(ball), [&](Index i) {
-    if (squared(x_[i] - ball.center.x()) + squared(y_[i] - ball.center.y()) + squared(z_[i] - ball.center.z()) >
-        ball.radius * ball.radius)
-      return;
+    if (!is_in(ball, i)) return;
     const bool before = held_[i] > 0;
     held_[i] = static_cast<std::uint16_t>(held_[i] + change);
     const bool after = held_[i] > 0;

@@ -23,8 +23,8 @@ class VolumePoints {
   void remove(const Sphere& ball) { count(ball, -1); }
 
   // What the worth of all held points changes by: with one ball more, one less, or one in another's place.
-  double gain_of(const Sphere& ball) const;
-  double loss_of(const Sphere& ball) const;
+  double gain_of(const Sphere& ball) const { return worth_in(ball, 0); }
+  double loss_of(const Sphere& ball) const { return worth_in(ball, 1); }
   double gain_of_change(const Sphere& from, const Sphere& to) const;
 
   // How many points in the solid no ball holds, and how many outside are held.
@@ -32,6 +32,8 @@ class VolumePoints {
   std::size_t outside_held() const { return outside_held_; }
 
  private:
+  bool is_in(const Sphere& ball, Index point) const;
+  double worth_in(const Sphere& ball, std::uint16_t holders) const;
   void count(const Sphere& ball, int change);
   void sort_into_cells(const std::vector<Point>& points, const std::vector<char>& inside);
   template <class Visit>

@@ -71,6 +71,10 @@ struct SphereAudit {
   bool only_tangent(double bounding_radius) const;
 };
 
+// How far a point is from the union of balls; below 0 in it: then the largest depth in a single ball. Infinity without
+// any ball. O(n).
+double gap_from(std::span<const Sphere> balls, const Point& point);
+
 // Measures any set of balls against a surface; nothing is known of where the balls come from. The surface's cover is
 // decided by the boundary lemma on each triangle; open area and largest gap by halving triangles until the lemma or a
 // distance settles them; the protrusion by a branch and bound over each ball; volumes by rays; means by samples.

@@ -39,6 +39,8 @@ void validate(const SphereTree& tree);
 
 // The balls of a tree as the boundary lemma takes them, in the order of the nodes.
 std::vector<PathBall> path_balls(const SphereTree& tree);
+// The same of balls that are all leaves, relative to `origin`.
+std::vector<PathBall> path_balls(std::span<const Sphere> balls, const Point& origin);
 
 // How many spheres a level has, and their inaccuracies as fractions of the bounding radius.
 struct LevelFigures {

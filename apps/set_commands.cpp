@@ -1,0 +1,137 @@
+// Options of the commands that make and judge sets of spheres.
+#include <fmt/core.h>
+
+#include <numbers>
+#include <optional>
+
+#include "a_number.h"
+#include "add_commands.h"
+#include "axis_export.h"
+#include "command_list.h"
+#include "list_option.h"
+#include "shared_options.h"
+#include "tree_options.h"
+
+namespace orchard::apps {
+namespace {
+
+// That say what a set is to be.
+void add_set_options(CLI::App& command, SpheresCommand& spheres) {
+  SphereSetOptions& options = spheres.options;
+  command.add_option("-n,--spheres", options.spheres, "How many: exactly so many, or with an error at most")
+      ->check(CLI::Range(1, static_cast<int>(kMaxSetSpheres)))
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--fit",
+          [&options](const std::string& name) {
+            options.fit = name == "inside"     ? SphereFit::inside
+                          : name == "balanced" ? SphereFit::balanced
+                                               : SphereFit::cover;
+          },
+          "The promise: cover (hold the whole surface, the default), inside (lie in the solid) or balanced (the "
+          "solid's "
+          "volume, and a boundary near its surface)")
+      ->check(CLI::IsMember({"cover", "inside", "balanced"}));
+  command
+      .add_option(
+          "--error", spheres.error,
+          "The fewest spheres with this error, in percent of the diagonal: how far a cover sticks out, how far the "
+          "surface is from spheres inside, the mean two-sided distance of balanced ones")
+      ->check(ANumber(CLI::Range(1e-4, 100.0)));
+  command
+      .add_option(
+          "--volume-error", spheres.volume_error,
+          "The same by volume, in percent of the solid's: what of a cover lies outside, what is left out inside")
+      ->check(ANumber(CLI::Range(1e-3, 1000.0)));
+  command.add_flag("--solid", options.solid, "A cover of the whole solid, not of its surface alone");
+  command
+      .add_option("--padding", options.padding,
+                  "A cover of every point up to this far from the surface, in mesh units: added to all radii")
+      ->check(ANumber(CLI::Range(0.0, 1e15)))
+      ->capture_default_str();
+  command.add_option("--min-radius", options.min_radius, "No sphere of a cover is smaller, in mesh units")
+      ->check(ANumber(CLI::Range(0.0, 1e15)))
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--effort",
+          [&options](const std::string& name) {
+            options.effort = name == "low" ? Effort::low : name == "high" ? Effort::high : Effort::standard;
+          },
+          "How long to search: low, standard (default) or high")
+      ->check(CLI::IsMember({"low", "standard", "high"}));
+  command.add_option("--seed", options.seed, "Of all random choices")->capture_default_str();
+  add_list(command, "--curve", spheres.curve,
+           "Make sets of these numbers of spheres as well, and write how far off each is: MODEL-set-curve.csv and .svg",
+           1, kMaxSetSpheres);
+}
+
+}  // namespace
+
+void add_spheres(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("spheres", "Make a set of spheres for a mesh, with a promise and its proof");
+  SpheresCommand& spheres = request.spheres;
+  add_mesh(command, spheres.mesh);
+  command.add_option("-o,--output", spheres.folder, "Folder for the spheres, the views and the report")->required();
+  add_set_options(command, spheres);
+  add_mesh_options(command, spheres.reading);
+  auto* exports =
+      add_list(command, "--export", spheres.exports,
+               "The spheres in further formats: json, csv, urdf (a link's collision geometry), yaml (cuRobo's)",
+               {"json", "csv", "urdf", "yaml"});
+  command.add_option("--link", spheres.link, "The link's name in urdf and yaml (default: the mesh's)")->needs(exports);
+  command.add_flag("--tree", spheres.tree,
+                   "Write an .orchard file of two levels over the spheres of a cover, for the run-time");
+  command.add_flag("!--no-views", spheres.views, "Write no files for ParaView");
+  command.add_flag("--picture", spheres.picture, "Draw the spheres");
+  add_up(command, spheres.up);
+  add_threads(command, request);
+  add_accept(command, spheres.accept);
+  add_force(command, spheres.output);
+  add_output_flags(command, spheres.output);
+  command.footer(
+      "Examples:\n  orchard spheres data/lamp.obj -o out/lamp-spheres -n 20\n"
+      "  orchard spheres data/lamp.obj -o out/lamp-inside -n 40 --fit inside --export json,csv\n"
+      "  orchard spheres data/lamp.obj -o out/lamp-balanced -n 30 --fit balanced");
+  command.callback([&request, &command] {
+    request.spheres.output.run = invocation_of(command, request.typed);
+    request.spheres.given = given_of(command);
+    request.run = [&request] { request.exit_code = orchard::apps::spheres(request.spheres); };
+  });
+}
+
+void add_audit(CLI::App& app, Request& request) {
+  CLI::App& command =
+      *app.add_subcommand("audit", "Prove what a set of spheres of any origin leaves open of a mesh, and measure it");
+  AuditCommand& audit = request.audit;
+  command
+      .add_option(
+          "spheres", audit.spheres,
+          "The spheres, in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .ply with "
+          "radii, .sph, .orchard")
+      ->required();
+  add_mesh(command, audit.mesh);
+  command.add_option("--link", audit.link, "The link, where a file has several");
+  command
+      .add_option("--buffer", audit.buffer,
+                  "Audit the spheres with this much on every radius, too, in place of the file's own buffer")
+      ->check(ANumber(CLI::Range(-1e15, 1e15)));
+  add_join(command, audit.join);
+  auto* folder = command.add_option("-o,--output", audit.folder, "Folder for the views and the report");
+  auto* picture =
+      command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres stick out")
+          ->needs(folder);
+  add_up(command, audit.up)->needs(picture);
+  add_force(command, audit.output)->needs(folder);
+  add_output_flags(command, audit.output);
+  command.footer(
+      "Exit code 3 if some of the surface is open.\n"
+      "Example:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit");
+  command.callback([&request, &command] {
+    request.audit.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { request.exit_code = orchard::apps::audit(request.audit); };
+  });
+}
+
+}  // namespace orchard::apps
