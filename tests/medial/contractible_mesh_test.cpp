@@ -100,9 +100,9 @@ TEST(ContractibleMesh, KeepsTheBettiNumbersThroughAThousandRandomContractions) {
     Topology expected;
   };
   const std::vector<NamedMesh> cases{{"torus shell", shell_of(test::torus(14, 9)), {1, 2, 1}},
-                                {"two shells", shell_of(test::two_boxes(0.5)), {2, 0, 2}},
-                                {"axis of a torus", raw_axis(test::torus(24, 12)), {1, 1, 0}},
-                                {"axis of an L with seams", raw_axis(test::l_shape()), {1, 0, 0}}};
+                                     {"two shells", shell_of(test::two_boxes(0.5)), {2, 0, 2}},
+                                     {"axis of a torus", raw_axis(test::torus(24, 12)), {1, 1, 0}},
+                                     {"axis of an L with seams", raw_axis(test::l_shape()), {1, 0, 0}}};
   int contractions = 0;
   for (const auto& [name, mesh, expected] : cases) {
     SCOPED_TRACE(name);
