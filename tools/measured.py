@@ -2,8 +2,11 @@
 import json
 import os
 import pathlib
+import platform
 import resource
 import subprocess
+import tempfile
+import typing
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs/images"
@@ -20,6 +23,33 @@ def run(command):
 def seconds_of_children():
     """Processor time that programs have taken so far, those that have ended: differences of it are a program's."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
+class Measured(typing.NamedTuple):
+    """What a program took: processor time of its own code in seconds, largest resident memory in MiB, and its exit code."""
+    seconds: float
+    mebibytes: float
+    code: int
+
+
+def run_measured(command, accepted=(0,)):
+    """Runs the program without its output. An exit code that is not accepted is an error, which says what the program said."""
+    with tempfile.TemporaryFile() as said:
+        child = subprocess.Popen([str(part) for part in command], stdout=subprocess.DEVNULL, stderr=said)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode not in accepted:
+            said.seek(0)
+            raise SystemExit(f"exit code {child.returncode}: {' '.join(map(str, command))}\n{said.read().decode(errors='replace').strip()}")
+    return Measured(usage.ru_utime, usage.ru_maxrss / 1024, child.returncode)
+
+
+def processor():
+    """The name of this machine's processor."""
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
 
 
 def kept(file, empty):
