@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 #include "../axis/incidence.h"
+#include "../triangle_quality.h"
 #include "orchard/geometry/disjoint_sets.h"
 
 namespace orchard {
@@ -14,13 +14,6 @@ namespace {
 
 constexpr double kBadTriangle = 0.1;
 constexpr Index kTinySheet = 3;
-
-double quality_of(const Point& a, const Point& b, const Point& c) {
-  const double x = (b - a).norm(), y = (c - b).norm(), z = (a - c).norm();
-  const double longest = std::max({x, y, z});
-  if (!(longest > 0)) return 0;
-  return 6 / std::numbers::sqrt3 * ((b - a).cross(c - a).norm() / 2) / ((x + y + z) / 2 * longest);
-}
 
 class Measurer {
  public:
@@ -89,7 +82,7 @@ class Measurer {
   void measure_triangles() {
     std::vector<double> all;
     for (const auto& [a, b, c] : mesh_.triangles)
-      all.push_back(quality_of(mesh_.centers[a], mesh_.centers[b], mesh_.centers[c]));
+      all.push_back(detail::triangle_quality(mesh_.centers[a], mesh_.centers[b], mesh_.centers[c]));
     result_.quality_mean = result_.quality_5 = result_.quality_below = std::nan("");
     if (all.empty()) return;
     std::sort(all.begin(), all.end());

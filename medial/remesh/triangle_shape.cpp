@@ -26,12 +26,6 @@ double flatness_at(const SheetMesh& mesh, Index a, Index b, std::span<const Inde
 
 }  // namespace
 
-double triangle_quality(const Point& a, const Point& b, const Point& c) {
-  const double x = (b - a).norm(), y = (c - b).norm(), z = (a - c).norm(), longest = std::max({x, y, z});
-  if (!(longest > 0)) return 0;
-  return 6 / std::sqrt(3.0) * ((b - a).cross(c - a).norm() / 2) / ((x + y + z) / 2 * longest);
-}
-
 double triangle_quality(const SheetMesh& mesh, const SheetMesh::Cell& cell) {
   return triangle_quality(mesh.center(cell[0]), mesh.center(cell[1]), mesh.center(cell[2]));
 }

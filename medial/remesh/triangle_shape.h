@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <span>
 
+#include "../triangle_quality.h"
 #include "sheet_mesh.h"
 
 // How well the triangles of a medial complex are shaped.
 namespace orchard::detail {
 
-// 6 / sqrt(3) times the area over half the perimeter and the longest side: 1 if equilateral, 0 without area.
-double triangle_quality(const Point& a, const Point& b, const Point& c);
 double triangle_quality(const SheetMesh& mesh, const SheetMesh::Cell& cell);
 
 // How much triangles turn at their edges, as cosines: 1 flat, -1 folded onto each other. Where three or more meet, the

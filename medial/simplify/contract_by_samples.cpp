@@ -19,12 +19,16 @@
 #include "feet_by_vertex.h"
 #include "opened_link.h"
 #include "protrusion_cost.h"
+#include "shape_cost.h"
 
 namespace orchard::detail {
 namespace {
 
 constexpr double kExpected = 0.5;   // of what an edge cost before: it is looked at again when its turn comes with that
 constexpr double kToMiddle = 1e-3;  // of the trace: towards the middle of the edge
+// Of the largest distance at the beginning: a triangle without area counts as if so much of the surface as its share of
+// the triangles were as far off.
+constexpr double kBadTriangle = 0.5;
 
 // An edge, and the ball that its ends may become.
 struct Candidate {
@@ -35,12 +39,14 @@ struct Candidate {
 class SampledContraction {
  public:
   SampledContraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                     Assignment& feet, SimplifiedBalls balls)
+                     Assignment& feet, const ContractionOptions& options)
       : surface_(surface),
         mesh_(mesh),
-        medial_(balls == SimplifiedBalls::medial),
+        medial_(options.balls == SimplifiedBalls::medial),
         error_(feet.max),
         feet_(mesh, samples, feet),
+        shape_(mesh),
+        shape_weight_(options.keeps_shape ? fourth(kBadTriangle * feet.max) : 0),
         protrusion_(surface, mesh, LookOptions(surface, samples[0].weight), kNegligible * feet.max),
         blocked_(mesh.size()) {
     stamp_.assign(mesh.size(), 0);
@@ -66,9 +72,9 @@ class SampledContraction {
         offer_opened(a, b, cost);
       } else if (kind == Kind::of_samples) {
         const Candidate found = candidate(a, b);
-        double& protruding = offered_[key(a, b)].cost;
-        protruding = protrusion_cost(a, b, found.ball);
-        turns_.emplace(found.cost + protruding, a, b, stamp, Kind::whole);
+        double& added = offered_[key(a, b)].cost;
+        added = added_cost(a, b, found.ball);
+        turns_.emplace(found.cost + added, a, b, stamp, Kind::whole);
       } else {
         contract(a, b);
       }
@@ -145,8 +151,10 @@ class SampledContraction {
     return best;
   }
 
-  double protrusion_cost(Index a, Index b, const Ball4& ball) {
-    return kProtrusionWeight * feet_.sample(0).weight * protrusion_.added(a, b, ball);
+  // What no sample sees: what protrudes, and worse triangles.
+  double added_cost(Index a, Index b, const Ball4& ball) {
+    const double protruding = kProtrusionWeight * feet_.sample(0).weight * protrusion_.added(a, b, ball);
+    return shape_weight_ > 0 ? protruding + shape_weight_ * shape_.added(a, b, ball) : protruding;
   }
 
   // An edge that the link condition stands against, with what it costs at least.
@@ -172,7 +180,7 @@ class SampledContraction {
     move_feet(moved);
     for (const auto& [i, foot] : moved) cost += feet_.sample(i).weight * fourth(feet_.foot(i).value);
     const Candidate found = candidate(a, b);
-    cost += found.cost + protrusion_cost(a, b, found.ball);
+    cost += found.cost + added_cost(a, b, found.ball);
     undo(mesh_, *collapses);
     for (const auto& [i, foot] : moved) feet_.set_foot(i, foot);
     opened_[key(a, b)].cost = cost;
@@ -291,6 +299,8 @@ class SampledContraction {
   const bool medial_;
   const double error_;  // mesh units: how far the radius of a ball that is to be medial may be off
   FeetByVertex feet_;
+  const ShapeCost shape_;
+  const double shape_weight_;  // 0: worse triangles cost nothing
   ProtrusionCost protrusion_;
   std::vector<std::vector<Index>> blocked_;  // other ends of edges that the link condition stood against
   // By edge: when it was offered, and what protruded; when it was looked at for what may be taken away, and what that
@@ -303,8 +313,8 @@ class SampledContraction {
 }  // namespace
 
 void contract_by_samples(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                         Assignment& feet, SimplifiedBalls balls, Index target) {
-  SampledContraction(surface, mesh, samples, feet, balls).run(target);
+                         Assignment& feet, const ContractionOptions& options, Index target) {
+  SampledContraction(surface, mesh, samples, feet, options).run(target);
 }
 
 }  // namespace orchard::detail

@@ -90,7 +90,8 @@ void Descent::go_down(Stage& stage, Index count) const {
 }
 
 void Descent::contract(Stage& stage, Index count) const {
-  contract_by_samples(surface_, stage.mesh, stage.samples, stage.feet, stage.contracted, count);
+  const ContractionOptions options{stage.contracted, options_.balls == SimplifiedBalls::medial};
+  contract_by_samples(surface_, stage.mesh, stage.samples, stage.feet, options, count);
 }
 
 void Descent::refine(Stage& stage, std::span<const FitOptions> passes) const {

@@ -1,0 +1,17 @@
+#pragma once
+#include <algorithm>
+#include <numbers>
+
+#include "orchard/geometry/mesh.h"
+
+namespace orchard::detail {
+
+// How well a triangle is shaped: 6 / sqrt(3) of its area over half its perimeter and its longest edge. 1 if it is
+// equilateral, 0 if it has no area.
+inline double triangle_quality(const Point& a, const Point& b, const Point& c) {
+  const double x = (b - a).norm(), y = (c - b).norm(), z = (a - c).norm(), longest = std::max({x, y, z});
+  if (!(longest > 0)) return 0;
+  return 6 / std::numbers::sqrt3 * ((b - a).cross(c - a).norm() / 2) / ((x + y + z) / 2 * longest);
+}
+
+}  // namespace orchard::detail
