@@ -257,7 +257,7 @@ bool insert_with_all_means(Workspace& workspace, Search search, std::string_view
   const auto attempt = [&] {
     const Outcome outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
     if (outcome != Outcome::done || search != Search::highest_first) return outcome;
-    Mender mender(workspace);
+    Repairer mender(workspace);
     certificate = certify(workspace, workspace.points.size(), 0, &mender,
                           [&](double part) { report_progress(progress, stage, kInsertion + (1 - kInsertion) * part); });
     return certificate.holds ? Outcome::done : Outcome::failed;

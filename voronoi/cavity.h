@@ -8,7 +8,7 @@
 #include "edge_table.h"
 #include "four_vectors.h"
 #include "placed_sphere.h"
-#include "territory.h"
+#include "region.h"
 #include "vectors.h"
 #include "workspace.h"
 
@@ -97,7 +97,7 @@ class Cavity {
 
   // Where vertices may be replaced from now on. Only delete_nearer(), widen() and what follows them heed it; no marks
   // may be left.
-  void enter(const Territory& territory) { territory_ = territory; }
+  void enter(const Region& territory) { territory_ = territory; }
   // Whether the search came to a vertex that is not to be touched: the point cannot be inserted from here then.
   bool left_territory() const { return left_territory_; }
   // What it would have deleted then.
@@ -233,7 +233,7 @@ class Cavity {
   void note_edges(Index v);
 
   Workspace& workspace_;
-  Territory territory_;
+  Region territory_;
   bool left_territory_ = false;
   Index blocker_ = kNone;
   Index new_point_ = kNone;

@@ -50,7 +50,7 @@ void sort_unique(std::vector<Index>& numbers) {
 
 }  // namespace
 
-Certifier::Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Mender* mender,
+Certifier::Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Repairer* mender,
                      const std::function<void(double)>& report)
     : workspace_(workspace),
       forming_(forming),
@@ -391,7 +391,7 @@ std::size_t count_forming(const Workspace& workspace) {
   return forming.count();
 }
 
-Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender,
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Repairer* mender,
                     const std::function<void(double)>& report) {
   FormingPoints forming(workspace.points.size());
   return Certifier(workspace, forming, first_new, mender, report).run(points);

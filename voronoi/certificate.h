@@ -50,7 +50,7 @@ struct Certificate {
 //
 // For a large set, `report` is called now and then, from the calling thread, with the part done of the first look at
 // all vertices, which is nearly all there is to do; what it throws ends the look.
-Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Mender* mender = nullptr,
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Repairer* mender = nullptr,
                     const std::function<void(double)>& report = {});
 
 // How many points form vertices.

@@ -17,7 +17,7 @@ namespace orchard::detail {
 // them and of the hull's edges in certificate_facets.cpp, and of all together, with what is mended, in certificate.cpp.
 class Certifier {
  public:
-  Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Mender* mender,
+  Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Repairer* mender,
             const std::function<void(double)>& report);
   // `points`: how many form vertices if none was lost.
   Certificate run(std::size_t points);
@@ -192,7 +192,7 @@ class Certifier {
   std::size_t points_ = 0;
   std::vector<Index> hull_points_;
   std::vector<Index> changed_;  // by mending, since the hull was looked at
-  Mender* mender_;
+  Repairer* mender_;
   std::size_t doubtful_ = 0;
   bool looks_at_changed_ = false, mended_ = false;
   const std::function<void(double)>& report_;

@@ -57,7 +57,7 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
     if (!inserter.insert(point)) return false;
   if (!inserter.insert_deferred()) return false;
   const std::size_t approximate = exact ? workspace.place_thin_vertices() : 0;
-  detail::Mender mender(workspace);
+  detail::Repairer mender(workspace);
   const detail::Certificate certificate =
       detail::certify(workspace, before + insertion.order.size(), insertion.first_new, &mender);
   if (!certificate.holds) return false;

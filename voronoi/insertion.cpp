@@ -262,7 +262,7 @@ void Inserter::search_highest_first(Index start, const Point& q) {
   }
 }
 
-void Inserter::want(Index v, double value) {
+void Inserter::enqueue(Index v, double value) {
   queue_.push_back({value, v});
   std::push_heap(queue_.begin(), queue_.end());
 }
@@ -276,9 +276,9 @@ void Inserter::delete_and_queue(Index v, const Point& q) {
     if (workspace_.mark(u) == Mark::deleted) continue;
     // Where q does not see the facet between, no value can be a reason to stop here.
     if (cavity_.side_of_facet(v, i) != Sign::positive)
-      want(u, std::numeric_limits<double>::infinity());
+      enqueue(u, std::numeric_limits<double>::infinity());
     else if (workspace_.mark(u) == Mark::wanted)
-      want(u, workspace_.value(u, q));
+      enqueue(u, workspace_.value(u, q));
   }
 }
 
@@ -289,7 +289,7 @@ bool Inserter::sees_around(const Candidate& candidate, const Point& q) {
     const Index u = workspace_.vertices[candidate.vertex].neighbors[i];
     if (workspace_.mark(u) == Mark::deleted || cavity_.side_of_facet(candidate.vertex, i) != Sign::negative) continue;
     sees = false;
-    if (workspace_.sign(u, q) == Sign::uncertain) want(u, candidate.value);
+    if (workspace_.sign(u, q) == Sign::uncertain) enqueue(u, candidate.value);
   }
   return sees;
 }

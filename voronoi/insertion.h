@@ -51,7 +51,7 @@ class Inserter {
   // Between enter() and leave(): where vertices may be replaced, by several threads that have an inserter each. The
   // walk to the first point starts from the first of `starts`, and where a walk leads nowhere, it is made again from
   // the one nearest to the point. They must be owned, and live until then.
-  void enter(const Territory& territory, std::span<const Index> starts);
+  void enter(const Region& territory, std::span<const Index> starts);
   // Only without doubts that take more than leaving vertices alone, and only if all that changes is owned; else false,
   // with the diagram as it was.
   bool insert_within(Index point);
@@ -97,7 +97,7 @@ class Inserter {
   bool respects_certain_signs(const Point& q) const;
   void search_highest_first(Index start, const Point& q);
   void delete_and_queue(Index v, const Point& q);
-  void want(Index v, double value);
+  void enqueue(Index v, double value);
   bool sees_around(const Candidate& candidate, const Point& q);
   void search_breadth_first(Index start, const Point& q);
   bool insert_bowyer(Index start, const Point& q);
@@ -106,7 +106,7 @@ class Inserter {
   Workspace& workspace_;
   Search search_;
   std::size_t expected_;
-  Territory territory_;
+  Region territory_;
   Cavity cavity_;
   InsertionCounts counts_;
   const char* failure_ = "";

@@ -22,7 +22,7 @@ double intrusion_in(const Vector& center, const Vector& point) {
 
 }  // namespace
 
-std::vector<Index> Mender::mend(std::span<const Doubt> doubts, int round) {
+std::vector<Index> Repairer::mend(std::span<const Doubt> doubts, int round) {
   changed_.clear();
   harmless_ = std::ldexp(workspace_.harmless_intrusion(), -kStricter * round);
   max_deleted_ = doubts.size() <= kFewDoubts && round < kFirstRounds ? kMaxDeletedOfFew : kMaxDeleted;
@@ -46,25 +46,25 @@ std::vector<Index> Mender::mend(std::span<const Doubt> doubts, int round) {
   return changed_;
 }
 
-std::vector<Index> Mender::patch(std::vector<Index> vertices, int layers) {
+std::vector<Index> Repairer::patch(std::vector<Index> vertices, int layers) {
   std::erase_if(vertices, [this](Index v) { return workspace_.is_free(v); });
   if (vertices.empty() || !may_patch_) return {};
   may_patch_ = patch_.replace(vertices, layers);
   return may_patch_ ? patch_.created() : std::vector<Index>();
 }
 
-unsigned Mender::slot_of(Index v, Index neighbor) const {
+unsigned Repairer::slot_of(Index v, Index neighbor) const {
   const auto& neighbors = workspace_.vertices[v].neighbors;
   return static_cast<unsigned>(std::find(neighbors.begin(), neighbors.end(), neighbor) - neighbors.begin());
 }
 
-bool Mender::is_formed_by(Index v, Index point) const {
+bool Repairer::is_formed_by(Index v, Index point) const {
   const auto& corner = workspace_.vertices[v].forming_points;
   return std::find(corner.begin(), corner.end(), point) != corner.end();
 }
 
 // Its own sphere: signs by a neighbour's would not be exact.
-void Mender::sharpen(Index v) {
+void Repairer::sharpen(Index v) {
   if (workspace_.at_infinity(v)) return;
   workspace_.settle(v);
   if (!workspace_.shares_sphere(v)) return;
@@ -73,7 +73,7 @@ void Mender::sharpen(Index v) {
 }
 
 // Of q in the sphere of a vertex, or beyond its plane.
-double Mender::intrusion(Index v, const Point& q) {
+double Repairer::intrusion(Index v, const Point& q) {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   const Point& origin = workspace_.points[vertex.forming_points[0]];
   if (workspace_.at_infinity(v)) return vertex.center.dot(q - origin);
@@ -81,13 +81,13 @@ double Mender::intrusion(Index v, const Point& q) {
   return intrusion_in(vertex.center - origin, q - origin);
 }
 
-bool Mender::is_in_sphere(Index v, const Point& q) {
+bool Repairer::is_in_sphere(Index v, const Point& q) {
   sharpen(workspace_.at_infinity(v) ? workspace_.vertices[v].neighbors[3] : v);
   return workspace_.sign(v, q) == Sign::positive;
 }
 
 // The point that u has instead of a shared one, if it is in the sphere of v.
-bool Mender::insert_again(Index v, Index u) {
+bool Repairer::insert_again(Index v, Index u) {
   const Index point = workspace_.vertices[u].forming_points[slot_of(u, v)];
   if (point == kInfinitePoint) return false;
   const Point q = workspace_.points[point];
@@ -107,7 +107,7 @@ bool Mender::insert_again(Index v, Index u) {
 
 // Deletes all that has to go with what is deleted, and places the new vertices. False if something has to go that the
 // point is far from.
-bool Mender::grow(Index point, const Point& q) {
+bool Repairer::grow(Index point, const Point& q) {
   for (std::size_t done = 0; done < cavity_.deleted().size();) {
     for (; done < cavity_.deleted().size(); ++done) {
       if (cavity_.deleted().size() > max_deleted_) return false;
@@ -132,7 +132,7 @@ bool Mender::grow(Index point, const Point& q) {
 }
 
 // Whether the new point sees it, and the sphere of both does not hold the point beyond.
-bool Mender::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
+bool Repairer::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
   if (!facet.visible) return false;
   const auto& corner = workspace_.vertices[facet.inside].forming_points;
   const Index beyond = workspace_.vertices[facet.outside].forming_points[facet.back];
@@ -147,7 +147,7 @@ bool Mender::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
 
 // Whether the hull's facet of the new point at the edge to an undeleted one, in whose plane the point is as far as does
 // harm, would lie on top of this one, upside down.
-bool Mender::is_folded(const Cavity::Facet& facet, const Point& q) const {
+bool Repairer::is_folded(const Cavity::Facet& facet, const Point& q) const {
   const VoronoiVertex& outside = workspace_.vertices[facet.outside];
   const auto& corner = workspace_.vertices[facet.inside].forming_points;
   const auto& [a, b, c] = Cavity::kOthers[facet.slot];

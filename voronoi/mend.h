@@ -18,9 +18,9 @@ struct Doubt {
 // next to its own is inserted again. Deleted are all vertices that it forms and, connected with these, those in whose
 // spheres it is deeper than does harm, until it sees all of the boundary, exactly, and no new sphere holds the point
 // beyond its facet. Whether all is well then is for the certificate to say.
-class Mender {
+class Repairer {
  public:
-  explicit Mender(Workspace& workspace) : workspace_(workspace), cavity_(workspace), patch_(workspace) {}
+  explicit Repairer(Workspace& workspace) : workspace_(workspace), cavity_(workspace), patch_(workspace) {}
 
   // The vertices that are new, those whose spheres have become their own, and those of doubts that could not be mended;
   // some may be free again. Each round is stricter than the last, lest one insertion undo another.

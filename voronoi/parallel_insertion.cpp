@@ -18,7 +18,7 @@
 
 namespace orchard::detail {
 
-void Inserter::enter(const Territory& territory, std::span<const Index> starts) {
+void Inserter::enter(const Region& territory, std::span<const Index> starts) {
   territory_ = territory;
   cavity_.enter(territory);
   starts_ = starts;
@@ -140,7 +140,7 @@ class Pass {
     std::vector<Index> near;
     const std::size_t step = region_of_.empty() ? workspace_.vertices.size() / kSample + 1 : 1;
     for (std::size_t v = 0; v < workspace_.vertices.size(); v += step)
-      if ((region_of_.empty() || region_of_[v] == Territory::kMixed) && !workspace_.is_free(static_cast<Index>(v)))
+      if ((region_of_.empty() || region_of_[v] == Region::kMixed) && !workspace_.is_free(static_cast<Index>(v)))
         near.push_back(static_cast<Index>(v));
     return near;
   }
@@ -166,12 +166,12 @@ class Pass {
   // Without branches: as good as random where regions meet.
   std::uint8_t region_of_vertex(Index v) const {
     const auto& corner = workspace_.vertices[v].forming_points;
-    if (workspace_.is_free(v)) return Territory::kMixed;
+    if (workspace_.is_free(v)) return Region::kMixed;
     const std::uint8_t* const of = region_of_point_.data();
     const unsigned a = of[corner[0]],
                    others[] = {of[corner[1]], of[corner[2]], of[corner[3] == kInfinitePoint ? corner[0] : corner[3]]};
     const bool mixed = ((a ^ others[0]) | (a ^ others[1]) | (a ^ others[2])) != 0;
-    return static_cast<std::uint8_t>(a | (mixed ? unsigned{Territory::kMixed} : 0u));
+    return static_cast<std::uint8_t>(a | (mixed ? unsigned{Region::kMixed} : 0u));
   }
   // Evenly over the numbers, of which neighbours in space mostly have neighbouring ones.
   void find_starts(std::uint8_t r) {

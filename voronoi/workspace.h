@@ -67,7 +67,7 @@ class Workspace {
     __builtin_prefetch(vertices.data() + v);
     __builtin_prefetch(state_.data() + v);
   }
-  // Those of a vertex that others may be giving new neighbours meanwhile, elsewhere (see Territory).
+  // Those of a vertex that others may be giving new neighbours meanwhile, elsewhere (see Region).
   std::array<Index, 4> neighbors_now(Index v) const {
     return {neighbor_now(v, 0), neighbor_now(v, 1), neighbor_now(v, 2), neighbor_now(v, 3)};
   }

@@ -17,8 +17,8 @@ namespace {
 
 using namespace orchard::bench;
 using namespace orchard::runtime;
+using orchard::runtime::test::MinimumTranslation;
 using orchard::runtime::test::Vec;
-using orchard::runtime::test::WayOut;
 
 constexpr int kPasses = 5;
 
@@ -48,7 +48,8 @@ double angle_to(const Vec& normal, const Vec& way) {
 class Table {
  public:
   // `unique`: whether normals count.
-  void add(const std::string& name, const Vec& normal, double depth, double time, const WayOut& least, bool unique) {
+  void add(const std::string& name, const Vec& normal, double depth, double time, const MinimumTranslation& least,
+           bool unique) {
     Score& score = scores_[name];
     if (unique) score.angles.push_back(angle_to(normal, least.direction));
     score.depth_ratios.push_back(depth / least.depth);
@@ -121,7 +122,7 @@ void compare(int poses, std::uint64_t seed) {
     const Manifold ours = contacts(workspace, pair, pose->a, pose->b);
     if (ours.depth < 1e-7 * pose->reach) continue;  // too shallow for the judge
     orchard::runtime::test::LeastWayOut judge(pair, pose->a, pose->b);
-    const std::vector<WayOut> ways = judge.find(draw, 1.5 * ours.depth);
+    const std::vector<MinimumTranslation> ways = judge.find(draw, 1.5 * ours.depth);
     if (ways.empty()) continue;  // no direction of the judge's comes near
     ++done;
     const bool unique = is_unique(ways);

@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
                 tree.triangles.size(), tree.node_count, tree.depth + 1,
                 static_cast<double>(tree.blocks.size() * sizeof(SiblingBlock)) / tree.node_count,
                 static_cast<double>(tree.vertices.size() * 12 + tree.triangles.size() * 12 +
-                                    tree.leaf_triangles.size() * 4 + tree.ball_slabs.size() * sizeof(BallSlabBlock) +
+                                    tree.leaf_triangles.size() * 4 + tree.obb_nodes.size() * sizeof(ObbNodeBlock) +
                                     tree.triangle_blocks.size() * sizeof(TriangleBlock)) /
                     static_cast<double>(tree.triangles.size()));
     const auto queries = approaches(tree, count, 0);

@@ -5,7 +5,7 @@ namespace {
 
 static_assert((kMaxCellsPerAxis & (kMaxCellsPerAxis - 1)) == 0);
 
-bool cells_fit(const QuantumBox& box) noexcept {
+bool cells_fit(const QuantizedAabb& box) noexcept {
   bool fit = true;
   for (std::size_t d = 0; d < 3; ++d) {
     fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMaxCellsPerAxis;
@@ -58,15 +58,15 @@ void BoxIndex::empty(const Executor& executor) {
 
 void BoxIndex::set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
                            Step now) noexcept {
-  lattice_ = Lattice(origin, velocity, cell_size, slack);
+  quantized_grid_ = QuantizedGrid(origin, velocity, cell_size, slack);
   lattice_from_ = now;
   time_step_ = time_step;
 }
 
-Lattice BoxIndex::lattice_at(Step now) const noexcept {
-  Lattice lattice = lattice_;
-  lattice.move_to(static_cast<double>(now - lattice_from_) * time_step_);
-  return lattice;
+QuantizedGrid BoxIndex::quantized_grid_at(Step now) const noexcept {
+  QuantizedGrid quantized_grid = quantized_grid_;
+  quantized_grid.move_to(static_cast<double>(now - lattice_from_) * time_step_);
+  return quantized_grid;
 }
 
 void BoxIndex::take_away(BodyIndex body) noexcept {
@@ -119,7 +119,7 @@ bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) {
   return fit;
 }
 
-bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) {
+bool BoxIndex::note_again(BodyIndex body, const QuantizedAabb& box) {
   const bool fits = cells_fit(box);
   const auto is_it = [body](const Oversized& large) { return large.body == body; };
   const auto noted = std::find_if(noted_.begin(), noted_.end(), is_it);
@@ -130,7 +130,7 @@ bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) {
   } else {
     noted_.push_back({body, box});
   }
-  boxes_[body] = NarrowBox(box);
+  boxes_[body] = PackedAabb(box);
   places_[body] = fits ? Place::inside : Place::oversized;
   any_oversized_ = any_oversized_ || !fits;
   if (fits) extent_.include(box);
@@ -139,9 +139,9 @@ bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) {
 
 bool BoxIndex::all_fit(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }
 
-bool BoxIndex::fits(const QuantumBox& box) noexcept { return cells_fit(box); }
+bool BoxIndex::fits(const QuantizedAabb& box) noexcept { return cells_fit(box); }
 
-void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept {
+void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept {
   boxes.store(bodies, boxes_);
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
   extent.include(boxes.around);
@@ -168,7 +168,7 @@ void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) {
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
 void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) {
-  const auto compare = [&](BodyIndex body, const QuantumBox& box, BodyIndex other, const QuantumBox& with) {
+  const auto compare = [&](BodyIndex body, const QuantizedAabb& box, BodyIndex other, const QuantizedAabb& with) {
     if (with.meets(box)) pairs.push_back({std::min(body, other), std::max(body, other)});
   };
   for (const BodyIndex body : bodies) {

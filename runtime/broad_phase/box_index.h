@@ -1,6 +1,6 @@
 #pragma once
 #include "broad_phase/box_list.h"
-#include "broad_phase/method.h"
+#include "broad_phase/broad_phase_algorithm.h"
 #include "broad_phase/swept_grid.h"
 
 namespace orchard::runtime::detail {
@@ -23,19 +23,19 @@ class BoxIndex {
   // The grid is in order from empty() on, or once jobs have emptied each part, and nothing else happens before.
   void make_anew(std::size_t slots, std::size_t lines);
   void empty(const Executor& executor);  // nothing if it is in order
-  // The lattice of all boxes from now on; it moves at `velocity`.
+  // The quantized_grid of all boxes from now on; it moves at `velocity`.
   void set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
                    Step now) noexcept;
-  Lattice lattice_at(Step now) const noexcept;
-  const Vec3& velocity() const noexcept { return lattice_.velocity(); }
-  bool moves() const noexcept { return lattice_.moves(); }
+  QuantizedGrid quantized_grid_at(Step now) const noexcept;
+  const Vec3& velocity() const noexcept { return quantized_grid_.velocity(); }
+  bool moves() const noexcept { return quantized_grid_.moves(); }
 
   void take_away(BodyIndex body) noexcept;
   void take_away(std::span<const BodyIndex> bodies) noexcept;
   // Takes note of bodies' boxes, which insert() puts where they belong; false if some do not fit into the grid.
   bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes);
   bool fits(BodyIndex body) const noexcept { return few_ || places_[body] == Place::inside; }
-  bool note_again(BodyIndex body, const QuantumBox& box);  // of one that does not fit: another box for it
+  bool note_again(BodyIndex body, const QuantizedAabb& box);  // of one that does not fit: another box for it
   // `boxes` are those that were noted, or noted again. Appends the pairs whose boxes meet, of each and all before.
   void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
   void finish(Queue& queue, std::vector<BodyPair>& pairs);
@@ -45,9 +45,9 @@ class BoxIndex {
   // Only while none is oversized: of these the grid knows nothing.
   bool shares() const noexcept { return !few_ && oversized_.empty(); }
   static bool all_fit(const BoxBlock& boxes) noexcept;
-  static bool fits(const QuantumBox& box) noexcept;
+  static bool fits(const QuantizedAabb& box) noexcept;
   // takes note of boxes that fit, and has `extent` include them;
-  void note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept;
+  void note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept;
   void scatter(std::span<const BodyIndex> bodies, const BoxBlock& boxes, SweptGrid::VisitsByPart& visits) const {
     grid_.scatter(bodies, boxes, boxes_, visits);
   }
@@ -58,15 +58,15 @@ class BoxIndex {
     grid_.insert_part(visits, boxes_, pairs, counts);
   }
   // and at the end of all jobs.
-  void include(const QuantumBox& extent) noexcept { extent_.include(extent); }
+  void include(const QuantizedAabb& extent) noexcept { extent_.include(extent); }
   void count(const GridCounts& counts) noexcept { grid_.count(counts); }
-  static constexpr QuantumBox nothing() noexcept { return kNothing; }
+  static constexpr QuantizedAabb nothing() noexcept { return kNothing; }
 
   const GridCounts& counts() const noexcept { return grid_.counts(); }
   void begin_counts() noexcept { grid_.take_counts(); }
   void discount_pairs(std::size_t pairs) noexcept { grid_.discount_pairs(pairs); }
 
-  // As in Method.
+  // As in BroadPhaseAlgorithm.
   Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const;
@@ -77,28 +77,28 @@ class BoxIndex {
 
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };
-  static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
+  static constexpr QuantizedAabb kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
 
   void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs);
   struct GridRay;
-  void append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;
-  bool walk_slabs(const Lattice& lattice, const GridRay& ray, std::vector<BodyIndex>& portion,
+  void append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const;
+  bool walk_slabs(const QuantizedGrid& quantized_grid, const GridRay& ray, std::vector<BodyIndex>& portion,
                   PortionVisitor& visitor) const;
   std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
 
-  std::vector<Place> places_;     // by body
-  UnsetVector<NarrowBox> boxes_;  // of those in the grid
+  std::vector<Place> places_;      // by body
+  UnsetVector<PackedAabb> boxes_;  // of those in the grid
   struct Oversized {
     BodyIndex body;
-    QuantumBox box;
+    QuantizedAabb box;
   };
   std::vector<Oversized> oversized_, noted_;  // the latter are to be inserted
   bool any_oversized_ = false;                // since it was made anew
   bool few_ = true, in_order_ = true;
   BoxList list_;
   SweptGrid grid_;
-  QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was made anew
-  Lattice lattice_;
+  QuantizedAabb extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was made anew
+  QuantizedGrid quantized_grid_;
   double time_step_ = 0;
   Step lattice_from_ = 0;  // at which it was made
 };

@@ -7,14 +7,14 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kSpare = 1;           // quanta: more than all rounding within the lattice comes to
+constexpr double kSpare = 1;           // quanta: more than all rounding within the quantized grid comes to
 constexpr double kFarOrigin = 0x1p44;  // quanta: beyond, rounding comes to too many of them
 constexpr double kBeyond = std::numeric_limits<double>::infinity();
 constexpr std::size_t kPortion = 16;    // bodies, about, that are visited together
 constexpr std::size_t kFewCells = 64;   // that are read even if there are fewer bodies
 constexpr double kCellsPerSlab = 2.25;  // of a ray, on average at most
 
-constexpr QuantumBox kEverything = {{0, 0, 0}, {kLastQuantum, kLastQuantum, kLastQuantum}};
+constexpr QuantizedAabb kEverything = {{0, 0, 0}, {kLastQuantum, kLastQuantum, kLastQuantum}};
 
 std::uint32_t quantum_below(double q) noexcept {
   const double down = std::floor(q - kSpare);
@@ -26,8 +26,8 @@ std::uint32_t quantum_above(double q) noexcept {
 }
 
 // What both have in common; empty (a lower end above its upper one) if nothing.
-QuantumBox common(const QuantumBox& a, const QuantumBox& b) noexcept {
-  QuantumBox both{};
+QuantizedAabb common(const QuantizedAabb& a, const QuantizedAabb& b) noexcept {
+  QuantizedAabb both{};
   for (std::size_t d = 0; d < 3; ++d) {
     both.lower[d] = std::max(a.lower[d], b.lower[d]);
     both.upper[d] = std::min(a.upper[d], b.upper[d]);
@@ -36,7 +36,7 @@ QuantumBox common(const QuantumBox& a, const QuantumBox& b) noexcept {
 }
 
 // The lines that have to be read; 0 for an empty box.
-double cells_in(const QuantumBox& box) noexcept {
+double cells_in(const QuantizedAabb& box) noexcept {
   double cells = 1;
   for (std::size_t d = 0; d < 3; ++d) {
     const bool empty = box.lower[d] > box.upper[d];
@@ -54,9 +54,9 @@ struct BoxIndex::GridRay {
   std::size_t axis = 0;  // along which it is fastest
 
   double at(std::size_t d, double t) const noexcept { return origin[d] + t * way[d]; }
-  void clip(const QuantumBox& box) noexcept {
+  void clip(const QuantizedAabb& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
-      // What reaches an end of the lattice may reach beyond it.
+      // What reaches an end of the quantized grid may reach beyond it.
       const double lower = box.lower[d] == 0 ? -kBeyond : box.lower[d] - 2 * kSpare,
                    upper = box.upper[d] == kLastQuantum ? kBeyond : box.upper[d] + 2 * kSpare;
       if (way[d] == 0) {
@@ -68,14 +68,14 @@ struct BoxIndex::GridRay {
       end = std::min(end, std::max(enter, leave));
     }
   }
-  bool meets(const QuantumBox& box) const noexcept {
+  bool meets(const QuantizedAabb& box) const noexcept {
     GridRay part = *this;
     part.clip(box);
     return part.begin <= part.end;
   }
 };
 
-void BoxIndex::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const {
+void BoxIndex::append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const {
   std::array<std::uint32_t, 3> cell{};
   const auto first = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
   const auto last = [&](std::size_t d) { return box.upper[d] >> kQuantumBits; };
@@ -92,17 +92,17 @@ void BoxIndex::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bo
 std::size_t BoxIndex::fewest_cells() const noexcept { return std::max(kFewCells, places_.size()); }
 
 Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
-  const Lattice lattice = lattice_at(now);
-  QuantumBox box{};
+  const QuantizedGrid quantized_grid = quantized_grid_at(now);
+  QuantizedAabb box{};
   for (std::size_t d = 0; d < 3; ++d) {
-    box.lower[d] = quantum_below(lattice.quantum(lower[d], d));
-    box.upper[d] = quantum_above(lattice.quantum(upper[d], d));
+    box.lower[d] = quantum_below(quantized_grid.quantum(lower[d], d));
+    box.upper[d] = quantum_above(quantized_grid.quantum(upper[d], d));
   }
   if (few_) {
     list_.append_meeting(box, bodies);
     return box.lower == kEverything.lower && box.upper == kEverything.upper ? Near::all : Near::some;
   }
-  const QuantumBox inside = common(box, extent_);
+  const QuantizedAabb inside = common(box, extent_);
   const double cells = cells_in(inside);
   if (cells > static_cast<double>(fewest_cells())) {
     for (BodyIndex body = 0; body < places_.size(); ++body) {
@@ -122,7 +122,7 @@ Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vec
 
 // Slab after slab of cells across the axis along which the ray is fastest: it crosses few cells in each. False if the
 // visitor has had enough.
-bool BoxIndex::walk_slabs(const Lattice& lattice, const GridRay& ray, std::vector<BodyIndex>& portion,
+bool BoxIndex::walk_slabs(const QuantizedGrid& quantized_grid, const GridRay& ray, std::vector<BodyIndex>& portion,
                           PortionVisitor& visitor) const {
   const std::size_t m = ray.axis;
   const auto slab_at = [&](double t) {
@@ -135,7 +135,7 @@ bool BoxIndex::walk_slabs(const Lattice& lattice, const GridRay& ray, std::vecto
     const auto time_at = [&](double q) { return (q - ray.origin[m]) / ray.way[m]; };
     const double spare = kSpare * static_cast<double>(step);
     const double from = std::max(ray.begin, time_at(near - spare)), to = std::min(ray.end, time_at(far + spare));
-    QuantumBox box{};
+    QuantizedAabb box{};
     for (std::size_t d = 0; d < 3; ++d) {
       box.lower[d] = quantum_below(std::min(ray.at(d, from), ray.at(d, to)));
       box.upper[d] = quantum_above(std::max(ray.at(d, from), ray.at(d, to)));
@@ -145,7 +145,7 @@ bool BoxIndex::walk_slabs(const Lattice& lattice, const GridRay& ray, std::vecto
     append_in_cells(box, portion);
     if (slab == last) break;
     if (portion.size() < kPortion) continue;
-    if (!visitor.visit(portion, time_at(far - spare) / lattice.quanta(1))) return false;
+    if (!visitor.visit(portion, time_at(far - spare) / quantized_grid.quanta(1))) return false;
     portion.clear();
   }
   return true;
@@ -154,10 +154,10 @@ bool BoxIndex::walk_slabs(const Lattice& lattice, const GridRay& ray, std::vecto
 bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
                      PortionVisitor& visitor) const {
   if (few_) return false;
-  const Lattice lattice = lattice_at(now);
-  GridRay ray{{}, way, 0, lattice.quanta(length)};
+  const QuantizedGrid quantized_grid = quantized_grid_at(now);
+  GridRay ray{{}, way, 0, quantized_grid.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {
-    ray.origin[d] = lattice.quantum(origin[d], d);
+    ray.origin[d] = quantized_grid.quantum(origin[d], d);
     if (!(std::fabs(ray.origin[d]) <= kFarOrigin)) return false;
     if (std::fabs(way[d]) > std::fabs(way[ray.axis])) ray.axis = d;
   }
@@ -169,7 +169,7 @@ bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double lengt
   if (any && ray.begin <= ray.end) {
     const double slabs = std::fabs(ray.at(ray.axis, ray.end) - ray.at(ray.axis, ray.begin)) / kQuanta;
     if (kCellsPerSlab * slabs <= static_cast<double>(fewest_cells())) {
-      if (!walk_slabs(lattice, ray, portion, visitor)) return true;
+      if (!walk_slabs(quantized_grid, ray, portion, visitor)) return true;
     } else {
       for (BodyIndex body = 0; body < places_.size(); ++body) {
         if (places_[body] == Place::inside && ray.meets(boxes_[body].whole())) portion.push_back(body);

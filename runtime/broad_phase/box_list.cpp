@@ -109,7 +109,7 @@ void BoxList::grow(std::size_t slots) {
   boxes_.resize(slots, kNowhere);
 }
 
-void BoxList::append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodies) const {
+void BoxList::append_meeting(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const {
   for (std::size_t body = 0; body < filled_; ++body) {
     if (boxes_[body].meets(box)) bodies.push_back(static_cast<BodyIndex>(body));
   }
@@ -159,8 +159,8 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyIndex> bodies, const
     for (std::size_t g = 0; g < groups; ++g) Lanes::include(all, Lanes::meeting(groups_[g], lower, upper));
     if (!Lanes::any(all)) [[likely]]
       continue;
-    const QuantumBox box = block.get(i);
-    const auto compare = [&](BodyIndex other, const QuantumBox& with) {
+    const QuantizedAabb box = block.get(i);
+    const auto compare = [&](BodyIndex other, const QuantizedAabb& with) {
       const bool exists = with.lower[0] <= with.upper[0];
       if (exists && with.meets(box)) pairs.push_back({std::min(bodies[i], other), std::max(bodies[i], other)});
     };

@@ -1,6 +1,6 @@
 #pragma once
 #include "broad_phase/body_pool.h"
-#include "broad_phase/box_lattice.h"
+#include "broad_phase/quantized_grid.h"
 
 namespace orchard::runtime::detail {
 
@@ -16,7 +16,7 @@ class BoxList {
   void release() { give_back(boxes_), give_back(groups_); }
   // Adds bodies[i] with block's box i and appends the pairs whose boxes meet, of each of them and everything in before.
   void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
-  void append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;  // those whose boxes meet it
+  void append_meeting(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const;  // those whose boxes meet it
   void remove(BodyIndex body) noexcept {
     boxes_[body] = kNowhere;
     groups_[body / kGroup].set(body % kGroup, kCoarseNowhere);
@@ -28,7 +28,7 @@ class BoxList {
   static constexpr std::size_t kGroup = 64;
   static constexpr std::uint8_t kLastCoarse = 0x7f, kHighBit = 0x80;
   // Meets nothing but what covers all quanta, since its lower ends lie above its upper ends.
-  static constexpr QuantumBox kNowhere = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
+  static constexpr QuantizedAabb kNowhere = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
   struct CoarseBox {
     std::array<std::uint8_t, 3> lower, upper;
   };
@@ -58,7 +58,7 @@ class BoxList {
   template <typename Lanes>
   void insert_all(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
 
-  std::vector<QuantumBox> boxes_;         // by body
+  std::vector<QuantizedAabb> boxes_;      // by body
   std::vector<Group> groups_;             // the same
   std::size_t filled_ = 0;                // bodies are below
   unsigned shift_ = 0;                    // quanta to a coarse coordinate: 2^shift_

@@ -27,10 +27,10 @@ bool is_valid(const BroadPhaseOptions& options) noexcept {
 }
 
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
-    : BroadPhase(std::move(source), options, detail::make_events) {}
+    : BroadPhase(std::move(source), options, detail::make_kinetic_broad_phase) {}
 
 BroadPhase BroadPhase::reading(const MotionArrays& arrays, const BroadPhaseOptions& options) {
-  return {nullptr, options, detail::make_events, &arrays};
+  return {nullptr, options, detail::make_kinetic_broad_phase, &arrays};
 }
 
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make,
@@ -234,10 +234,10 @@ std::uint64_t BroadPhase::skip_to(double t) {
   return static_cast<std::uint64_t>(to - from);
 }
 
-std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {
+std::size_t BroadPhase::predict_load(double time, std::span<StepsAhead> steps) const noexcept {
   for (StepsAhead& step : steps) step = {};
   if (!(std::fabs(time) <= max_time_) || state_->busy) return 0;
-  return state_->method->foresee(state_->pool.clock.step_at(time), steps);
+  return state_->method->predict_load(state_->pool.clock.step_at(time), steps);
 }
 
 std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }

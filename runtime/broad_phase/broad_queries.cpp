@@ -148,7 +148,7 @@ std::span<const BodyIndex> BodyQueries::everybody() {
 
 template <typename Hits>
 void BodyQueries::walk(const Line& line, Hits& hits) {
-  const detail::Method& method = *world_->state_->method;
+  const detail::BroadPhaseAlgorithm& method = *world_->state_->method;
   if (!method.along(step(), line.origin, line.way, line.length, candidates_, hits))
     hits.visit(everybody(), line.length);
 }
@@ -228,7 +228,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
   if (!begin(fits(point))) return {};
   k = std::min(k, world_->size());
   if (k == 0) return {};
-  const detail::Method& method = *world_->state_->method;
+  const detail::BroadPhaseAlgorithm& method = *world_->state_->method;
   const auto nearer = [](const NearBody& a, const NearBody& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.body < b.body;
   };

@@ -14,10 +14,10 @@ struct VectorDoubles {
   ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return mask ? a : b;
   }
-  ORCHARD_INLINE static Numbers least(const Numbers& a, const Numbers& b) noexcept { return choose(b < a, b, a); }
-  ORCHARD_INLINE static Numbers most(const Numbers& a, const Numbers& b) noexcept { return choose(a < b, b, a); }
-  ORCHARD_INLINE static Numbers size(const Numbers& a) noexcept { return most(a, -a); }
-  ORCHARD_INLINE static Numbers root(const Numbers& a) noexcept {  // one instruction with -fno-math-errno
+  ORCHARD_INLINE static Numbers min(const Numbers& a, const Numbers& b) noexcept { return choose(b < a, b, a); }
+  ORCHARD_INLINE static Numbers max(const Numbers& a, const Numbers& b) noexcept { return choose(a < b, b, a); }
+  ORCHARD_INLINE static Numbers abs(const Numbers& a) noexcept { return max(a, -a); }
+  ORCHARD_INLINE static Numbers sqrt(const Numbers& a) noexcept {  // one instruction with -fno-math-errno
     Numbers result;
     for (std::size_t i = 0; i < 4; ++i) result[i] = __builtin_sqrt(a[i]);
     return result;

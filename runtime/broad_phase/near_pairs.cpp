@@ -11,7 +11,7 @@ constexpr double kEventResolution = 0.125;  // of a step: no need to know better
 
 }  // namespace
 
-void Refusals::refuse(BodyIndex body) {
+void InvalidBodies::refuse(BodyIndex body) {
   pool_.refuse(body);
   boxes_.take_away(body);
   windows_[body].end = kUpdateDue;
@@ -209,10 +209,11 @@ void NearPairs::note_spheres(bool wanted, std::size_t slots) {
 
 void NearPairs::release_spheres() noexcept { give_back(spheres_); }
 
-// Relative to the lattice, like that of every other body.
-void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Lattice& lattice, double duration) noexcept {
+// Relative to the quantized grid, like that of every other body.
+void NearPairs::note_sphere(BodyIndex body, const Motion& m, const QuantizedGrid& quantized_grid,
+                            double duration) noexcept {
   constexpr double kOutward = 1 + 1e-6;  // for what is rounded here
-  const Vec3 &origin = lattice.origin(), &way = lattice.velocity();
+  const Vec3 &origin = quantized_grid.origin(), &way = quantized_grid.velocity();
   const auto square = [](double x) { return x * x; };
   const double squares =
       square(m.velocity[0] - way[0]) + square(m.velocity[1] - way[1]) + square(m.velocity[2] - way[2]);

@@ -8,9 +8,9 @@
 namespace orchard::runtime::detail {
 
 // What becomes of a body whose motion is not valid: it is in no pair until it has been asked again.
-class Refusals {
+class InvalidBodies {
  public:
-  Refusals(BodyPool& pool, Windows& windows, BoxIndex& boxes, OverlapList& overlaps, Changes& changes)
+  InvalidBodies(BodyPool& pool, Windows& windows, BoxIndex& boxes, OverlapList& overlaps, Changes& changes)
       : pool_(pool), windows_(windows), boxes_(boxes), overlaps_(overlaps), changes_(changes) {}
   void refuse(BodyIndex body);
 
@@ -29,7 +29,7 @@ class NearPairs {
   static constexpr std::size_t kTestsAtOnce = kPairsAtOnce;
 
   NearPairs(BodyPool& pool, const BroadPhaseOptions& options, Windows& windows, TimingWheel& wheel,
-            OverlapList& overlaps, Refusals& refusals)
+            OverlapList& overlaps, InvalidBodies& refusals)
       : pool_(pool), options_(options), windows_(windows), wheel_(wheel), overlaps_(overlaps), refusals_(refusals) {}
 
   // ahead: for the next step, from the motions of this one. within_budget: what overlaps may be doubted.
@@ -72,7 +72,7 @@ class NearPairs {
   void make_room_for_spheres(std::size_t slots) {
     if (!spheres_.empty()) grow(spheres_, slots);
   }
-  void note_sphere(BodyIndex body, const Motion& motion, const Lattice& lattice, double duration) noexcept;
+  void note_sphere(BodyIndex body, const Motion& motion, const QuantizedGrid& quantized_grid, double duration) noexcept;
   bool notes_spheres() const noexcept { return !spheres_.empty(); }
 
   void forget_all() noexcept;
@@ -80,7 +80,7 @@ class NearPairs {
 
  private:
   struct Sphere {                 // in a third of the memory of a motion's part, and off by its rounding
-    std::array<float, 3> center;  // from the lattice's origin
+    std::array<float, 3> center;  // from the quantized grid's origin
     float radius, reach;          // reach: as far as the centre may get until the body's window ends, and all slack
   };
   void note_ahead(const BodyPair& pair) {
@@ -111,7 +111,7 @@ class NearPairs {
   Windows& windows_;
   TimingWheel& wheel_;
   OverlapList& overlaps_;
-  Refusals& refusals_;
+  InvalidBodies& refusals_;
   bool ahead_ = false, within_budget_ = false;
   std::vector<Sphere> spheres_;               // by body; empty unless many pairs are near
   std::uint64_t compared_ = 0, settled_ = 0;  // pairs, by spheres, since spheres_ began

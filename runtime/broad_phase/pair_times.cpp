@@ -47,7 +47,7 @@ ORCHARD_INLINE Numbers dot_of(const Three& a, const Three& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 ORCHARD_INLINE Numbers largest_of(const Three& a) noexcept {
-  return Kind::most(Kind::most(Kind::size(a[0]), Kind::size(a[1])), Kind::size(a[2]));
+  return Kind::max(Kind::max(Kind::abs(a[0]), Kind::abs(a[1])), Kind::abs(a[2]));
 }
 
 // As is_valid() says without its second look; NaN fails.
@@ -55,7 +55,7 @@ ORCHARD_INLINE Mask are_valid(const FourMotions& m) noexcept {
   const Numbers squares = dot_of(m.position, m.position) + dot_of(m.velocity, m.velocity) +
                           dot_of(m.half_space, m.half_space) +
                           (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
-  const Numbers least = Kind::least(Kind::least(m.radius, m.acceleration), m.drift);
+  const Numbers least = Kind::min(Kind::min(m.radius, m.acceleration), m.drift);
   return (squares <= all_of(kMaxNumber * kMaxNumber)) & (all_of(0) <= least);
 }
 
@@ -66,7 +66,7 @@ ORCHARD_INLINE Numbers reach_of(const FourMotions& m, const Numbers& duration) n
 
 // first_closing(), where the gap is positive; else anything.
 ORCHARD_INLINE Numbers closing(const Numbers& gap, const Numbers& slope, const Numbers& acceleration) noexcept {
-  const Numbers root = Kind::root(slope * slope + 2 * acceleration * gap);
+  const Numbers root = Kind::sqrt(slope * slope + 2 * acceleration * gap);
   const Mask down = slope < 0;
   const Numbers above = Kind::choose(down, 2 * gap, slope + root),
                 below = Kind::choose(down, root - slope, acceleration);
@@ -91,14 +91,14 @@ ORCHARD_INLINE FourPairs pairs_of(const FourMotions& a, const FourMotions& b, co
   p.slack = all_of(kMotionSlack) * (reach_of(a, limit) + reach_of(b, limit)) + all_of(kMinLength);
   p.limit = limit;
   p.squared = dot_of(p.offset, p.offset);
-  p.distance = Kind::root(p.squared);
+  p.distance = Kind::sqrt(p.squared);
   p.parting = dot_of(p.offset, p.velocity) / p.distance;
   return p;
 }
 
 // overlap_lasts()
 ORCHARD_INLINE Numbers lasting(const FourPairs& p, double slack) noexcept {
-  const Numbers speed = Kind::root(dot_of(p.velocity, p.velocity));
+  const Numbers speed = Kind::sqrt(dot_of(p.velocity, p.velocity));
   const Numbers spare = p.radii - p.distance - p.slack - all_of(slack), zero = all_of(0);
   const auto first = [&](const Numbers& slope, const Numbers& acceleration) ORCHARD_INLINE_LAMBDA {
     return Kind::choose(spare > 0, closing(spare, slope, acceleration), zero);
@@ -106,7 +106,7 @@ ORCHARD_INLINE Numbers lasting(const FourPairs& p, double slack) noexcept {
   const Numbers sure = first(-(speed + p.growth), p.acceleration);
   const Numbers tangent = first(-(p.parting + p.growth), p.acceleration + speed * speed / p.distance);
   const Mask better = (sure < tangent) & (sure < p.limit) & (p.distance > all_of(kMinLength));
-  return Kind::least(p.limit, Kind::choose(better, tangent, sure));
+  return Kind::min(p.limit, Kind::choose(better, tangent, sure));
 }
 
 // horn_contact(), of those that are apart now.
@@ -125,7 +125,7 @@ ORCHARD_INLINE Numbers contact(const FourPairs& p, const Mask& apart_now, double
     t = Kind::choose(open, next, t);  // that of the others may be infinite
     Three at;
     for (std::size_t d = 0; d < 3; ++d) at[d] = p.offset[d] + t * p.velocity[d];
-    const Numbers distance = Kind::root(dot_of(at, at));
+    const Numbers distance = Kind::sqrt(dot_of(at, at));
     gap = distance - (radius + t * (p.growth + t * p.acceleration / 2));
     slope = dot_of(at, p.velocity) / distance - (p.growth + t * p.acceleration);
   }

@@ -1,5 +1,5 @@
 #pragma once
-#include "broad_phase/box_lattice.h"
+#include "broad_phase/quantized_grid.h"
 
 namespace orchard::runtime::detail {
 

@@ -71,7 +71,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
 }
 
 // Static bodies have windows without end only where they stay in the same cells. Rounding stays below a
-// quantum where a window's way is within the lattice's range.
+// quantum where a window's way is within the quantized grid's range.
 Vec3 Planner::frame_velocity() const noexcept {
   if (pool_.any_static()) return {};
   const Vec3 velocity = means_.crowd_velocity();

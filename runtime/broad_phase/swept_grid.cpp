@@ -14,12 +14,12 @@ namespace {
 class BoxInCell {
  public:
   // In the fourth places there are zeros: nothing is apart there, nor elsewhere.
-  ORCHARD_INLINE BoxInCell(const NarrowBox& box, std::uint8_t steps) noexcept {
+  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint8_t steps) noexcept {
     read(box, lower_, upper_);
     cell_ = (lower_ >> kQuantumBits) + load<Numbers>(kSteps[steps]);
   }
   // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
-  ORCHARD_INLINE bool meets_here(const NarrowBox& other) const noexcept {
+  ORCHARD_INLINE bool meets_here(const PackedAabb& other) const noexcept {
     Numbers lower, upper;
     read(other, lower, upper);
     const Numbers apart = (upper_ - lower) | (upper - lower_);
@@ -41,8 +41,8 @@ class BoxInCell {
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {i & 3, i >> 2 & 3, i >> 4, 0};
     return all;
   }();
-  ORCHARD_INLINE static void read(const NarrowBox& box, Numbers& lower, Numbers& upper) noexcept {
-    static_assert(offsetof(NarrowBox, lengths) == 12 && sizeof(NarrowBox) == sizeof lower);
+  ORCHARD_INLINE static void read(const PackedAabb& box, Numbers& lower, Numbers& upper) noexcept {
+    static_assert(offsetof(PackedAabb, lengths) == 12 && sizeof(PackedAabb) == sizeof lower);
     Numbers all;
     std::memcpy(&all, &box, sizeof all);
     lower = all & Numbers{~0u, ~0u, ~0u, 0};
@@ -58,11 +58,11 @@ class BoxInCell {
 #else
 class BoxInCell {
  public:
-  BoxInCell(const NarrowBox& box, std::uint8_t steps) noexcept : box_(box.whole()) {
+  BoxInCell(const PackedAabb& box, std::uint8_t steps) noexcept : box_(box.whole()) {
     for (std::uint32_t d = 0; d < 3; ++d) cell_[d] = (box.lower[d] >> kQuantumBits) + (steps >> 2 * d & 3u);
   }
-  bool meets_here(const NarrowBox& narrow) const noexcept {
-    const QuantumBox other = narrow.whole();
+  bool meets_here(const PackedAabb& narrow) const noexcept {
+    const QuantizedAabb other = narrow.whole();
     std::uint32_t apart = 0, elsewhere = 0;
     for (std::size_t d = 0; d < 3; ++d) {
       apart |= (other.upper[d] - box_.lower[d]) | (box_.upper[d] - other.lower[d]);
@@ -72,7 +72,7 @@ class BoxInCell {
   }
 
  private:
-  const QuantumBox box_;
+  const QuantizedAabb box_;
   std::array<std::uint32_t, 3> cell_;
 };
 #endif
@@ -101,13 +101,13 @@ ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
 struct SweptGrid::Insertion {
   static constexpr std::size_t kFound = 256;
 
-  std::span<const NarrowBox> boxes;
+  std::span<const PackedAabb> boxes;
   std::vector<BodyPair>& pairs;
   GridCounts& counts;
   std::array<BodyPair, kFound> found;
   std::size_t count = 0;
 
-  Insertion(std::span<const NarrowBox> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
+  Insertion(std::span<const PackedAabb> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
       : boxes(all), pairs(to), counts(of) {}
   void hand_over() {
     if (count == 0) return;
@@ -234,7 +234,7 @@ void SweptGrid::for_each_part(std::span<const BodyIndex> bodies, const BoxBlock&
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
-                       std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs) {
+                       std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs) {
   Insertion insertion(boxes, pairs, counts_);
   for_each_part(bodies, block, [&](const Some& some) {
     Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
@@ -246,7 +246,7 @@ void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const Bo
   insertion.hand_over();
 }
 
-void SweptGrid::finish(Queue& queue, std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs) {
+void SweptGrid::finish(Queue& queue, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs) {
   Insertion insertion(boxes, pairs, counts_);
   Batch& waiting = queue.batches_[queue.current_];
   insert_batch(insertion, waiting);
@@ -254,7 +254,7 @@ void SweptGrid::finish(Queue& queue, std::span<const NarrowBox> boxes, std::vect
   insertion.hand_over();
 }
 
-void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
+void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const PackedAabb> boxes,
                         VisitsByPart& visits) const {
   Batch batch;
   std::array<Visit, kMaxVisits> rest;
@@ -299,7 +299,7 @@ void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visit
   }
 }
 
-void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes,
+void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const PackedAabb> boxes,
                             std::vector<BodyPair>& pairs, GridCounts& counts) {
   Insertion insertion(boxes, pairs, counts);
   insert_visits(insertion, visits);

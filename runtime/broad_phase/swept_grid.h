@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "broad_phase/body_pool.h"
-#include "broad_phase/box_lattice.h"
+#include "broad_phase/quantized_grid.h"
 #include "orchard/runtime/execution.h"
 
 namespace orchard::runtime::detail {
@@ -79,18 +79,18 @@ class SweptGrid {
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
   // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMaxCellsPerAxis
   // cells along an axis. Only finish() makes sure that all pairs have been found.
-  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
+  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const PackedAabb> boxes,
               std::vector<BodyPair>& pairs);
-  void finish(Queue& queue, std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs);
+  void finish(Queue& queue, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs);
   // The same in two steps, for many bodies: the visits that block's bodies make, at any number of threads, appended;
-  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
+  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const PackedAabb> boxes,
                VisitsByPart& visits) const;
   // and visits to one part, in the order in which they are to be made, at one thread for each part at most.
-  void insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, std::vector<BodyPair>& pairs,
+  void insert_part(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
                    GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
   class Removals;                                 // of a few bodies at a time
-  void prepare_removal(BodyIndex body, const QuantumBox& box, Removals& removals) const noexcept;  // starts loading
+  void prepare_removal(BodyIndex body, const QuantizedAabb& box, Removals& removals) const noexcept;  // starts loading
   void remove(Removals& removals) noexcept;
 
   // Those that have entries in the cell, and in others that share its line; a body as often as it has.
@@ -144,7 +144,7 @@ class SweptGrid {
   void code(Coded& coded, const Some& some) const noexcept;
   static AxisBits bits_of(const Numbers& axes, std::size_t count) noexcept;
   void add_corners(Batch& batch, const Coded& coded, const AxisBits& bits) const noexcept;
-  Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
+  Visit* many_visits_of(BodyIndex body, const QuantizedAabb& box, Visit* visits) const noexcept;
   template <typename Kind>
   void insert_beyond(Insertion& insertion, const Visit& visit);
   void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);

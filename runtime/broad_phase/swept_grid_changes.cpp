@@ -136,7 +136,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
 }
 
 // Without branches where a body takes two cells along an axis at most: nobody can tell which do.
-void SweptGrid::prepare_removal(BodyIndex body, const QuantumBox& box, Removals& removals) const noexcept {
+void SweptGrid::prepare_removal(BodyIndex body, const QuantizedAabb& box, Removals& removals) const noexcept {
   Cell first, more;  // cells, and how many beyond
   for (std::size_t d = 0; d < 3; ++d) {
     first[d] = box.lower[d] >> kQuantumBits;

@@ -141,7 +141,7 @@ void SweptGrid::encode(Batch& batch, const Some& some) const noexcept {
   per_machine([&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, some); });
 }
 
-SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept {
+SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantizedAabb& box, Visit* visits) const noexcept {
   Cell first, count;
   for (std::size_t d = 0; d < 3; ++d) {
     first[d] = box.lower[d] >> kQuantumBits;

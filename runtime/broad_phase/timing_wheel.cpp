@@ -106,7 +106,7 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
   }
   std::uint32_t count = bucket.in_first;
   for (std::uint32_t part = bucket.events; part != kNone; count = kEventsInPart) {  // the last one added comes first
-    Events& some = parts_[part];
+    KineticBroadPhase& some = parts_[part];
     const std::uint32_t next = some.next;
     if (next != kNone) prefetch(&parts_[next]);
     while (count > 0) append(events, some.events[--count]);

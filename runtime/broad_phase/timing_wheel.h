@@ -55,11 +55,11 @@ class TimingWheel {
         ids;  // kNoIndex from the first one that is missing; or a run: its first one, kRun, how many
   };
   static constexpr std::uint32_t kEventsInPart = 5;
-  struct alignas(64) Events {  // a part of a list, one cache line; all parts but a list's first one are full
+  struct alignas(64) KineticBroadPhase {  // a part of a list, one cache line; all parts but a list's first one are full
     std::array<PairEvent, kEventsInPart> events;
     std::uint32_t next;
   };
-  static_assert(sizeof(Events) == 64);
+  static_assert(sizeof(KineticBroadPhase) == 64);
   struct Bucket {
     std::uint32_t bodies = kNone, events = kNone;
     std::uint32_t in_first : 4 = kEventsInPart;  // events in the first part; as if full where there is none
@@ -76,7 +76,7 @@ class TimingWheel {
   std::array<Bucket, kWheelSteps> buckets_{};
   std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
   std::vector<Bodies> lines_;
-  std::vector<Events> parts_;
+  std::vector<KineticBroadPhase> parts_;
   std::uint32_t free_line_ = kNone, free_part_ = kNone;
 };
 

@@ -17,7 +17,7 @@ constexpr double kMostLines = 0.5;       // for each body
 // More of them where boxes take several cells each, so that fewer lines overflow: as many as a core's cache holds well,
 // and not where pairs take much memory as it is.
 constexpr double kLinesPerCell = 0.9, kCellsAsEver = 1.2, kLinesInCache = 11000, kManyPairsPerBody = 1;
-constexpr double kMostCells = 0x1p23;  // along the world, as a sample shows it: a quarter of the lattice's
+constexpr double kMostCells = 0x1p23;  // along the world, as a sample shows it: a quarter of the quantized grid's
 // Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
 // evenly one in each unit of space, have another one nearer than this.
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
@@ -170,8 +170,8 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
   for (double& sum : mean.speed) sum /= n;
   double spacing = spread.spacing;
   if (!(spacing > 0) || !std::isfinite(spacing)) spacing = std::max(4 * mean.radius, 1e-300);
-  // Where clusters are tiny in their world, cells as small as these would leave the others outside of the lattice, and
-  // those are compared with everything.
+  // Where clusters are tiny in their world, cells as small as these would leave the others outside of the quantized
+  // grid, and those are compared with everything.
   const double least_cell = *std::max_element(spread.extent.begin(), spread.extent.end()) / kMostCells;
 
   const auto axes = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), false));

@@ -8,8 +8,8 @@ namespace {
 constexpr std::size_t kNearAtOnce = 512;  // near pairs that are tested together
 
 // By a quarter at most, along each axis.
-bool hardly_longer(const QuantumBox& box, const QuantumBox& than) noexcept {
-  const auto length = [](const QuantumBox& of, std::size_t d) { return std::uint64_t{of.upper[d]} - of.lower[d]; };
+bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept {
+  const auto length = [](const QuantizedAabb& of, std::size_t d) { return std::uint64_t{of.upper[d]} - of.lower[d]; };
   for (std::size_t d = 0; d < 3; ++d) {
     if (4 * length(box, d) > 5 * length(than, d)) return false;
   }
@@ -63,7 +63,7 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bo
   const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
   bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
   const auto durations = std::span(block.durations).first(motions.size());
-  valid = block.lattice.boxes(motions, durations, block.boxes, !parts_.boxes.few()) && valid;
+  valid = block.quantized_grid.boxes(motions, durations, block.boxes, !parts_.boxes.few()) && valid;
   const auto is_one = [](const Motion& motion) { return is_valid(motion); };
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
@@ -83,7 +83,7 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   parts_.overlaps.mark_updated(bodies);
   const bool notes_spheres = parts_.pairs.notes_spheres();
   for (std::size_t i = 0; notes_spheres && i < bodies.size(); ++i) {
-    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
+    parts_.pairs.note_sphere(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
   }
   parts_.planner.note(motions);
   same = note_boxes(block, bodies) && same;
@@ -118,12 +118,12 @@ void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
   const auto box_for = [&](Step wanted) {
     const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
     BoxBlock box;
-    block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, false);
+    block.quantized_grid.boxes({&motions_[i], 1}, {&duration, 1}, box, false);
     return box.get(0);
   };
-  const QuantumBox least = box_for(1);
+  const QuantizedAabb least = box_for(1);
   const bool large = !BoxIndex::fits(least);
-  QuantumBox box = block.boxes.get(i);
+  QuantizedAabb box = block.boxes.get(i);
   while (steps > 1 && !(large ? hardly_longer(box, least) : BoxIndex::fits(box))) {
     steps = (steps + 1) / 2;
     box = box_for(steps);
@@ -190,7 +190,7 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
   Block update;
   update.now = now;
   update.from = from;
-  update.lattice = parts_.boxes.lattice_at(now);
+  update.quantized_grid = parts_.boxes.quantized_grid_at(now);
   BoxIndex::Queue queue;
   std::array<BodyIndex, kBlock> known;
   for (std::size_t done = 0; done < bodies.size();) {

@@ -17,7 +17,7 @@ class WindowUpdates {
     BoxIndex& boxes;
     TimingWheel& wheel;
     OverlapList& overlaps;
-    Refusals& refusals;
+    InvalidBodies& refusals;
     Planner& planner;
     NearPairs& pairs;
   };
@@ -77,7 +77,7 @@ class WindowUpdates {
 struct WindowUpdates::Block {
   Step now;                              // the motions are of this step,
   Step from;                             // and count from this one
-  Lattice lattice;                       // at `now`
+  QuantizedGrid quantized_grid;          // at `now`
   Step common = kUpdateDue;              // what all ends are, and durations until then; kUpdateDue: they are not
   std::array<Step, kBlock> ends;         // of the bodies' windows
   std::array<double, kBlock> durations;  // until then, of which the last step is not

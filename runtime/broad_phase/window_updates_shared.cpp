@@ -29,7 +29,7 @@ struct WindowUpdates::Chunk {
   std::vector<BodyIndex> unknown;  // what holds from the later step on
   std::vector<BodyIndex> rest;     // not valid, or too large: updated one by one
   std::vector<Motion> sampled;     // for the plan
-  QuantumBox extent;
+  QuantizedAabb extent;
   BodyPool::Answers answers;
   std::uint64_t asked;
 
@@ -126,7 +126,7 @@ void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex
     parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
   }
   for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
-    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
+    parts_.pairs.note_sphere(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
   }
   for (std::size_t i = 0; i < count;) {
     const std::size_t more = alike ? count : 1;
@@ -197,7 +197,7 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
   Block update;
   update.now = now;
   update.from = from;
-  update.lattice = parts_.boxes.lattice_at(now);
+  update.quantized_grid = parts_.boxes.quantized_grid_at(now);
   run_all(kChunks, [&](std::size_t i) {
     const std::size_t begin = std::min(bodies.size(), i * size), end = std::min(bodies.size(), begin + size);
     Block block = update;

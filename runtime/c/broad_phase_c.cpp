@@ -225,10 +225,10 @@ orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t
 uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t) {
   return guarded([&]() -> uint64_t { return world->world.skip_to(t); }, []() -> uint64_t { return 0; });
 }
-size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
-                                   size_t* meetings, size_t* overlaps) {
+size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
+                                        size_t* meetings, size_t* overlaps) {
   std::array<rt::StepsAhead, 254> steps;
-  const std::size_t known = world->world.foresee(time, std::span(steps).first(std::min(count, steps.size())));
+  const std::size_t known = world->world.predict_load(time, std::span(steps).first(std::min(count, steps.size())));
   for (std::size_t i = 0; i < known; ++i) {
     if (updates != nullptr) updates[i] = steps[i].updates;
     if (meetings != nullptr) meetings[i] = steps[i].meetings;

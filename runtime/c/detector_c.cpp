@@ -306,9 +306,9 @@ uint64_t orchard_detector_promises_broken(const orchard_detector* detector) {
   return detector->detector->promises_broken();
 }
 
-size_t orchard_detector_foresee(const orchard_detector* detector, size_t count, double* pairs, double* work) {
+size_t orchard_detector_predict_load(const orchard_detector* detector, size_t count, double* pairs, double* work) {
   std::array<rt::StepLoad, 254> loads;
-  const std::size_t known = detector->detector->foresee(std::span(loads).first(std::min(count, loads.size())));
+  const std::size_t known = detector->detector->predict_load(std::span(loads).first(std::min(count, loads.size())));
   for (std::size_t i = 0; i < known; ++i) {
     if (pairs != nullptr) pairs[i] = loads[i].pairs;
     if (work != nullptr) work[i] = loads[i].work;

@@ -24,7 +24,7 @@ constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
 // How far a point of the tree's triangles is at most from where it was, both places relative to the other body.
 double displacement(const PreparedTree& tree, const Pose& before, const Pose& now) noexcept {
-  const BallSlabBlock& root = tree.tree.ball_slabs[0];
+  const ObbNodeBlock& root = tree.tree.obb_nodes[0];
   Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   for (std::size_t i = 0; i < 3; ++i) middle[i] += tree.tree.origin[i];
   return length(minus(transform(now, middle), transform(before, middle))) +
@@ -235,7 +235,7 @@ struct Coherence {
     } else {
       memory.witness_count = 0;
     }
-    const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
+    const bool have_triangles = !pair.a().tree.obb_nodes.empty() && !pair.b().tree.obb_nodes.empty();
     memory.clearance = answer == Answer::no && have_triangles ? query_of(workspace.narrow).lower_bound() / a.scale : 0;
     if (memory.clearance > 0) memory.relative = find_relative();
     return query_of(workspace.narrow).verdict();

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/minimum_translation.h"
 #include "collision/outermost_points.h"
 #include "collision/pair_query.h"
 #include "collision/solid_contacts.h"
 #include "collision/triangle_cut.h"
-#include "collision/way_out.h"
 #include "collision/workspace_scratch.h"
 #include "math/vector_functions.h"
 #include "tree/principal_axes.h"
@@ -17,11 +17,11 @@ namespace orchard::runtime {
 using detail::along;
 using detail::cross;
 using detail::kSameLine;
+using detail::MinimumTranslation;
+using detail::MinimumTranslationSearch;
 using detail::minus;
 using detail::PlacedPair;
 using detail::SolidBox;
-using detail::WayOut;
-using detail::WayOutSearch;
 
 namespace {
 
@@ -108,7 +108,7 @@ struct Directions {
 };
 
 // The directions to begin with, the most promising last.
-void first_directions(const WayOutSearch& search, Directions& directions) noexcept {
+void first_directions(const MinimumTranslationSearch& search, Directions& directions) noexcept {
   const std::span<const Cut> cuts = search.cuts;
   const Vec3 by_normals = facing(cuts, 1e-9 * search.size), by_plane = flattest(cuts);
   if (length(by_normals) > 0) directions.add(by_normals);
@@ -140,7 +140,7 @@ double least_nudge(const PairQuery& narrow, double size) noexcept {
 }
 
 // Where surfaces do not meet: a point of one that is inside a box, as the only point. False if there is none.
-bool add_piece_inside(const WayOutSearch& search, const Pose& world, Manifold& manifold) noexcept {
+bool add_piece_inside(const MinimumTranslationSearch& search, const Pose& world, Manifold& manifold) noexcept {
   const PreparedTree &first = search.pair.first, &second = search.pair.second;
   for (const SolidBox& solid : search.solids) {
     const Vec3* const piece = detail::piece_inside(search, solid);
@@ -272,7 +272,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
     if (exchanged) solids[i].is_first = !solids[i].is_first;
   }
   const double size = both.first.extent + both.second.extent * both.relative.scale;
-  const WayOutSearch search{
+  const MinimumTranslationSearch search{
       both, scratch->walk, cuts, std::span(solids.data(), boxes.size()), size, least_nudge(narrow, size)};
   if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
@@ -281,8 +281,8 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   result.answer = Answer::yes;
   Directions directions;
   first_directions(search, directions);
-  WayOut out{directions.some[0], 0, directions.some[0], true};
-  if (options.depth) out = least_way_out(search, directions.all(), options.refinements);
+  MinimumTranslation out{directions.some[0], 0, directions.some[0], true};
+  if (options.depth) out = minimum_translation(search, directions.all(), options.refinements);
   result.complete = out.ended;
   result.depth = out.way * world.scale;
   result.normal = rotate(world, exchanged ? -out.direction : out.direction);

@@ -13,7 +13,7 @@ using namespace detail;
 
 namespace {
 
-double reach_along(const BallSlabBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+double reach_along(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
   const double cosine =
       std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]});
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + 1e-5;  // the normal is unit to 1e-6
@@ -96,7 +96,7 @@ class Solid {
 SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& normal,
                            double offset) noexcept {
   SurfacePoint best;
-  if (tree.ball_slabs.empty()) return best;
+  if (tree.obb_nodes.empty()) return best;
   const SurfacePoint unknown{-std::numeric_limits<double>::infinity(), {}, kNoTriangle};
   const ScaledVector scaled(normal);
   const double size = length(scaled.value), height_of_plane = std::ldexp(offset, scaled.power);
@@ -114,9 +114,9 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
   double least = std::numeric_limits<double>::infinity();
   Vec3 deepest{};
   const double rounding =
-      kRounding * (length({tree.ball_slabs[0].x[0], tree.ball_slabs[0].y[0], tree.ball_slabs[0].z[0]}) +
-                   double{tree.ball_slabs[0].radius[0]});
-  stack[count++] = {-std::numeric_limits<double>::infinity(), tree.ball_slabs[0].child[0]};
+      kRounding * (length({tree.obb_nodes[0].x[0], tree.obb_nodes[0].y[0], tree.obb_nodes[0].z[0]}) +
+                   double{tree.obb_nodes[0].radius[0]});
+  stack[count++] = {-std::numeric_limits<double>::infinity(), tree.obb_nodes[0].child[0]};
   while (count > 0) {
     const Entry entry = stack[--count];
     if (entry.lower > least) continue;
@@ -132,7 +132,7 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
                     });
       continue;
     }
-    const BallSlabBlock& block = tree.ball_slabs[entry.child];
+    const ObbNodeBlock& block = tree.obb_nodes[entry.child];
     const std::size_t begin = count;
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       const Vec3 center = {block.x[lane], block.y[lane], block.z[lane]};
@@ -156,7 +156,7 @@ ShapeContact touches_convex(const TreeView& tree, const Pose& pose, const Convex
   Solid solid;
   if (!solid.place(frame, shape, shape_pose)) return result;
   result.answer = Answer::no;
-  if (tree.ball_slabs.empty()) return result;
+  if (tree.obb_nodes.empty()) return result;
   const Vec3 middle = solid.middle();
   const Segment segment(middle, middle);
   const double reach = solid.radius();

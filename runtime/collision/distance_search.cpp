@@ -5,9 +5,9 @@
 #include <cmath>
 #include <new>
 
-#include "collision/kernels/ball_slab_block.h"
-#include "collision/kernels/least_last.h"
+#include "collision/kernels/farthest_first.h"
 #include "collision/kernels/node_box.h"
+#include "collision/kernels/obb_node_block.h"
 #include "collision/triangle_distance.h"
 #include "tree/tree_nodes.h"
 
@@ -34,7 +34,7 @@ std::uint64_t ordered(float value) noexcept {
 }
 
 float radius_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.ball_slabs[node / kBlockWidth].radius[node % kBlockWidth];
+  return tree.obb_nodes[node / kBlockWidth].radius[node % kBlockWidth];
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ bool DistanceSearch::make_room() noexcept {
                                                           pair_.second_->tree.triangle_tree_depth + 1) +
                               1;
   if (!pair_.has_triangles() || deepest <= stack_room_) return true;
-  stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
+  stack_.reset(new (std::nothrow) ObbNodePair[deepest]);
   stack_room_ = stack_ ? deepest : 0;
   return stack_ != nullptr;
 }
@@ -113,7 +113,7 @@ void DistanceSearch::refine(const Budget& budget) noexcept {
   PairBudget tracker(budget);
   const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
   while (stack_size_ > 0 && nearest_ > enough_ && !tracker.exhausted()) {
-    const BallSlabPair pair = stack_[--stack_size_];
+    const ObbNodePair pair = stack_[--stack_size_];
     if (!may_be_nearer(double{pair.lower})) {
       min_lower_ = std::min(min_lower_, double{pair.lower});
       continue;
@@ -143,7 +143,7 @@ void DistanceSearch::leave_the_rest() noexcept {
 }
 
 // Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
-bool DistanceSearch::surely_near(const BallSlabPair& pair) noexcept {
+bool DistanceSearch::surely_near(const ObbNodePair& pair) noexcept {
   const double radii = double{radius_of(pair_.first_->tree, pair.a)} +
                        double{radius_of(pair_.second_->tree, pair.b)} * double{pair_.placement_.scale};
   if (radii > enough_) return false;
@@ -160,17 +160,17 @@ bool DistanceSearch::surely_near(const BallSlabPair& pair) noexcept {
 }
 
 // In place of a pair, those of its children that may be nearer than the best, the nearest last.
-void DistanceSearch::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
+void DistanceSearch::expand(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept {
   const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
   const detail::Placement& placement = pair_.placement_;
   if (limit_ < double{kCoordinateLimit}) return expand_within(pair, block, second);
   const float margin = placement.box_margin;
   detail::BoxGaps gaps;
   if (second) {
-    detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
+    detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.obb_nodes[block],
                      placement.scale, margin, gaps);
   } else {
-    detail::box_gaps(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
+    detail::box_gaps(pair_.moved_box(pair.b), first.obb_nodes[block], 1, margin, gaps);
   }
   const std::size_t begin = stack_size_;
   for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
@@ -184,31 +184,31 @@ void DistanceSearch::expand(const BallSlabPair& pair, std::uint32_t block, bool 
     std::size_t at = stack_size_++;
     for (; at > begin && stack_[at - 1].lower < lower; --at) stack_[at] = stack_[at - 1];
     const std::uint32_t node = block * kBlockWidth + lane;
-    stack_[at] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+    stack_[at] = second ? ObbNodePair{lower, pair.a, node} : ObbNodePair{lower, node, pair.b};
   }
 }
 
 // The same where there is a limit: those that may be within it, the nearest last.
-void DistanceSearch::expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
+void DistanceSearch::expand_within(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept {
   const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
   const detail::Placement& placement = pair_.placement_;
   const float margin = placement.box_margin + reach_;
   detail::BoxGaps gaps;
   if (second) {
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.obb_nodes[block],
                           placement.scale, margin, gaps);
   } else {
-    detail::meeting_boxes(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
+    detail::meeting_boxes(pair_.moved_box(pair.b), first.obb_nodes[block], 1, margin, gaps);
   }
   if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
-  BallSlabPair found[kBlockWidth];
-  detail::LeastLast order;
+  ObbNodePair found[kBlockWidth];
+  detail::FarthestFirst order;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     const float sum = gaps.gap[lane] + reach_, gap = sum - std::fabs(sum) * kSumRounding;
     const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
     const std::uint32_t node = block * kBlockWidth + lane;
-    found[order.count] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+    found[order.count] = second ? ObbNodePair{lower, pair.a, node} : ObbNodePair{lower, node, pair.b};
     order.add(lower);
   }
   for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = found[i];
@@ -216,7 +216,7 @@ void DistanceSearch::expand_within(const BallSlabPair& pair, std::uint32_t block
 }
 
 // The nearest ones first: each found makes fewer of the others worth a test.
-void DistanceSearch::compare_leaves(const BallSlabPair& pair) noexcept {
+void DistanceSearch::compare_leaves(const ObbNodePair& pair) noexcept {
   const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
   const TriangleBlock& lanes = first.triangle_blocks[slab_child(first, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second.triangle_blocks[slab_child(second, pair.b) & ~kLeafBit];
@@ -254,7 +254,7 @@ void DistanceSearch::compare_leaves(const BallSlabPair& pair) noexcept {
 }
 
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
-void DistanceSearch::find_within(const BallSlabPair& pair, const TriangleBlock& lanes,
+void DistanceSearch::find_within(const ObbNodePair& pair, const TriangleBlock& lanes,
                                  const TriangleBlock& rows) noexcept {
   detail::Placement near = pair_.placement_;
   near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));

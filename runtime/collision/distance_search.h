@@ -30,7 +30,7 @@ class DistanceSearch {
   Points points() const noexcept;
 
  private:
-  struct BallSlabPair {
+  struct ObbNodePair {
     float lower;
     std::uint32_t a, b;
   };
@@ -39,19 +39,19 @@ class DistanceSearch {
   bool has_room() const noexcept { return pair_.has_triangles() && stack_; }
   void begin(const Pose& a, const Pose& b, double limit) noexcept;
   void leave_the_rest() noexcept;
-  bool surely_near(const BallSlabPair& pair) noexcept;
+  bool surely_near(const ObbNodePair& pair) noexcept;
   bool may_be_nearer(double lower) const noexcept;
-  void expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
-  void expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
-  void compare_leaves(const BallSlabPair& pair) noexcept;
-  void find_within(const BallSlabPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
+  void expand(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept;
+  void expand_within(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept;
+  void compare_leaves(const ObbNodePair& pair) noexcept;
+  void find_within(const ObbNodePair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
   void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
                          bool may_meet) noexcept;
   void find_cut() noexcept;
   void report() noexcept;
 
   PairQuery pair_;  // the bodies' order and placement
-  std::unique_ptr<BallSlabPair[]> stack_;
+  std::unique_ptr<ObbNodePair[]> stack_;
   std::size_t stack_size_ = 0;
   std::size_t stack_room_ = 0;
   Tolerance tolerance_;

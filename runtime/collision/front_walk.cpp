@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/kernels/least_last.h"
+#include "collision/kernels/farthest_first.h"
 #include "math/vector_functions.h"
 
 // Rounding of gaps that close. A gap was certified, rounding included, for the second body as the double pose placed it
@@ -51,13 +51,13 @@ void FrontWalk::run(const Budget& budget) noexcept {
 }
 
 bool FrontWalk::fits() const noexcept {
-  return front_.first_ == first_.ball_slabs.data() && front_.second_ == second_.ball_slabs.data() &&
+  return front_.first_ == first_.obb_nodes.data() && front_.second_ == second_.obb_nodes.data() &&
          front_.fingerprints_[0] == narrow_.first().fingerprint &&
          front_.fingerprints_[1] == narrow_.second().fingerprint;
 }
 
 void FrontWalk::begin() noexcept {
-  front_.first_ = first_.ball_slabs.data(), front_.second_ = second_.ball_slabs.data();
+  front_.first_ = first_.obb_nodes.data(), front_.second_ = second_.obb_nodes.data();
   front_.fingerprints_[0] = narrow_.first().fingerprint;
   front_.fingerprints_[1] = narrow_.second().fingerprint;
   front_.relative_ = relative_;
@@ -84,7 +84,7 @@ bool FrontWalk::advance() noexcept {
   }
   // As in coherence.cpp: two rotations differ by one about an axis.
   const double swing = std::sqrt(relative_.scale == before.scale ? square / 2 : square);
-  const BallSlabBlock& root = second_.ball_slabs[0];
+  const ObbNodeBlock& root = second_.obb_nodes[0];
   const Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   Vec3 way{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -129,15 +129,15 @@ FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
 
 // Eight at a time: those that are apart along another direction stay, the others make room for what is below them.
 FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
-  BallSlabBlock firsts, seconds;
+  ObbNodeBlock firsts, seconds;
   BoxAxes axes;
   for (std::uint32_t from = 0; from < node_count_; from += kBlockWidth) {
     const std::uint32_t count = std::min(node_count_ - from, kBlockWidth);
     for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
       const std::uint32_t slot = nodes_[from + (i < count ? i : 0)];
       const detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
-      const auto copy = [i](BallSlabBlock& to, const TreeView& tree, std::uint32_t node) {
-        const BallSlabBlock& of = tree.ball_slabs[node / kBlockWidth];
+      const auto copy = [i](ObbNodeBlock& to, const TreeView& tree, std::uint32_t node) {
+        const ObbNodeBlock& of = tree.obb_nodes[node / kBlockWidth];
         const std::uint32_t lane = node % kBlockWidth;
         to.x[i] = of.x[lane], to.y[i] = of.y[lane], to.z[i] = of.z[lane];
         to.nx[i] = of.nx[lane], to.ny[i] = of.ny[lane], to.nz[i] = of.nz[lane];
@@ -174,7 +174,7 @@ FrontWalk::Outcome FrontWalk::walk(const NodePair& from) noexcept {
   while (stack_size_ > 0) {
     if (tracker_->exhausted()) return keep_stack(), Outcome::interrupted;
     const NodePair pair = stack_[--stack_size_];
-    const std::uint32_t a = detail::ball_slab_child(first_, pair.a), b = detail::ball_slab_child(second_, pair.b);
+    const std::uint32_t a = detail::obb_node_child(first_, pair.a), b = detail::obb_node_child(second_, pair.b);
     if (a & b & kLeafBit) {
       LeafAxis axis;
       const bool meet = leaves_meet(pair, nullptr, axis);
@@ -182,16 +182,16 @@ FrontWalk::Outcome FrontWalk::walk(const NodePair& from) noexcept {
       if (meet) return keep_stack(), Outcome::meeting;
       continue;
     }
-    const float radius = first_.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
-    const float other = second_.ball_slabs[pair.b / kBlockWidth].radius[pair.b % kBlockWidth] * placement_.scale;
+    const float radius = first_.obb_nodes[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
+    const float other = second_.obb_nodes[pair.b / kBlockWidth].radius[pair.b % kBlockWidth] * placement_.scale;
     expand(pair, (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < other));
   }
   return Outcome::apart;
 }
 
 bool FrontWalk::leaves_meet(const NodePair& pair, const Axis* last, LeafAxis& axis) noexcept {
-  const TriangleBlock& lanes = first_.triangle_blocks[detail::ball_slab_child(first_, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second_.triangle_blocks[detail::ball_slab_child(second_, pair.b) & ~kLeafBit];
+  const TriangleBlock& lanes = first_.triangle_blocks[detail::obb_node_child(first_, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second_.triangle_blocks[detail::obb_node_child(second_, pair.b) & ~kLeafBit];
   const detail::NodeBox lane_box = detail::node_box_at(first_, pair.a),
                         row_box = detail::moved(detail::node_box_at(second_, pair.b), placement_);
   const detail::LeafPair leaves = {lanes, rows, lane_box, row_box};
@@ -203,14 +203,14 @@ bool FrontWalk::leaves_meet(const NodePair& pair, const Axis* last, LeafAxis& ax
 }
 
 void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
-  const std::uint32_t block = detail::ball_slab_child(open_second ? second_ : first_, open_second ? pair.b : pair.a);
+  const std::uint32_t block = detail::obb_node_child(open_second ? second_ : first_, open_second ? pair.b : pair.a);
   BoxAxes axes;
   const float margin = placement_.box_margin;
   if (open_second) {
-    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_), second_.ball_slabs[block],
+    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_), second_.obb_nodes[block],
                      &placement_, margin, axes);
   } else {
-    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.ball_slabs[block], nullptr,
+    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.obb_nodes[block], nullptr,
                      margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
@@ -222,7 +222,7 @@ void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
         {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
   }
   std::uint32_t nodes[kBlockWidth];
-  detail::LeastLast order;
+  detail::FarthestFirst order;
   for (std::uint32_t left = axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     nodes[order.count] = block * kBlockWidth + lane;
@@ -252,7 +252,7 @@ void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) 
   }
   detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
   const std::uint32_t lane = slot % kBlockWidth;
-  const BallSlabBlock& of = second_.ball_slabs[b / kBlockWidth];
+  const ObbNodeBlock& of = second_.obb_nodes[b / kBlockWidth];
   const std::uint32_t at = b % kBlockWidth;
   block.x[lane] = of.x[at], block.y[lane] = of.y[at], block.z[lane] = of.z[at], block.radius[lane] = of.radius[at];
   block.ux[lane] = u[0], block.uy[lane] = u[1], block.uz[lane] = u[2];

@@ -41,7 +41,7 @@ class FrontWalk {
   }
   std::uint32_t block_count() const noexcept { return (front_.used_ + kBlockWidth - 1) / kBlockWidth; }
   bool is_leaf_pair(std::uint32_t a, std::uint32_t b) const noexcept {
-    return (detail::ball_slab_child(first_, a) & detail::ball_slab_child(second_, b) & kLeafBit) != 0;
+    return (detail::obb_node_child(first_, a) & detail::obb_node_child(second_, b) & kLeafBit) != 0;
   }
   Outcome settle_leaves() noexcept;
   Outcome settle_nodes() noexcept;

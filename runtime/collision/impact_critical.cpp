@@ -19,7 +19,7 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
   Scratch& scratch = *workspace_.scratch();
   Scratch::TimedPair* const stack = scratch.timed.get();
   std::size_t size = 0;
-  stack[size++] = {0, 0, 0, moved(ball_slab_at(second().ball_slabs[0], 0), narrow_.placement())};
+  stack[size++] = {0, 0, 0, moved(obb_node_at(second().obb_nodes[0], 0), narrow_.placement())};
   while (size > 0) {
     if (tracker.exhausted()) {
       for (std::size_t i = 0; i < size; ++i)
@@ -28,7 +28,7 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
     }
     const Scratch::TimedPair top = stack[--size];
     if (critical.leaves(double{top.time})) continue;
-    const std::uint32_t a = ball_slab_child(first(), top.a), b = ball_slab_child(second(), top.b);
+    const std::uint32_t a = obb_node_child(first(), top.a), b = obb_node_child(second(), top.b);
     if (a & b & kLeafBit) {
       compare_leaves(top, critical);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
@@ -44,17 +44,17 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
 void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept {
   Scratch::TimedPair* const stack = workspace_.scratch()->timed.get();
   const Placement& placement = narrow_.placement();
-  const std::uint32_t a = ball_slab_child(first(), top.a), b = ball_slab_child(second(), top.b);
-  const BallSlabBlock& own = first().ball_slabs[top.a / kBlockWidth];
+  const std::uint32_t a = obb_node_child(first(), top.a), b = obb_node_child(second(), top.b);
+  const ObbNodeBlock& own = first().obb_nodes[top.a / kBlockWidth];
   const std::uint32_t own_lane = top.a % kBlockWidth;
   const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[own_lane] < top.second.radius);
   const std::uint32_t block = open_second ? b : a;
   const auto margin = static_cast<float>((double{placement.margin} + margin_) * (1 + 1e-6));
-  BallSlabTimes times;
+  ObbNodeTimes times;
   if (open_second) {
-    ball_slab_times(ball_slab_at(own, own_lane), second().ball_slabs[block], &placement, closing_, margin, times);
+    obb_node_times(obb_node_at(own, own_lane), second().obb_nodes[block], &placement, closing_, margin, times);
   } else {
-    ball_slab_times(top.second, first().ball_slabs[block], nullptr, closing_, margin, times);
+    obb_node_times(top.second, first().obb_nodes[block], nullptr, closing_, margin, times);
   }
   const std::size_t begin = size;
   for (std::uint32_t left = times.used; left != 0; left &= left - 1) {
@@ -70,10 +70,10 @@ void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Crit
 }
 
 void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept {
-  const TriangleBlock& lanes = first().triangle_blocks[ball_slab_child(first(), top.a) & ~kLeafBit];
-  const TriangleBlock& rows = second().triangle_blocks[ball_slab_child(second(), top.b) & ~kLeafBit];
-  const BallSlab p = ball_slab_at(first().ball_slabs[top.a / kBlockWidth], top.a % kBlockWidth);
-  const auto reach = [](const BallSlab& slab, const Vec3& center) {
+  const TriangleBlock& lanes = first().triangle_blocks[obb_node_child(first(), top.a) & ~kLeafBit];
+  const TriangleBlock& rows = second().triangle_blocks[obb_node_child(second(), top.b) & ~kLeafBit];
+  const ObbNode p = obb_node_at(first().obb_nodes[top.a / kBlockWidth], top.a % kBlockWidth);
+  const auto reach = [](const ObbNode& slab, const Vec3& center) {
     const Vec3 from = minus({slab.x, slab.y, slab.z}, center);
     return (length_of(from) + double{slab.radius}) * (1 + 1e-5);
   };

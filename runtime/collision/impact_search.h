@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "collision/kernels/ball_slab_time.h"
+#include "collision/kernels/obb_node_time.h"
 #include "collision/pair_query.h"
 #include "collision/workspace_scratch.h"
 #include "math/vector_functions.h"

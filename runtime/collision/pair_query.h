@@ -97,7 +97,7 @@ class PairQuery {
     return arguments_exchanged_ ? Vec3{-u[0], -u[1], -u[2]} : u;
   }
   void add_work(std::uint64_t work) noexcept { work_ += work; }
-  bool has_triangles() const noexcept { return !first_->tree.ball_slabs.empty() && !second_->tree.ball_slabs.empty(); }
+  bool has_triangles() const noexcept { return !first_->tree.obb_nodes.empty() && !second_->tree.obb_nodes.empty(); }
   bool has_last_level() const noexcept { return has_triangles() && stack_; }  // memory for its stack, too
   NodePair* stack() const noexcept { return stack_.get(); }
 
@@ -167,7 +167,7 @@ class PairQuery {
   bool refine_spheres(PairBudget& tracker) noexcept;
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
-  bool refine_ball_slabs(PairBudget& tracker) noexcept;
+  bool refine_obb_nodes(PairBudget& tracker) noexcept;
   void start_near(const NodePair& leaves) noexcept;
   bool find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, detail::BoxGaps& gaps) noexcept;
   void leave_out_apart(const NodePair& pair, bool second, std::uint32_t block, detail::BoxGaps& gaps) const noexcept;

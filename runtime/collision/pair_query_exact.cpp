@@ -1,9 +1,9 @@
 #include <array>
 #include <bit>
 
-#include "collision/kernels/ball_slab_block.h"
-#include "collision/kernels/least_last.h"
+#include "collision/kernels/farthest_first.h"
 #include "collision/kernels/node_box.h"
+#include "collision/kernels/obb_node_block.h"
 #include "collision/pair_query.h"
 #include "tree/tree_nodes.h"
 
@@ -33,15 +33,15 @@ detail::NodeBox PairQuery::moved_box(std::uint32_t node) const noexcept {
 
 // The larger node's children against the other node, in the children's frame. True if they are the second tree's.
 inline bool PairQuery::find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) noexcept {
-  const BallSlabBlock &of_a = slab_block(first_->tree, pair.a), &of_b = slab_block(second_->tree, pair.b);
+  const ObbNodeBlock &of_a = slab_block(first_->tree, pair.a), &of_b = slab_block(second_->tree, pair.b);
   const std::uint32_t lane_a = pair.a % kBlockWidth, lane_b = pair.b % kBlockWidth;
   const bool second =
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
   if (second) {
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_),
-                          second_->tree.ball_slabs[b], placement_.scale, placement_.box_margin, gaps);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_->tree.obb_nodes[b],
+                          placement_.scale, placement_.box_margin, gaps);
   } else {
-    detail::meeting_boxes(moved_box(pair.b), first_->tree.ball_slabs[a], 1, placement_.box_margin, gaps);
+    detail::meeting_boxes(moved_box(pair.b), first_->tree.obb_nodes[a], 1, placement_.box_margin, gaps);
   }
   if (placement_.coarse) leave_out_apart(pair, second, second ? b : a, gaps);
   return second;
@@ -64,7 +64,7 @@ inline void PairQuery::push_children(const NodePair& pair, bool second, std::uin
                                      const BoxGaps& gaps) noexcept {
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
   std::uint32_t nodes[kBlockWidth];
-  detail::LeastLast order;
+  detail::FarthestFirst order;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     nodes[order.count] = block * kBlockWidth + lane;
@@ -77,7 +77,7 @@ inline void PairQuery::push_children(const NodePair& pair, bool second, std::uin
 }
 
 // False if interrupted. Ends at the first pair of triangles that meet.
-bool PairQuery::refine_ball_slabs(PairBudget& tracker) noexcept {
+bool PairQuery::refine_obb_nodes(PairBudget& tracker) noexcept {
   while (stack_size_ > 0) {
     if (tracker.exhausted()) return false;
     const NodePair pair = stack_[--stack_size_];
@@ -111,13 +111,13 @@ void PairQuery::start_near(const NodePair& leaves) noexcept {
   constexpr std::uint32_t most = kBlockWidth;
   const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
   BoxGaps firsts, seconds;
-  detail::meeting_boxes(moved_box(leaves.b), first_->tree.ball_slabs[block_a], 1, placement_.box_margin, firsts);
+  detail::meeting_boxes(moved_box(leaves.b), first_->tree.obb_nodes[block_a], 1, placement_.box_margin, firsts);
   std::array<float, most> gaps;
   stack_size_ = 0;
   for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
     const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
     detail::meeting_boxes(detail::moved_back(detail::node_box_at(first_->tree, a), placement_),
-                          second_->tree.ball_slabs[block_b], placement_.scale, placement_.box_margin, seconds);
+                          second_->tree.obb_nodes[block_b], placement_.scale, placement_.box_margin, seconds);
     pair_tests_ += static_cast<std::uint64_t>(std::bit_width(seconds.used));
     for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
@@ -141,7 +141,7 @@ bool PairQuery::search_near(std::uint32_t a, std::uint32_t b, const Budget& budg
   PairBudget tracker(budget);
   start_exact();
   start_near({a, b});
-  const bool ended = refine_ball_slabs(tracker);
+  const bool ended = refine_obb_nodes(tracker);
   work_ += tracker.spent();
   stack_[0] = {0, 0};
   stack_size_ = 1;

@@ -74,7 +74,7 @@ Answer PairQuery::refine_last(const Budget& budget) noexcept {
   if (!exact_started_) {
     start_exact();
   }
-  if (refine_ball_slabs(tracker)) {
+  if (refine_obb_nodes(tracker)) {
     ++level_;
     finish(triangle_first_ == kNoTriangle ? Answer::no : Answer::yes);
   }

@@ -6,8 +6,8 @@
 #include <memory>
 #include <new>
 
-#include "collision/kernels/ball_slab_block.h"
 #include "collision/kernels/node_box.h"
+#include "collision/kernels/obb_node_block.h"
 #include "orchard/runtime/packed_tree.h"
 
 // Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
@@ -56,8 +56,8 @@ class WalkStack {
   std::size_t room_ = 0;
 };
 
-inline std::uint32_t ball_slab_child(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
+inline std::uint32_t obb_node_child(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.obb_nodes[node / kBlockWidth].child[node % kBlockWidth];
 }
 
 // Calls visit(lanes, lane, rows, row) for every pair of triangles, of the first and of the second tree, that the float
@@ -72,8 +72,8 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
   BoxGaps gaps;
   while (size > 0) {
     const WalkPair top = stack[--size];
-    const std::uint32_t a = ball_slab_child(first, top.a), b = ball_slab_child(second, top.b);
-    const BallSlabBlock &of_a = first.ball_slabs[top.a / kBlockWidth], &of_b = second.ball_slabs[top.b / kBlockWidth];
+    const std::uint32_t a = obb_node_child(first, top.a), b = obb_node_child(second, top.b);
+    const ObbNodeBlock &of_a = first.obb_nodes[top.a / kBlockWidth], &of_b = second.obb_nodes[top.b / kBlockWidth];
     const std::uint32_t lane_a = top.a % kBlockWidth, lane_b = top.b % kBlockWidth;
     if (a & b & kLeafBit) {
       const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
@@ -89,10 +89,10 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
                              ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * pair.placement.scale);
     const std::uint32_t block = open_second ? b : a;
     if (open_second) {
-      meeting_boxes(moved_back(node_box_at(first, top.a), pair.placement), second.ball_slabs[block],
+      meeting_boxes(moved_back(node_box_at(first, top.a), pair.placement), second.obb_nodes[block],
                     pair.placement.scale, pair.placement.box_margin, gaps);
     } else {
-      meeting_boxes(moved(node_box_at(second, top.b), pair.placement), first.ball_slabs[block], 1,
+      meeting_boxes(moved(node_box_at(second, top.b), pair.placement), first.obb_nodes[block], 1,
                     pair.placement.box_margin, gaps);
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {

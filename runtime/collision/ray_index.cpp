@@ -198,7 +198,7 @@ class Builder {
 
 RayIndex::RayIndex(const TreeView& tree) : origin_(tree.origin), bounding_radius_(tree.bounding_radius) {
   if (tree.triangles.empty()) return;
-  const BallSlabBlock& root = tree.ball_slabs[0];
+  const ObbNodeBlock& root = tree.obb_nodes[0];
   middle_ = {double{root.x[0]}, double{root.y[0]}, double{root.z[0]}};
   radius_ = double{root.radius[0]};
   Builder(tree, boxes_, leaves_, sizes_).build();

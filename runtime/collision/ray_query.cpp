@@ -51,7 +51,7 @@ struct Nearest {
     Vec3 common{};
     if (!(sure ? segment_passes(ray.from, ray.to, t, common) : segment_meets(ray.from, ray.to, t, common)))
       return false;
-    const double at = more_of(ray.steps_to(common), 0);
+    const double at = max(ray.steps_to(common), 0);
     if (at > steps || (at == steps && number > triangle) || !limit.reaches(ray, t, at)) return false;
     steps = at, point = common, triangle = number;
     return true;
@@ -139,7 +139,7 @@ class Caster {
     const RayEnd limit{direction, ray.longest};
     const Nearest nearest = start.line.in_float ? nearest_along(start, limit) : nearest_of_all(start, limit);
     if (nearest.triangle == kNoTriangle) return std::nullopt;
-    return RayHit{less_of(direction.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
+    return RayHit{min(direction.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
   }
 
   Nearest nearest_along(const RayStart& ray, const RayEnd& limit) const noexcept {
@@ -196,13 +196,13 @@ void cast_all(const Triangles& triangles, const Pose& pose, std::span<const Ray>
 
 std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction, double longest) noexcept {
-  if (tree.ball_slabs.empty()) return std::nullopt;
+  if (tree.obb_nodes.empty()) return std::nullopt;
   return cast_one(TreeTriangles{tree}, pose, {origin, direction, longest});
 }
 
 void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
                std::span<std::optional<RayHit>> hits) noexcept {
-  if (tree.ball_slabs.empty()) {
+  if (tree.obb_nodes.empty()) {
     std::fill_n(hits.begin(), rays.size(), std::nullopt);
     return;
   }

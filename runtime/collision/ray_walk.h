@@ -14,7 +14,7 @@ inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::f
 // A ray's direction by a vector of about one unit, so that those of every length are as good as unit vectors.
 struct Direction {
   Direction(const Vec3& direction, double pose_scale) noexcept : scale(pose_scale) {
-    const double largest = largest_size(direction);
+    const double largest = max_abs(direction);
     power = largest > 0 && std::isfinite(largest) ? exponent_of(largest) : 0;
     for (std::size_t i = 0; i < 3; ++i) way[i] = scaled(direction[i], -power);
   }
@@ -39,7 +39,7 @@ struct Ball {
   double radius = 0;
 };
 inline Ball ball_around(const TreeView& tree) noexcept {
-  const BallSlabBlock& root = tree.ball_slabs[0];
+  const ObbNodeBlock& root = tree.obb_nodes[0];
   return {{root.x[0], root.y[0], root.z[0]}, double{root.radius[0]}};
 }
 
@@ -64,7 +64,7 @@ inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double 
   const double ahead = dot(to_middle, way), middle = one_norm(ball.middle);
   const double error = kRounding * (2 * one_norm(to_middle) + 2 * middle + ball.radius);
   const double size = middle + 2 * ball.radius + error;
-  const double margin = more_of(48 * unit * size + 2 * error, 1e-15), reach = ball.radius + margin;
+  const double margin = max(48 * unit * size + 2 * error, 1e-15), reach = ball.radius + margin;
   const Vec3 aside = along(to_middle, way, -ahead);
   const double before = reach + 3 * margin;
   line.at = ahead - before;
@@ -73,8 +73,8 @@ inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double 
     line.ray.direction[i] = static_cast<float>(way[i]);
   }
   line.ray.margin = static_cast<float>(margin * (1 + 4 * unit));
-  line.begin = static_cast<float>(more_of(-line.at, 2 * margin) - margin);
-  line.end = static_cast<float>(less_of(length_of_ray - line.at, 2 * before) + margin);
+  line.begin = static_cast<float>(max(-line.at, 2 * margin) - margin);
+  line.end = static_cast<float>(min(length_of_ray - line.at, 2 * before) + margin);
   line.in_float = size <= kFloatReach;
   const bool beside = dot(aside, aside) > reach * reach * (1 + kRounding), none = line.end < line.begin;
   line.misses = line.in_float & (beside | none);
@@ -104,7 +104,7 @@ ORCHARD_INLINE RayStart start_of(const Frame& frame, const Ball& ball, const Vec
   start.slowness = (moves ? 1.0 : 0.0) / (moves ? start.speed : 1.0);
   // So many steps that short coordinates stay exact: a ray in a triangle's plane is to end in it.
   const double reach = power_above(reach_beyond(ball, frame.bounding_radius, start.from) * start.slowness);
-  start.end = moves ? less_of(steps, reach) : 0.0;
+  start.end = moves ? min(steps, reach) : 0.0;
   start.to = settled(along(start.from, start.step, moves ? reach : 0.0));
   Vec3 unit = along({0, 0, 0}, start.step, start.slowness);
   unit[0] = moves ? unit[0] : 1.0;
@@ -145,7 +145,7 @@ void find_starts(const Frame& frame, const Ball& ball, RayStarts& starts) noexce
 // first. visit() returns up to which s the ray goes on from there, or something below 0.
 template <typename Visit>
 void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
-  RayWalk walk(line.ray, line.begin, line.end, tree.ball_slabs[0].child[0]);
+  RayWalk walk(line.ray, line.begin, line.end, tree.obb_nodes[0].child[0]);
   for (RayLeaf leaf = next_leaf(tree, walk); leaf.block != nullptr; leaf = next_leaf(tree, walk)) {
     walk.end = visit(leaf, walk.end);
   }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kPlainError = 64 * 0x1p-53;
 constexpr double kLeast = 0x1p-900;
 
-bool within_range(double ab, double abc) noexcept { return less_of(ab, abc) > kLeast && more_of(ab, abc) < 1 / kLeast; }
+bool within_range(double ab, double abc) noexcept { return min(ab, abc) > kLeast && max(ab, abc) < 1 / kLeast; }
 
 // Heights whose sum is larger than this part of a b c tell a place on the segment to 2^-40 of its length.
 constexpr double kTells = kPlainError * 0x1p40;
@@ -29,9 +29,8 @@ struct Heights {
     const Vec3 edge = minus(t[1], t[0]), other = minus(t[2], t[0]), normal = cross(edge, other);
     const Vec3 back = minus(begin, t[0]), ahead = minus(end, t[0]);
     from = dot(normal, back), to = dot(normal, ahead);
-    const double ab = largest_size(edge) * largest_size(other),
-                 abc = ab * more_of(largest_size(back), largest_size(ahead));
-    const bool certain = less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc, ordinary = within_range(ab, abc);
+    const double ab = max_abs(edge) * max_abs(other), abc = ab * max(max_abs(back), max_abs(ahead));
+    const bool certain = min(std::fabs(from), std::fabs(to)) > kPlainError * abc, ordinary = within_range(ab, abc);
     clear = certain & ordinary;
     tell = clear & (std::fabs(from) + std::fabs(to) > kTells * abc);
   }
@@ -40,7 +39,7 @@ struct Heights {
 
 Vec3 crossing(const Vec3& from, const Vec3& way, double height_from, double height_to) noexcept {
   const double hp = std::fabs(height_from), hq = std::fabs(height_to);
-  return along(from, way, hp + hq > 0 ? less_of(hp / (hp + hq), 1) : 0);
+  return along(from, way, hp + hq > 0 ? min(hp / (hp + hq), 1) : 0);
 }
 
 Vec3 crossing_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t) noexcept {
@@ -99,9 +98,8 @@ bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Ve
   if (heights.clear && !heights.differ()) return false;
   const Vec3 way = minus(to, from), a = minus(t[0], from), b = minus(t[1], from), c = minus(t[2], from);
   const double p = dot(way, cross(a, b)), q = dot(way, cross(b, c)), r = dot(way, cross(c, a));
-  const double far = more_of(more_of(largest_size(a), largest_size(b)), largest_size(c)),
-               size = far * far * largest_size(way);
-  const double least = less_of(less_of(p, q), r), most = more_of(more_of(p, q), r), error = kPlainError * size;
+  const double far = max(max(max_abs(a), max_abs(b)), max_abs(c)), size = far * far * max_abs(way);
+  const double least = min(min(p, q), r), most = max(max(p, q), r), error = kPlainError * size;
   if (heights.clear && within_range(far * far, size)) {
     if ((least < -error) & (most > error)) return false;
     if ((least > error) | (most < -error)) {

@@ -61,7 +61,7 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, 
                             double limit, bool any, std::uint32_t guess = kNoTriangle,
                             double* beyond = nullptr) noexcept {
   SurfacePoint best;
-  if (tree.ball_slabs.empty()) return best;
+  if (tree.obb_nodes.empty()) return best;
   const SurfacePoint unknown{0, {}, kNoTriangle};
   if (!rigid || std::isnan(limit)) return unknown;
   const Frame frame(tree, pose);
@@ -146,7 +146,7 @@ Answer touches_capsule(const TreeView& tree, const Pose& pose, const std::array<
 }
 
 bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept {
-  if (solid.ball_slabs.empty()) return false;
+  if (solid.obb_nodes.empty()) return false;
   if (!is_rigid(pose)) return true;
   const Frame frame(solid, pose);
   const Vec3 p = frame.enter(point);

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "collision/way_out.h"
+#include "collision/minimum_translation.h"
 #include "orchard/runtime/contacts.h"
 
 namespace orchard::runtime::detail {

@@ -25,7 +25,7 @@ Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
 
 // Of a point of the surface from the centre of rotation, at most.
 double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
-  const BallSlabBlock& root = tree.tree.ball_slabs[0];
+  const ObbNodeBlock& root = tree.tree.obb_nodes[0];
   return (length_of(minus(center, {root.x[0], root.y[0], root.z[0]})) + double{root.radius[0]}) * (1 + kImpactRounding);
 }
 
@@ -35,7 +35,7 @@ bool ImpactSearch::prepare() noexcept {
   Scratch* const scratch = workspace_.scratch();
   narrow_.bind(pair_.a(), pair_.b());
   const TreeView &a = pair_.a().tree, &b = pair_.b().tree;
-  return scratch != nullptr && !a.ball_slabs.empty() && !b.ball_slabs.empty() &&
+  return scratch != nullptr && !a.obb_nodes.empty() && !b.obb_nodes.empty() &&
          scratch->reserve_timed(pair_.a(), pair_.b());
 }
 

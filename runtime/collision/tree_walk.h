@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <limits>
 
-#include "collision/kernels/ball_slab_block.h"
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
+#include "collision/kernels/obb_node_block.h"
 #include "collision/kernels/point_block.h"
 #include "collision/kernels/segment_block.h"
 #include "math/vector_functions.h"
@@ -32,7 +32,7 @@ struct Segment {
 };
 
 // Lower bound on the distance of a ball slab from a segment.
-inline double ball_slab_distance(const BallSlabBlock& block, std::uint32_t lane, const Segment& s) noexcept {
+inline double obb_node_distance(const ObbNodeBlock& block, std::uint32_t lane, const Segment& s) noexcept {
   const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
   const Vec3 to = minus(c, s.p);
   const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
@@ -55,10 +55,10 @@ void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&&
   std::array<Entry, kWalkRoom> stack;
   std::size_t size = 0;
   const auto push_children = [&](std::uint32_t index) {
-    const BallSlabBlock& block = tree.ball_slabs[index];
+    const ObbNodeBlock& block = tree.obb_nodes[index];
     const std::size_t begin = size;
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      const double distance = ball_slab_distance(block, lane, segment);
+      const double distance = obb_node_distance(block, lane, segment);
       if (distance > limit() * (1 + kRounding) + rounding) continue;
       std::size_t at = size++;
       for (; at > begin && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
@@ -119,7 +119,7 @@ struct FloatShape {
 
 inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   constexpr double unit = 0x1p-24;
-  const BallSlabBlock& root = tree.ball_slabs[0];
+  const ObbNodeBlock& root = tree.obb_nodes[0];
   const Vec3 middle = along(s.p, s.d, 0.5);
   const double half = length(s.d) / 2;
   const double size = length(middle) + half + length({root.x[0], root.y[0], root.z[0]}) + double{root.radius[0]};
@@ -189,7 +189,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
   std::array<float, kBlockWidth> row;
   float beyond = std::numeric_limits<float>::infinity();
   const auto leave_out = [&](float gap) { beyond = std::min(beyond, gap); };
-  stack[size++] = {0, tree.ball_slabs[0].child[0]};
+  stack[size++] = {0, tree.obb_nodes[0].child[0]};
   while (size > 0) {
     const Entry entry = stack[--size];
     if (double{entry.gap} > limit()) {
@@ -221,7 +221,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
       }
       continue;
     }
-    const BallSlabBlock& block = tree.ball_slabs[entry.child];
+    const ObbNodeBlock& block = tree.obb_nodes[entry.child];
     box_gaps(shape.box, block, 1, shape.placement.box_margin, gaps);
     using E = Eight<Base>;
     const auto used = E::all(0.0f) <= load<E::Floats>(block.radius);

@@ -27,7 +27,7 @@ struct Workspace::Scratch {
   struct TimedPair {
     float time;
     std::uint32_t a, b;
-    detail::BallSlab second;
+    detail::ObbNode second;
   };
   std::unique_ptr<TimedPair[]> timed;
   std::size_t timed_room = 0;

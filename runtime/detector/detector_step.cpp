@@ -30,13 +30,13 @@ Frame Detector::step(double time, const Budget& budget, const StepOptions& optio
   return frame;
 }
 
-std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
+std::size_t Detector::predict_load(std::span<StepLoad> loads) const noexcept {
   const State& s = *state_;
   constexpr std::size_t kMaxAhead = 254;
   std::array<StepsAhead, kMaxAhead> ahead;
   const std::size_t wanted = std::min(loads.size(), kMaxAhead);
   const double now = s.world.clock.time(s.world.answered);
-  const std::size_t known = s.valid && !s.stepping ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
+  const std::size_t known = s.valid && !s.stepping ? s.broad.predict_load(now, std::span(ahead).first(wanted)) : 0;
   s.load_model.predict(std::span(ahead).first(known), s.matcher.cache().size(), loads);
   for (std::size_t i = 0; i < known; ++i) {
     loads[i].time = s.world.clock.time(s.world.answered + 1 + static_cast<State::Step>(i));
@@ -91,7 +91,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     const bool under_way = !matcher.idle();
     const Step stop = std::min(last, under_way ? following : std::max(following, world.halves.next()));
     StepsAhead next;
-    broad.foresee(clock.time(world.answered), {&next, 1});
+    broad.predict_load(clock.time(world.answered), {&next, 1});
     matcher.expect(static_cast<double>(next.meetings));
     StepBudget share = budget.share(static_cast<std::uint64_t>(end - world.answered));
     const Advance now = advance(stop, share);

@@ -10,7 +10,7 @@ namespace {
 constexpr double kNormalSlack = 2e-6;  // of a ball slab's normal, unit to 1e-6 and rounded
 
 // How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at least.
-double reach_of(const BallSlabBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+double reach_of(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
   const double radius = double{block.radius[lane]}, height = std::min(double{block.height[lane]}, radius);
   const double across = std::min(
       1.0, std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]}));
@@ -36,7 +36,7 @@ Lowest lowest_of(const TreeView& tree, const Vec3& n) noexcept {
   std::size_t size = 0;
   Lowest lowest;
   const auto push_children = [&](std::uint32_t index) {
-    const BallSlabBlock& block = tree.ball_slabs[index];
+    const ObbNodeBlock& block = tree.obb_nodes[index];
     const std::size_t begin = size;
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       const double middle = n[0] * double{block.x[lane]} + n[1] * double{block.y[lane]} + n[2] * double{block.z[lane]};
@@ -93,7 +93,7 @@ Bottom bottom_of(const Shape& shape, const Pose& pose, const HalfSpace& half) no
   return {dot(n, placed_point) - half.offset, placed_point, lowest.triangle};
 }
 
-bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.ball_slabs.empty(); }
+bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.obb_nodes.empty(); }
 
 }  // namespace
 
@@ -131,14 +131,14 @@ class PlaneCut {
   void each_point(bool below, Visit&& visit) const noexcept {
     std::array<std::uint32_t, kBlockWidth*(kTriangleTreeDepthLimit + 1) + 1> stack;
     std::size_t size = 0;
-    stack[size++] = tree_.ball_slabs[0].child[0];
+    stack[size++] = tree_.obb_nodes[0].child[0];
     while (size > 0) {
       const std::uint32_t child = stack[--size];
       if ((child & kLeafBit) != 0) {
         visit_leaf(tree_.triangle_blocks[child & ~kLeafBit], below, visit);
         continue;
       }
-      const BallSlabBlock& block = tree_.ball_slabs[child];
+      const ObbNodeBlock& block = tree_.obb_nodes[child];
       for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
         const double height = height_of({double{block.x[lane]}, double{block.y[lane]}, double{block.z[lane]}});
         const double reach = reach_of(block, lane, n_) * (1 + 1e-12) + slack_;

@@ -4,7 +4,7 @@ namespace orchard::runtime::detail {
 
 namespace {
 
-constexpr double kSmoothing = 0.1;              // of what foresee() goes by
+constexpr double kSmoothing = 0.1;              // of what predict_load() goes by
 constexpr double kSlower = 0.5, kFaster = 0.1;  // of times: what takes longer than foreseen is believed sooner
 // No time is believed to have more than doubled, or grown by so much: else one step that the machine interrupts, for
 // milliseconds, would rule many that follow.

@@ -9,7 +9,7 @@
 
 namespace orchard::runtime::detail {
 
-// What steps have cost lately, smoothed: for Detector::foresee(), and for the time that a budget has to set aside.
+// What steps have cost lately, smoothed: for Detector::predict_load(), and for the time that a budget has to set aside.
 class LoadModel {
  public:
   // The pairs of a step, against those of the step before: `meetings` the timing wheel had announced, `known` there

@@ -178,7 +178,7 @@ Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept 
 // The normal from the tree to the round shape.
 Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::uint32_t guess) noexcept {
   if (shape.kind == ShapeKind::box) return of_box(shape, pose, round);
-  if (shape.tree.ball_slabs.empty()) return unknown_verdict();
+  if (shape.tree.obb_nodes.empty()) return unknown_verdict();
   const auto [near, beyond] = nearest_to_segment(shape.tree, pose, round.p, round.q, round.radius, guess);
   if (near.triangle != kNoTriangle) {
     const Vec3 core = nearest_of_segment(round.p, round.q, near.point);
@@ -290,7 +290,7 @@ double simple_distance(const Shape& a, const Pose& pose_a, const Shape& b, const
   const Shape& tree = first ? a : b;
   const Pose& pose = first ? pose_a : pose_b;
   const Round round(first ? b : a, first ? pose_b : pose_a);
-  if (tree.tree.ball_slabs.empty()) return 0;
+  if (tree.tree.obb_nodes.empty()) return 0;
   const SurfacePoint near = nearest_point_to_segment(tree.tree, pose, round.p, round.q);
   if (tree.kind == ShapeKind::box && holds(tree, pose, round.p)) return 0;
   const double size = near.distance + round.radius + length(round.p) + length(Vec3(pose.translation));

@@ -29,7 +29,7 @@ double distance_of(const std::array<float, 3>& p, const std::array<float, 3>& q)
 FlexibleTree::FlexibleTree(const PackedSphereTree& rest, double max_displacement)
     : tree_(rest), largest_(max_displacement), rest_(rest.vertices) {
   link_spheres();
-  link_ball_slabs();
+  link_obb_nodes();
   list_triangles();
   valid_ = largest_ >= 0 && coordinate_extent(tree_) + 4 * largest_ <= double{kCoordinateLimit};
   if (valid_) enlarge_for_good();
@@ -70,25 +70,25 @@ void FlexibleTree::link_spheres() {
   dirty_spheres_ = room_by_level(spheres_);
 }
 
-void FlexibleTree::link_ball_slabs() {
-  ball_slabs_.resize(tree_.ball_slabs.size() * kBlockWidth);
+void FlexibleTree::link_obb_nodes() {
+  obb_nodes_.resize(tree_.obb_nodes.size() * kBlockWidth);
   slab_of_block_.assign(tree_.triangle_blocks.size(), kNone);
-  if (ball_slabs_.empty()) return;
-  ball_slabs_[0].used = true;
-  for (std::uint32_t node = 0; node < ball_slabs_.size(); ++node) {
-    if (!ball_slabs_[node].used) continue;
-    const BallSlabBlock& block = tree_.ball_slabs[node / kBlockWidth];
+  if (obb_nodes_.empty()) return;
+  obb_nodes_[0].used = true;
+  for (std::uint32_t node = 0; node < obb_nodes_.size(); ++node) {
+    if (!obb_nodes_[node].used) continue;
+    const ObbNodeBlock& block = tree_.obb_nodes[node / kBlockWidth];
     const std::uint32_t lane = node % kBlockWidth, child = block.child[lane];
-    ball_slabs_[node].radius = block.radius[lane];
-    ball_slabs_[node].sides = {block.height[lane], block.width[lane], block.length[lane]};
+    obb_nodes_[node].radius = block.radius[lane];
+    obb_nodes_[node].sides = {block.height[lane], block.width[lane], block.length[lane]};
     if (child & kLeafBit) {
       slab_of_block_[child & ~kLeafBit] = node;
       continue;
     }
-    for (std::uint32_t i = 0; i < kBlockWidth && tree_.ball_slabs[child].radius[i] >= 0; ++i)
-      adopt(ball_slabs_, node, child * kBlockWidth + i);
+    for (std::uint32_t i = 0; i < kBlockWidth && tree_.obb_nodes[child].radius[i] >= 0; ++i)
+      adopt(obb_nodes_, node, child * kBlockWidth + i);
   }
-  dirty_slabs_ = room_by_level(ball_slabs_);
+  dirty_slabs_ = room_by_level(obb_nodes_);
 }
 
 // Which triangles each vertex has, and which leaves and blocks each triangle is in.
@@ -198,11 +198,11 @@ bool FlexibleTree::move(std::span<const std::uint32_t> vertices,
   for (const std::uint32_t block : dirty_blocks_) {
     block_dirty_[block] = 0;
     rewrite(block);
-    if (slab_of_block_[block] != kNone) mark(ball_slabs_, dirty_slabs_, slab_of_block_[block]);
+    if (slab_of_block_[block] != kNone) mark(obb_nodes_, dirty_slabs_, slab_of_block_[block]);
   }
   dirty_blocks_.clear();
   refit_spheres();
-  refit_ball_slabs();
+  refit_obb_nodes();
   return true;
 }
 
@@ -259,20 +259,20 @@ void FlexibleTree::refit_spheres() noexcept {
   }
 }
 
-void FlexibleTree::refit_ball_slabs() noexcept {
+void FlexibleTree::refit_obb_nodes() noexcept {
   constexpr double kNormalLength = 1 + 2e-6;  // of a ball slab's normals, at most
   for (std::size_t level = dirty_slabs_.size(); level-- > 0;) {
     for (const std::uint32_t index : dirty_slabs_[level]) {
-      Node& node = ball_slabs_[index];
+      Node& node = obb_nodes_[index];
       node.dirty = false;
-      BallSlabBlock& block = tree_.ball_slabs[index / kBlockWidth];
+      ObbNodeBlock& block = tree_.obb_nodes[index / kBlockWidth];
       const std::uint32_t lane = index % kBlockWidth, child = block.child[lane];
       double enlarged = 0;
       if (child & kLeafBit) {
         enlarged = max_of_block(child & ~kLeafBit);
       } else {
         for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-          enlarged = std::max(enlarged, ball_slabs_[child * kBlockWidth + i].enlarged);
+          enlarged = std::max(enlarged, obb_nodes_[child * kBlockWidth + i].enlarged);
         }
       }
       const bool changed = enlarged != node.enlarged;
@@ -281,7 +281,7 @@ void FlexibleTree::refit_ball_slabs() noexcept {
       block.height[lane] = raised(node.sides[0], enlarged * kNormalLength);
       block.width[lane] = raised(node.sides[1], enlarged * kNormalLength);
       block.length[lane] = raised(node.sides[2], enlarged * kNormalLength);
-      if (changed && node.parent != kNone) mark(ball_slabs_, dirty_slabs_, node.parent);
+      if (changed && node.parent != kNone) mark(obb_nodes_, dirty_slabs_, node.parent);
     }
     dirty_slabs_[level].clear();
   }

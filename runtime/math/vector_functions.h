@@ -52,10 +52,8 @@ inline double power_above(double x) noexcept {
 
 // As std::min and std::max, but by value: an instruction each, where those can become branches that nobody predicts.
 // Where one is not a number, both give the first one.
-inline double less_of(double a, double b) noexcept { return b < a ? b : a; }
-inline double more_of(double a, double b) noexcept { return b > a ? b : a; }
-inline double largest_size(const Vec3& v) noexcept {
-  return more_of(more_of(std::fabs(v[0]), std::fabs(v[1])), std::fabs(v[2]));
-}
+inline double min(double a, double b) noexcept { return b < a ? b : a; }
+inline double max(double a, double b) noexcept { return b > a ? b : a; }
+inline double max_abs(const Vec3& v) noexcept { return max(max(std::fabs(v[0]), std::fabs(v[1])), std::fabs(v[2])); }
 
 }  // namespace orchard::runtime::detail

@@ -81,7 +81,7 @@ struct PlainFloats {
   static Floats choose(const Mask& mask, const Floats& a, const Floats& b) noexcept {
     return Floats::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
   }
-  static Floats root(const Floats& a) noexcept {
+  static Floats sqrt(const Floats& a) noexcept {
     return Floats::make([&](std::size_t i) { return std::sqrt(a[i]); });
   }
   static std::uint32_t bits(const Mask& mask) noexcept {
@@ -96,7 +96,7 @@ struct OneFloat {
   using Floats = float;
   using Mask = bool;
   static float choose(bool mask, float a, float b) noexcept { return mask ? a : b; }
-  static float root(float a) noexcept { return std::sqrt(a); }
+  static float sqrt(float a) noexcept { return std::sqrt(a); }
   static std::uint32_t bits(bool mask) noexcept { return mask ? 1 : 0; }
 };
 
@@ -107,18 +107,18 @@ struct VectorFloats {
   ORCHARD_INLINE static Floats choose(const Mask& mask, const Floats& a, const Floats& b) noexcept {
     return mask ? a : b;
   }
-  ORCHARD_INLINE static Floats root(const Floats& a) noexcept {  // one instruction with -fno-math-errno
+  ORCHARD_INLINE static Floats sqrt(const Floats& a) noexcept {  // one instruction with -fno-math-errno
     Floats result;
     for (std::size_t i = 0; i < 8; ++i) result[i] = __builtin_sqrtf(a[i]);
     return result;
   }
 #ifdef ORCHARD_SIGNS_OF_HALVES
   // The least of eight, halves against halves, as least_of() does it elsewhere.
-  ORCHARD_INLINE static float least(const Floats& a) noexcept {
-    const auto smaller = [](const auto& p, const auto& q) ORCHARD_INLINE_LAMBDA { return q < p ? q : p; };
-    const auto four = smaller(__builtin_shufflevector(a, a, 0, 1, 2, 3), __builtin_shufflevector(a, a, 4, 5, 6, 7));
-    const auto two = smaller(four, __builtin_shufflevector(four, four, 2, 3, 2, 3));
-    return smaller(two, __builtin_shufflevector(two, two, 1, 1, 1, 1))[0];
+  ORCHARD_INLINE static float min(const Floats& a) noexcept {
+    const auto min_of = [](const auto& p, const auto& q) ORCHARD_INLINE_LAMBDA { return q < p ? q : p; };
+    const auto four = min_of(__builtin_shufflevector(a, a, 0, 1, 2, 3), __builtin_shufflevector(a, a, 4, 5, 6, 7));
+    const auto two = min_of(four, __builtin_shufflevector(four, four, 2, 3, 2, 3));
+    return min_of(two, __builtin_shufflevector(two, two, 1, 1, 1, 1))[0];
   }
 #endif
   ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
@@ -186,7 +186,7 @@ struct FourFloats {
     return Four{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
 #endif
   }
-  ORCHARD_INLINE static Floats root(const Floats& a) noexcept { return {root_of(a.low), root_of(a.high)}; }
+  ORCHARD_INLINE static Floats sqrt(const Floats& a) noexcept { return {root_of(a.low), root_of(a.high)}; }
   ORCHARD_INLINE static std::uint32_t bits_of(const FourMask& mask) noexcept {
 #ifdef __SSE2__
     return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<Four>(mask)));

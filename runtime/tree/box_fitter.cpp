@@ -120,13 +120,13 @@ void BoxFitter::find_ball(Part& part) const {
 }
 
 // Between the planes across `normal`, centred between them.
-BallSlab BoxFitter::ball_slab_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
+ObbNode BoxFitter::obb_node_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
   double low = kInfinity, high = -kInfinity;
   each_corner(part, [&](const Vec3& p) {
     const double h = dot(normal, minus(p, middle));
     low = std::min(low, h), high = std::max(high, h);
   });
-  BallSlab slab{};
+  ObbNode slab{};
   slab.normal = normal;
   slab.center = point_along(middle, normal, (low + high) / 2);
   slab.height = (high - low) / 2;
@@ -135,7 +135,7 @@ BallSlab BoxFitter::ball_slab_across(const Range& part, const Vec3& middle, cons
 
 // The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean
 // normal.
-BallSlab BoxFitter::ball_slab_of(const Part& part) {
+ObbNode BoxFitter::obb_node_of(const Part& part) {
   Vec3 mean{};
   for (std::size_t i = part.begin; i < part.end; ++i) {
     const auto& corners = order_[i].corners;
@@ -143,16 +143,16 @@ BallSlab BoxFitter::ball_slab_of(const Part& part) {
     const Vec3 n = cross(minus(as_doubles(corners[1]), a), minus(as_doubles(corners[2]), a));
     for (std::size_t k = 0; k < 3; ++k) mean[k] += n[k];
   }
-  const BallSlab thin = ball_slab_across(part, part.middle, direction(part.axes[2]));
-  const BallSlab facing = ball_slab_across(part, part.middle, direction(mean));
-  BallSlab slab = facing.height <= thin.height ? facing : thin;
+  const ObbNode thin = obb_node_across(part, part.middle, direction(part.axes[2]));
+  const ObbNode facing = obb_node_across(part, part.middle, direction(mean));
+  ObbNode slab = facing.height <= thin.height ? facing : thin;
   find_box(part, slab);
   return slab;
 }
 
 // The other two pairs of planes: across the directions, among a few, that make the smallest box, which is centred
 // between all of them. Everything is measured last, from what is stored.
-void BoxFitter::find_box(const Range& part, BallSlab& slab) {
+void BoxFitter::find_box(const Range& part, ObbNode& slab) {
   std::size_t least = 0;
   for (std::size_t i = 1; i < 3; ++i) {
     if (std::fabs(slab.normal[i]) < std::fabs(slab.normal[least])) least = i;
@@ -188,7 +188,7 @@ void BoxFitter::find_box(const Range& part, BallSlab& slab) {
 }
 
 // The axes of one of the frames in place of those found, if the box is smaller then; the thinnest way comes first.
-void BoxFitter::take_smaller_frame(const Range& part, double smallest, BallSlab& slab) const {
+void BoxFitter::take_smaller_frame(const Range& part, double smallest, ObbNode& slab) const {
   for (const std::array<Vec3, 3>& frame : frames_) {
     const Extent extent = extent_of(part, frame);
     const Vec3 e = minus(extent.high, extent.low);
@@ -205,7 +205,7 @@ void BoxFitter::take_smaller_frame(const Range& part, double smallest, BallSlab&
   }
 }
 
-void BoxFitter::measure_box(const Range& part, BallSlab& slab) const {
+void BoxFitter::measure_box(const Range& part, ObbNode& slab) const {
   for (double& x : slab.center) x = rounded(x);
   slab.third = float_cross(slab.normal, slab.second);
   slab.radius = slab.height = slab.width = slab.length = 0;

@@ -30,7 +30,7 @@ struct Triangle {
   std::uint32_t number;
 };
 
-struct BallSlab {
+struct ObbNode {
   Vec3 center, normal;
   double radius, height;
   Vec3 second, third;  // normals of the box
@@ -63,7 +63,7 @@ class BoxFitter {
   BoxFitter(const std::vector<Triangle>& order, const Frames& frames) noexcept : order_(order), frames_(frames) {}
 
   Part measured(const Range& range) const;
-  BallSlab ball_slab_of(const Part& part);
+  ObbNode obb_node_of(const Part& part);
   Extent extent_of(const Range& part, const std::array<Vec3, 3>& axes) const noexcept;
 
  private:
@@ -75,10 +75,10 @@ class BoxFitter {
   }
   std::array<double, 6> covariance(const Part& part) const;
   void find_ball(Part& part) const;
-  BallSlab ball_slab_across(const Range& part, const Vec3& middle, const Vec3& normal) const;
-  void find_box(const Range& part, BallSlab& slab);
-  void take_smaller_frame(const Range& part, double smallest, BallSlab& slab) const;
-  void measure_box(const Range& part, BallSlab& slab) const;
+  ObbNode obb_node_across(const Range& part, const Vec3& middle, const Vec3& normal) const;
+  void find_box(const Range& part, ObbNode& slab);
+  void take_smaller_frame(const Range& part, double smallest, ObbNode& slab) const;
+  void measure_box(const Range& part, ObbNode& slab) const;
 
   const std::vector<Triangle>& order_;
   const Frames& frames_;

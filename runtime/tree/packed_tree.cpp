@@ -115,7 +115,7 @@ const char* triangle_fault(const TreeView& tree) noexcept {
   return nullptr;
 }
 
-const char* ball_slab_fault(const BallSlabBlock& block, std::uint32_t lane) noexcept {
+const char* obb_node_fault(const ObbNodeBlock& block, std::uint32_t lane) noexcept {
   for (const auto* values : {&block.x, &block.y, &block.z, &block.radius, &block.height, &block.width, &block.length}) {
     if (!in_range((*values)[lane])) return "a ball slab is not finite or out of range";
   }
@@ -151,17 +151,17 @@ const char* triangle_block_fault(const TreeView& tree, const TriangleBlock& bloc
 // yet.
 const char* triangle_tree_fault(const TreeView& tree) noexcept {
   if (tree.triangles.empty())
-    return tree.ball_slabs.empty() && tree.triangle_blocks.empty() ? nullptr : "ball slabs of nothing";
-  if (tree.ball_slabs.empty()) return "the triangles have no tree: build the file again";
-  if (tree.ball_slabs.size() > kNoTriangle / kBlockWidth || tree.triangle_blocks.size() >= kLeafBit) {
+    return tree.obb_nodes.empty() && tree.triangle_blocks.empty() ? nullptr : "ball slabs of nothing";
+  if (tree.obb_nodes.empty()) return "the triangles have no tree: build the file again";
+  if (tree.obb_nodes.size() > kNoTriangle / kBlockWidth || tree.triangle_blocks.size() >= kLeafBit) {
     return "there are too many ball slabs";
   }
   std::size_t next_slabs = 1, next_triangles = 0, level_end = 1;
   std::uint32_t level = 0;
-  for (std::size_t b = 0; b < tree.ball_slabs.size(); ++b) {
+  for (std::size_t b = 0; b < tree.obb_nodes.size(); ++b) {
     if (b == next_slabs) return "a block of ball slabs has no parent";
     if (b == level_end) level_end = next_slabs, ++level;
-    const BallSlabBlock& block = tree.ball_slabs[b];
+    const ObbNodeBlock& block = tree.obb_nodes[b];
     bool ended = false;
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       if (block.radius[lane] == -1) {
@@ -170,12 +170,12 @@ const char* triangle_tree_fault(const TreeView& tree) noexcept {
         continue;
       }
       if (ended || (b == 0 && lane > 0)) return "a ball slab stands behind an empty lane or beside the root";
-      if (const char* fault = ball_slab_fault(block, lane)) return fault;
+      if (const char* fault = obb_node_fault(block, lane)) return fault;
       std::size_t& next = block.child[lane] & kLeafBit ? next_triangles : next_slabs;
       if ((block.child[lane] & ~kLeafBit) != next++) return "ball slabs are not in breadth-first order";
     }
   }
-  if (next_slabs != tree.ball_slabs.size() || next_triangles != tree.triangle_blocks.size()) {
+  if (next_slabs != tree.obb_nodes.size() || next_triangles != tree.triangle_blocks.size()) {
     return "a ball slab's children are beyond the end";
   }
   if (level != tree.triangle_tree_depth || level > kTriangleTreeDepthLimit)
@@ -205,7 +205,7 @@ bool is_aligned(std::span<const Block> blocks) noexcept {
 
 const char* structure_fault(const TreeView& tree) noexcept {
   // What allocated them did not see to it: a file that was read to any place, or a compiler's std::vector.
-  if (!is_aligned(tree.blocks) || !is_aligned(tree.ball_slabs) || !is_aligned(tree.triangle_blocks))
+  if (!is_aligned(tree.blocks) || !is_aligned(tree.obb_nodes) || !is_aligned(tree.triangle_blocks))
     return "blocks do not lie at multiples of 32 bytes in memory";
   for (const double coordinate : tree.origin) {
     if (!(std::fabs(coordinate) <= double{kCoordinateLimit})) return "the origin is not finite or out of range";
@@ -246,7 +246,7 @@ double coordinate_extent(const TreeView& tree) noexcept {
     }
   }
   for (const auto& vertex : tree.vertices) include(vertex[0], vertex[1], vertex[2], 0);
-  for (const BallSlabBlock& block : tree.ball_slabs) {
+  for (const ObbNodeBlock& block : tree.obb_nodes) {
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
     }

@@ -91,14 +91,14 @@ std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
 }
 
 // In the order of the table; every element is made of 32-bit words.
-constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock),  12, 12, 4, sizeof(BallSlabBlock),
+constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock),  12, 12, 4, sizeof(ObbNodeBlock),
                                                                 sizeof(TriangleBlock), 4};
 
 // Calls visit(section number from 0, array) for every section of a tree or view.
 template <typename Tree, typename Visit>
 void each_section(Tree& tree, Visit&& visit) {
   visit(0, tree.blocks), visit(1, tree.vertices), visit(2, tree.triangles);
-  visit(3, tree.leaf_triangles), visit(4, tree.ball_slabs), visit(5, tree.triangle_blocks), visit(6, tree.supports);
+  visit(3, tree.leaf_triangles), visit(4, tree.obb_nodes), visit(5, tree.triangle_blocks), visit(6, tree.supports);
 }
 
 template <typename Tree>

@@ -25,8 +25,8 @@ inline const SiblingBlock& block_of(const TreeView& tree, std::uint32_t node) no
 }
 
 // The same of the triangles' own tree.
-inline const BallSlabBlock& slab_block(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.ball_slabs[node / kBlockWidth];
+inline const ObbNodeBlock& slab_block(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.obb_nodes[node / kBlockWidth];
 }
 inline std::uint32_t slab_child(const TreeView& tree, std::uint32_t node) noexcept {
   return slab_block(tree, node).child[node % kBlockWidth];

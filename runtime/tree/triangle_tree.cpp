@@ -17,7 +17,7 @@ namespace orchard::runtime {
 namespace {
 
 using detail::as_doubles, detail::cross, detail::minus;
-using detail::BallSlab, detail::BoxFitter, detail::Extent, detail::Part, detail::Range, detail::Triangle;
+using detail::ObbNode, detail::BoxFitter, detail::Extent, detail::Part, detail::Range, detail::Triangle;
 using detail::PlaceAlong, detail::sort_along;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ class Builder {
   }
 
   void build() {
-    tree_.ball_slabs.clear();
+    tree_.obb_nodes.clear();
     tree_.triangle_blocks.clear();
     tree_.triangle_tree_depth = 0;
     if (order_.empty()) return;
@@ -69,19 +69,19 @@ class Builder {
   }
 
  private:
-  void add_block() { tree_.ball_slabs.emplace_back().radius.fill(-1); }
+  void add_block() { tree_.obb_nodes.emplace_back().radius.fill(-1); }
 
   void expand(const Part& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Part>& next,
               std::vector<std::pair<std::size_t, std::uint32_t>>& next_places) {
     const bool divided = node.size() > kBlockWidth || (is_few() && tree_.triangle_tree_depth == 0);
     const std::vector<Part> parts = !divided ? std::vector<Part>() : is_few() ? split_few(node) : split(node);
-    std::uint32_t& child = tree_.ball_slabs[at.first].child[at.second];
+    std::uint32_t& child = tree_.obb_nodes[at.first].child[at.second];
     if (parts.size() <= 1) {
       child = kLeafBit | static_cast<std::uint32_t>(tree_.triangle_blocks.size());
       add_triangles(node);
       return;
     }
-    const std::size_t block = tree_.ball_slabs.size();
+    const std::size_t block = tree_.obb_nodes.size();
     child = static_cast<std::uint32_t>(block);
     add_block();
     for (std::uint32_t lane = 0; lane < parts.size(); ++lane) {
@@ -274,8 +274,8 @@ class Builder {
   }
 
   void place(std::size_t block_index, std::uint32_t lane, const Part& part) {
-    const BallSlab slab = fitter_.ball_slab_of(part);
-    BallSlabBlock& block = tree_.ball_slabs[block_index];
+    const ObbNode slab = fitter_.obb_node_of(part);
+    ObbNodeBlock& block = tree_.obb_nodes[block_index];
     block.x[lane] = static_cast<float>(slab.center[0]);
     block.y[lane] = static_cast<float>(slab.center[1]);
     block.z[lane] = static_cast<float>(slab.center[2]);

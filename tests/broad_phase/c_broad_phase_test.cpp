@@ -120,13 +120,13 @@ class Twins {
       EXPECT_TRUE(near[i].body == expected[i].body && near[i].distance == expected[i].distance);
     }
   }
-  void foresee(double time) {
+  void predict_load(double time) {
     std::array<StepsAhead, 20> steps;
     std::array<size_t, 20> updates, meetings, overlaps;
-    const std::size_t known = in_cpp_.foresee(time, steps);
-    ASSERT_EQ(orchard_broad_phase_foresee(in_c_.get(), time, 20, updates.data(), meetings.data(), overlaps.data()),
+    const std::size_t known = in_cpp_.predict_load(time, steps);
+    ASSERT_EQ(orchard_broad_phase_predict_load(in_c_.get(), time, 20, updates.data(), meetings.data(), overlaps.data()),
               known);
-    EXPECT_EQ(orchard_broad_phase_foresee(in_c_.get(), time, 20, nullptr, nullptr, nullptr), known);
+    EXPECT_EQ(orchard_broad_phase_predict_load(in_c_.get(), time, 20, nullptr, nullptr, nullptr), known);
     for (std::size_t i = 0; i < known; ++i) {
       EXPECT_TRUE(steps[i].updates == updates[i] && steps[i].meetings == meetings[i] &&
                   steps[i].overlaps == overlaps[i]);
@@ -152,7 +152,7 @@ TEST(CBroadPhase, SaysWhatItSaysInCpp) {
       while (twins.advance(kStep * step, step % 3 == 0 ? &budget : nullptr)) {
       }
       twins.ask(draw);
-      twins.foresee(kStep * step);
+      twins.predict_load(kStep * step);
       if (testing::Test::HasFailure()) FAIL() << "seed " << seed << " step " << step;
     }
     EXPECT_GT(twins.pairs(), 10u);

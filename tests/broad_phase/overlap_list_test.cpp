@@ -61,11 +61,11 @@ TEST(Rounds, AreComparedAcrossTheEndOfTheirNumbers) {
 }
 
 // One by one and four at once.
-TEST(NarrowBox, IsTheWholeBoxUpToFourCells) {
+TEST(PackedAabb, IsTheWholeBoxUpToFourCells) {
   test::Draw draw(2);
   BoxBlock block;
   std::array<BodyIndex, kBlock> ids;
-  std::array<QuantumBox, kBlock> boxes;
+  std::array<QuantizedAabb, kBlock> boxes;
   for (std::size_t i = 0; i < kBlock; ++i) {
     ids[i] = static_cast<BodyIndex>(kBlock - 1 - i);
     for (std::size_t d = 0; d < 3; ++d) {
@@ -77,7 +77,7 @@ TEST(NarrowBox, IsTheWholeBoxUpToFourCells) {
     block.set(i, boxes[i]);
   }
   for (const std::size_t count : {kBlock, kBlock - 1, std::size_t{3}}) {
-    std::vector<NarrowBox> narrow(kBlock);
+    std::vector<PackedAabb> narrow(kBlock);
     block.store(std::span(ids).first(count), narrow);
     for (std::size_t i = 0; i < count; ++i) {
       EXPECT_EQ(narrow[ids[i]].whole().lower, boxes[i].lower);
@@ -95,19 +95,19 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
     SweptGrid grid;
     grid.reset(kBodies / 2, {});
     SweptGrid::Queue queue;
-    std::vector<NarrowBox> boxes(kBodies);
+    std::vector<PackedAabb> boxes(kBodies);
     std::vector<BodyPair> pairs;
     for (BodyIndex begin = 0; begin < kBodies; begin += kBlock) {
       BoxBlock block;
       std::array<BodyIndex, kBlock> ids;
       for (std::size_t i = 0; i < kBlock; ++i) {
         ids[i] = begin + static_cast<BodyIndex>(i);
-        QuantumBox box{};
+        QuantizedAabb box{};
         for (std::size_t d = 0; d < 3; ++d) {
           const auto lower = static_cast<std::uint32_t>((1000 + draw.uniform(0, cells[d])) * kQuanta);
           box.lower[d] = lower, box.upper[d] = lower + kQuanta / 4;
         }
-        boxes[ids[i]] = NarrowBox(box);
+        boxes[ids[i]] = PackedAabb(box);
         block.set(i, box);
       }
       grid.insert(queue, ids, block, boxes, pairs);

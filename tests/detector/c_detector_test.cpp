@@ -80,7 +80,7 @@ TEST(CDetector, TellsWhatBeginsAndEnds) {
   EXPECT_EQ(orchard_detector_event(w.detector, 0).a.index, a.index);  // events stay
   EXPECT_EQ(orchard_detector_event(w.detector, 1).a.index, d.index);
   double pairs[4], work[4];
-  EXPECT_EQ(orchard_detector_foresee(w.detector, 4, pairs, work), 4u);
+  EXPECT_EQ(orchard_detector_predict_load(w.detector, 4, pairs, work), 4u);
   EXPECT_GT(work[0], 0);
   EXPECT_EQ(orchard_detector_remove(w.detector, a), 1);
   EXPECT_EQ(orchard_detector_remove(w.detector, a), 0);

@@ -582,7 +582,7 @@ TEST(DetectorLoad, IsForeseenFromTheEventsOfTheBroadPhase) {
   double error = 0, worse = 0;
   for (int step = 1; step < 150; ++step) {
     std::array<StepLoad, 10> loads;
-    const std::size_t known = detector.foresee(loads);
+    const std::size_t known = detector.predict_load(loads);
     EXPECT_EQ(known, loads.size());
     EXPECT_NEAR(loads[0].time, step * kStep, 1e-12);
     const Frame frame = detector.step(step * kStep);

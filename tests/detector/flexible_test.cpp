@@ -137,7 +137,7 @@ TEST(FlexibleTree, ComesBackToRestAndTouchesOnlyWhatMoved) {
     std::vector<float> all;
     for (const SiblingBlock& block : flexible.view().blocks)
       all.insert(all.end(), block.radius.begin(), block.radius.end());
-    for (const BallSlabBlock& block : flexible.view().ball_slabs)
+    for (const ObbNodeBlock& block : flexible.view().obb_nodes)
       all.insert(all.end(), block.radius.begin(), block.radius.end());
     return all;
   };

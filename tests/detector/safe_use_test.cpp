@@ -241,7 +241,7 @@ struct Meddler {
     EXPECT_TRUE(world->step(1e3).time_refused);
     EXPECT_EQ(world->manifold(event).answer, Answer::maybe);
     StepLoad load;
-    EXPECT_EQ(world->foresee({&load, 1}), 0u);
+    EXPECT_EQ(world->predict_load({&load, 1}), 0u);
     EXPECT_TRUE(world->contains(body));
   }
 };

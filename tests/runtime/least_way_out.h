@@ -27,7 +27,7 @@ inline double degrees_between(const Vec& p, const Vec& q) {
   return std::acos(std::clamp(inner(p, q), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-struct WayOut {
+struct MinimumTranslation {
   double depth;
   Vec direction;
 };
@@ -50,8 +50,8 @@ class LeastWayOut {
   }
 
   // Of 2,000 directions, the best twenty refined, all ways that are within 1.2 of the least, which is the first.
-  std::vector<WayOut> find(Draw& draw, double most) {
-    std::vector<WayOut> ways;
+  std::vector<MinimumTranslation> find(Draw& draw, double most) {
+    std::vector<MinimumTranslation> ways;
     double limit = most;
     for (int i = 0; i < 2000; ++i) {
       const Vec u = draw.direction();
@@ -60,16 +60,16 @@ class LeastWayOut {
       ways.push_back({depth, u});
       limit = std::min(limit, 1.3 * depth);
     }
-    const auto less = [](const WayOut& p, const WayOut& q) { return p.depth < q.depth; };
+    const auto less = [](const MinimumTranslation& p, const MinimumTranslation& q) { return p.depth < q.depth; };
     std::sort(ways.begin(), ways.end(), less);
     for (std::size_t i = 0; i < std::min<std::size_t>(20, ways.size()); ++i) refine(draw, ways[i]);
     std::sort(ways.begin(), ways.end(), less);
-    std::erase_if(ways, [&](const WayOut& way) { return way.depth > 1.2 * ways[0].depth; });
+    std::erase_if(ways, [&](const MinimumTranslation& way) { return way.depth > 1.2 * ways[0].depth; });
     return ways;
   }
 
  private:
-  void refine(Draw& draw, WayOut& way) {
+  void refine(Draw& draw, MinimumTranslation& way) {
     double spread = 0.06;
     for (int k = 0; k < 60; ++k) {
       Vec u = way.direction;
@@ -97,9 +97,9 @@ class LeastWayOut {
 };
 
 // Whether all of them lead about the same way: the least one's direction is then what a normal should be.
-inline bool is_unique(const std::vector<WayOut>& ways) {
+inline bool is_unique(const std::vector<MinimumTranslation>& ways) {
   return std::all_of(ways.begin(), ways.end(),
-                     [&](const WayOut& w) { return degrees_between(w.direction, ways[0].direction) < 40; });
+                     [&](const MinimumTranslation& w) { return degrees_between(w.direction, ways[0].direction) < 40; });
 }
 
 // Two of the closed bodies, the second one come along a random line until they meet, in steps of 0.4 % of both radii.

@@ -88,7 +88,7 @@ std::vector<Triangle> placed_triangles(const PackedSphereTree& tree, const Pose&
 
 std::vector<Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_t node,
                                       const std::vector<Triangle>& placed) {
-  const std::uint32_t child = tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
+  const std::uint32_t child = tree.obb_nodes[node / kBlockWidth].child[node % kBlockWidth];
   std::vector<Triangle> result;
   if (child & kLeafBit) {
     for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
@@ -96,7 +96,7 @@ std::vector<Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_
     }
     return result;
   }
-  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[child].radius[lane] >= 0; ++lane) {
+  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.obb_nodes[child].radius[lane] >= 0; ++lane) {
     const auto more = triangles_below(tree, child * kBlockWidth + lane, placed);
     result.insert(result.end(), more.begin(), more.end());
   }

@@ -1,5 +1,5 @@
 #pragma once
-#include "broad_phase/method.h"
+#include "broad_phase/broad_phase_algorithm.h"
 #include "sleeping_broad_phase.h"
 #include "space_time_bound.h"
 

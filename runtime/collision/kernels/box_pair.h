@@ -24,7 +24,7 @@ struct Boxes {
             E::all(b.height), E::all(b.width), E::all(b.length), E::all(b.radius)};
   }
   // `scale`: times this, lanes are in the other one's units.
-  ORCHARD_INLINE static Boxes of(const BallSlabBlock& b, float scale, std::uint32_t lane) noexcept {
+  ORCHARD_INLINE static Boxes of(const ObbNodeBlock& b, float scale, std::uint32_t lane) noexcept {
     const Floats unit = E::all(scale);
     const Vectors n = {E::at(b.nx, lane), E::at(b.ny, lane), E::at(b.nz, lane)},
                   m = {E::at(b.mx, lane), E::at(b.my, lane), E::at(b.mz, lane)};
@@ -70,7 +70,7 @@ struct BestGap {
 
   ORCHARD_INLINE void take(const typename E::Floats& other, const typename E::Vectors&,
                            const typename E::Floats&) noexcept {
-    gap = E::larger(gap, other);
+    gap = E::max(gap, other);
   }
 };
 
@@ -89,28 +89,28 @@ struct BoxPair {
       : p(p_),
         q(q_),
         d(E::minus(q.center, p.center)),
-        distance(Kind::root(E::dot(d, d))),
+        distance(Kind::sqrt(E::dot(d, d))),
         ball_gap(distance - (q.radius + p.radius)) {}
 
   // Tries the axes of both boxes and the line of the centres. Precondition: best has the balls' gap, along that line.
   template <typename Best>
   ORCHARD_INLINE void find(Best& best) const noexcept {
     const Floats signed_n = E::dot(d, q.n), signed_m = E::dot(d, q.m), signed_l = E::dot(d, q.l);
-    const Floats over_n = E::size(signed_n), over_m = E::size(signed_m), over_l = E::size(signed_l);
+    const Floats over_n = E::abs(signed_n), over_m = E::abs(signed_m), over_l = E::abs(signed_l);
     Floats reach = q.height * over_n + q.width * over_m + q.length * over_l;
     Vectors across = {E::all(0.0f), E::all(0.0f), E::all(0.0f)};  // how far p reaches along q's axes
     const auto along = [&](const Vectors& u, const Floats& own) ORCHARD_INLINE_LAMBDA {
-      const Floats by = E::dot(d, u), over = E::size(by);
-      const Floats un = E::size(E::dot(u, q.n)), um = E::size(E::dot(u, q.m)), ul = E::size(E::dot(u, q.l));
-      const Floats other = E::smaller(q.height * un + q.width * um + q.length * ul, q.radius);
+      const Floats by = E::dot(d, u), over = E::abs(by);
+      const Floats un = E::abs(E::dot(u, q.n)), um = E::abs(E::dot(u, q.m)), ul = E::abs(E::dot(u, q.l));
+      const Floats other = E::min(q.height * un + q.width * um + q.length * ul, q.radius);
       best.take(over - (own + other), u, by);
       reach = reach + own * over;
       across = {across.x + own * un, across.y + own * um, across.z + own * ul};
     };
     along(p.n, p.height), along(p.m, p.width), along(p.l, p.length);
-    best.take(over_n - (q.height + E::smaller(across.x, p.radius)), q.n, signed_n);
-    best.take(over_m - (q.width + E::smaller(across.y, p.radius)), q.m, signed_m);
-    best.take(over_l - (q.length + E::smaller(across.z, p.radius)), q.l, signed_l);
+    best.take(over_n - (q.height + E::min(across.x, p.radius)), q.n, signed_n);
+    best.take(over_m - (q.width + E::min(across.y, p.radius)), q.m, signed_m);
+    best.take(over_l - (q.length + E::min(across.z, p.radius)), q.l, signed_l);
     const Floats far = distance + E::all(kMinDistance);
     best.take(distance - reach / far, {d.x / far, d.y / far, d.z / far}, E::all(0.0f));
   }

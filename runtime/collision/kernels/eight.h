@@ -43,9 +43,9 @@ struct Eight {
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
   // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
   // number, both give the second one.
-  ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
-  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(b < a, a, b); }
-  ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
+  ORCHARD_INLINE static Floats min(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
+  ORCHARD_INLINE static Floats max(const Floats& a, const Floats& b) noexcept { return Kind::choose(b < a, a, b); }
+  ORCHARD_INLINE static Floats abs(const Floats& a) noexcept { return max(a, -a); }
   ORCHARD_INLINE static Floats dot(const Vectors& a, const Vectors& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
@@ -55,7 +55,7 @@ struct Eight {
   ORCHARD_INLINE static Vectors cross(const Vectors& a, const Vectors& b) noexcept {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   }
-  ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return size(a.x) + size(a.y) + size(a.z); }
+  ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return abs(a.x) + abs(a.y) + abs(a.z); }
   ORCHARD_INLINE static Vectors times(const Vectors& v, const Floats& s) noexcept {
     return {v.x * s, v.y * s, v.z * s};
   }
@@ -75,7 +75,7 @@ struct Eight {
 // Of all eight.
 template <typename Kind>
 ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
-  if constexpr (requires { Kind::least(v); }) return Kind::least(v);
+  if constexpr (requires { Kind::min(v); }) return Kind::min(v);
   std::array<float, kBlockWidth> lanes;
   store(v, lanes);
   for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {

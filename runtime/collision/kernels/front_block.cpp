@@ -35,15 +35,15 @@ ORCHARD_INLINE void find_axes_of(const Boxes<Kind>& p, const Boxes<Kind>& q, con
 }
 
 template <typename Kind>
-ORCHARD_INLINE void find_axes(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement,
+ORCHARD_INLINE void find_axes(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement,
                               float margin, BoxAxes& result) noexcept {
   const float scale = placement != nullptr ? placement->scale : 1;
   find_axes_of<Kind>(Boxes<Kind>::of(single), Boxes<Kind>::of(lanes, scale, 0), placement, margin, result);
 }
 
 template <typename Kind>
-ORCHARD_INLINE void find_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds,
-                                   const Placement& placement, float margin, BoxAxes& result) noexcept {
+ORCHARD_INLINE void find_pair_axes(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement,
+                                   float margin, BoxAxes& result) noexcept {
   find_axes_of<Kind>(Boxes<Kind>::of(firsts, 1, 0), Boxes<Kind>::of(seconds, 1, 0).moved(placement), nullptr, margin,
                      result);
 }
@@ -92,8 +92,8 @@ ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& pl
   const auto try_axis = [&](const std::array<float, 3>& u, bool first) ORCHARD_INLINE_LAMBDA {
     const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};
     const auto along = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Floats { return E::dot(axis, v); };
-    const Floats near = E::larger(E::larger(along(lane[0]), along(lane[1])), along(lane[2]));
-    const Floats far = E::smaller(E::smaller(along(row[0]), along(row[1])), along(row[2]));
+    const Floats near = E::max(E::max(along(lane[0]), along(lane[1])), along(lane[2]));
+    const Floats far = E::min(E::min(along(row[0]), along(row[1])), along(row[2]));
     const float apart = least_of<Kind>(far) + least_of<Kind>(-near) - 2 * placement.margin;
     const float gap = apart - (apart < 0 ? -apart : apart) * kUnitError;
     const bool better = first || best.gap < gap;
@@ -149,7 +149,7 @@ ORCHARD_INLINE float take_from_gaps(const Shift& shift, FrontBlock* blocks, std:
       const Floats gap = load<Floats>(block.gap) + E::dot(u, way) - (load<Floats>(block.radius) * swing + error);
       store(gap, block.gap);
       const auto apart = zero < gap;
-      least = E::smaller(least, Kind::choose(apart, gap, infinite));
+      least = E::min(least, Kind::choose(apart, gap, infinite));
       bits |= static_cast<std::uint64_t>(static_cast<std::uint8_t>(~Kind::bits(apart))) << (kBlockWidth * (i - from));
     }
     open[from / kBlockWidth] = bits;
@@ -159,20 +159,20 @@ ORCHARD_INLINE float take_from_gaps(const Shift& shift, FrontBlock* blocks, std:
 
 }  // namespace
 
-void box_axes(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+void box_axes(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
               BoxAxes& result) noexcept {
   PerMachine<find_axes<Widest>, find_axes<Base>>::call(single, lanes, placement, margin, result);
 }
-void box_axes_scalar(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+void box_axes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
                      BoxAxes& result) noexcept {
   find_axes<PlainFloats>(single, lanes, placement, margin, result);
 }
 
-void box_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement, float margin,
+void box_pair_axes(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement, float margin,
                    BoxAxes& result) noexcept {
   PerMachine<find_pair_axes<Widest>, find_pair_axes<Base>>::call(firsts, seconds, placement, margin, result);
 }
-void box_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+void box_pair_axes_scalar(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement,
                           float margin, BoxAxes& result) noexcept {
   find_pair_axes<PlainFloats>(firsts, seconds, placement, margin, result);
 }

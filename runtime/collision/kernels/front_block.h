@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdint>
 
-#include "collision/kernels/ball_slab_block.h"
+#include "collision/kernels/obb_node_block.h"
 #include "orchard/runtime/pair_front.h"
 
 // The inner loops of a front (pair_front.h): along which unit vectors nodes and leaves are apart, and what is left
@@ -16,10 +16,10 @@ struct BoxAxes : BoxGaps {
 };
 
 // As box_gaps(). `placement`: where lanes and single one are in the second tree's frame, else null.
-void box_axes(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+void box_axes(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
               BoxAxes& result) noexcept;
 // Eight of the first tree and eight of the second one, lane by lane.
-void box_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement, float margin,
+void box_pair_axes(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement, float margin,
                    BoxAxes& result) noexcept;
 
 // How far all triangles of one leaf are from all of another one along a direction, at least; below 0: how far they may
@@ -45,9 +45,9 @@ struct Shift {
 float close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept;
 
 // The same, one number at a time, for the tests.
-void box_axes_scalar(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+void box_axes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
                      BoxAxes& result) noexcept;
-void box_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+void box_pair_axes_scalar(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement,
                           float margin, BoxAxes& result) noexcept;
 LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                           float enough) noexcept;

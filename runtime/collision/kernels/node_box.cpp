@@ -54,7 +54,7 @@ bool parted_by_axis(const WideBox& of, const WideBox& other, double error) noexc
 }
 
 template <typename Kind>
-ORCHARD_INLINE void find_gaps(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+ORCHARD_INLINE void find_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                               BoxGaps& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
@@ -68,7 +68,7 @@ ORCHARD_INLINE void find_gaps(const NodeBox& single, const BallSlabBlock& lanes,
   result.meeting = result.used & Kind::bits(gap <= E::all(0.0f));
 }
 
-void find_gaps_one_by_one(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void find_gaps_one_by_one(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                           bool only_meeting, BoxGaps& result) noexcept {
   const Boxes<OneFloat> p = Boxes<OneFloat>::of(single);
   result.used = result.meeting = 0;
@@ -97,30 +97,30 @@ bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& re
   return parted_by_axis(p, q, error) || parted_by_axis(q, p, error);
 }
 
-void box_gaps_scalar(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void box_gaps_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                      BoxGaps& result) noexcept {
   find_gaps_one_by_one(single, lanes, scale, margin, false, result);
 }
 
-void meeting_boxes_scalar(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void meeting_boxes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                           BoxGaps& result) noexcept {
   find_gaps_one_by_one(single, lanes, scale, margin, true, result);
 }
 
 // Without vectors the compiler's own are slower than one number at a time that stops early.
 #ifdef ORCHARD_VECTORS
-void box_gaps(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin, BoxGaps& result) noexcept {
+void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept {
   PerMachine<find_gaps<Widest>, find_gaps<Base>>::call(single, lanes, scale, margin, result);
 }
-void meeting_boxes(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void meeting_boxes(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                    BoxGaps& result) noexcept {
   box_gaps(single, lanes, scale, margin, result);
 }
 #else
-void box_gaps(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin, BoxGaps& result) noexcept {
+void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept {
   box_gaps_scalar(single, lanes, scale, margin, result);
 }
-void meeting_boxes(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void meeting_boxes(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                    BoxGaps& result) noexcept {
   meeting_boxes_scalar(single, lanes, scale, margin, result);
 }

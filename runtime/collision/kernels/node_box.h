@@ -17,7 +17,7 @@ struct NodeBox {
   float radius, height, width, length;
 };
 
-inline NodeBox node_box_at(const BallSlabBlock& b, std::uint32_t i) noexcept {
+inline NodeBox node_box_at(const ObbNodeBlock& b, std::uint32_t i) noexcept {
   return {{b.x[i], b.y[i], b.z[i], 0},
           {b.nx[i], b.ny[i], b.nz[i], 0},
           {b.mx[i], b.my[i], b.mz[i], 0},
@@ -28,7 +28,7 @@ inline NodeBox node_box_at(const BallSlabBlock& b, std::uint32_t i) noexcept {
 }
 
 inline NodeBox node_box_at(const TreeView& tree, std::uint32_t node) noexcept {
-  return node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
+  return node_box_at(tree.obb_nodes[node / kBlockWidth], node % kBlockWidth);
 }
 
 inline std::array<float, 3> third_normal(const NodeBox& b) noexcept {
@@ -92,9 +92,9 @@ struct BoxGaps {
 // `scale`: times this, lanes are in the units of `single`, which is in their frame. `margin` (Placement::box_margin)
 // covers all rounding. The axes tried are those of both boxes (six of the fifteen of Gottschalk, Lin and Manocha 1996:
 // the products of edges seldom tell) and the line of the centres; no box reaches farther along one than its ball.
-void box_gaps(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin, BoxGaps& result) noexcept;
+void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept;
 // The same where only those that meet matter: of the others the result may hold anything.
-void meeting_boxes(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void meeting_boxes(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                    BoxGaps& result) noexcept;
 
 // Whether two nodes' boxes, each as its own tree stores it, are certainly apart by the same six axes in double, where
@@ -103,9 +103,9 @@ void meeting_boxes(const NodeBox& single, const BallSlabBlock& lanes, float scal
 bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& relative) noexcept;
 
 // One number at a time: what the tests compare with, and all that some compilers get.
-void box_gaps_scalar(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void box_gaps_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                      BoxGaps& result) noexcept;
-void meeting_boxes_scalar(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void meeting_boxes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                           BoxGaps& result) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -26,7 +26,7 @@ struct Placement {
 };
 
 // One ball slab, in the first tree's frame.
-struct BallSlab {
+struct ObbNode {
   float x, y, z, nx, ny, nz, radius, height;
 };
 

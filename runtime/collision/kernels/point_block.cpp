@@ -30,25 +30,25 @@ ORCHARD_INLINE void find_point_gaps(const std::array<float, 3>& point, const Tri
   const Vectors ab = E::minus(b, a), bc = E::minus(c, b), ca = E::minus(a, c);
   const Floats zero = E::all(0.0f), one = E::all(1.0f), least = E::all(kMinLength);
   const auto edge = [&](const Vectors& from, const Vectors& way) ORCHARD_INLINE_LAMBDA -> Floats {
-    const Floats t = E::smaller(E::larger(-E::dot(from, way) / (E::dot(way, way) + least), zero), one);
+    const Floats t = E::min(E::max(-E::dot(from, way) / (E::dot(way, way) + least), zero), one);
     const Vectors foot = {from.x + t * way.x, from.y + t * way.y, from.z + t * way.z};
     return E::dot(foot, foot);
   };
-  const Floats by_edges = Kind::root(E::smaller(E::smaller(edge(a, ab), edge(b, bc)), edge(c, ca)));
+  const Floats by_edges = Kind::sqrt(E::min(E::min(edge(a, ab), edge(b, bc)), edge(c, ca)));
   const Vectors normal = E::cross(ab, ca);  // which way does not matter
-  const Floats size = Kind::root(E::dot(normal, normal));
-  const Floats room_n = Kind::root(E::dot(ab, ab) * E::dot(ca, ca));
-  const Floats reach = E::larger(E::larger(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
-  const Floats by_plane = (E::size(E::dot(normal, a)) - room_n * reach * E::all(kNormalError)) / (size + least);
+  const Floats size = Kind::sqrt(E::dot(normal, normal));
+  const Floats room_n = Kind::sqrt(E::dot(ab, ab) * E::dot(ca, ca));
+  const Floats reach = E::max(E::max(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
+  const Floats by_plane = (E::abs(E::dot(normal, a)) - room_n * reach * E::all(kNormalError)) / (size + least);
   // Signed areas of the edges with the point's foot, times the normal's length.
   const auto side = [&](const Vectors& from, const Vectors& way)
                         ORCHARD_INLINE_LAMBDA -> Floats { return E::dot(normal, E::cross(from, way)); };
   const Floats s = side(a, ab), t = side(b, bc), u = side(c, ca);
-  const Floats longest = E::larger(E::larger(E::one_norm(ab), E::one_norm(bc)), E::one_norm(ca));
+  const Floats longest = E::max(E::max(E::one_norm(ab), E::one_norm(bc)), E::one_norm(ca));
   const Floats room = room_n * reach * longest * E::all(kRoom);
-  const Floats low = E::smaller(E::smaller(s, t), u), high = E::larger(E::larger(s, t), u);
+  const Floats low = E::min(E::min(s, t), u), high = E::max(E::max(s, t), u);
   const auto over = (-room <= low) | (high <= room);
-  const Floats best = Kind::choose(over, E::smaller(by_edges, E::larger(by_plane, zero)), by_edges);
+  const Floats best = Kind::choose(over, E::min(by_edges, E::max(by_plane, zero)), by_edges);
   store(best * E::all(placement.whole) - E::all(placement.margin), lower);
 }
 

@@ -25,29 +25,29 @@ constexpr float kShearedError = 0x1p-18f;
 constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
 
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin,
-                                             float end, RayEntries& entries) noexcept {
+ORCHARD_INLINE std::uint32_t find_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
+                                            RayEntries& entries) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
   const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
-  const Vectors n = {load<Floats>(ball_slabs.nx), load<Floats>(ball_slabs.ny), load<Floats>(ball_slabs.nz)};
-  const Vectors to = E::minus({load<Floats>(ball_slabs.x), load<Floats>(ball_slabs.y), load<Floats>(ball_slabs.z)},
+  const Vectors n = {load<Floats>(obb_nodes.nx), load<Floats>(obb_nodes.ny), load<Floats>(obb_nodes.nz)};
+  const Vectors to = E::minus({load<Floats>(obb_nodes.x), load<Floats>(obb_nodes.y), load<Floats>(obb_nodes.z)},
                               {E::all(ray.origin[0]), E::all(ray.origin[1]), E::all(ray.origin[2])});
-  const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(ball_slabs.radius);
-  const Floats r = radius + margin, h = load<Floats>(ball_slabs.height) + margin;
+  const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(obb_nodes.radius);
+  const Floats r = radius + margin, h = load<Floats>(obb_nodes.height) + margin;
   const Vectors across = E::cross(to, d);
   const Floats square = r * r, apart = E::dot(across, across), inside = square - apart;
   const Floats middle = E::dot(to, d);
-  const Floats half = Kind::root(E::larger(inside, zero) + square * E::all(kGrazing)) + margin;
+  const Floats half = Kind::sqrt(E::max(inside, zero) + square * E::all(kGrazing)) + margin;
   // Between the planes: |s (n . d) - n . to| <= h.
   const Floats slope = E::dot(n, d), height = E::dot(n, to);
-  const Floats steep = E::larger(E::size(slope), E::all(kMinSlope));
+  const Floats steep = E::max(E::abs(slope), E::all(kMinSlope));
   const Floats rise = Kind::choose(slope < zero, -height, height);
   const Floats low = (rise - h) / steep, high = (rise + h) / steep;
-  // An infinite `low` makes no number of the first: larger() gives the second one then.
-  const Floats enter = E::larger(E::larger(low - E::size(low) * E::all(kGrazing), middle - half), E::all(begin));
-  const Floats leave = E::smaller(middle + half, high + E::size(high) * E::all(kGrazing));
+  // An infinite `low` makes no number of the first: max() gives the second one then.
+  const Floats enter = E::max(E::max(low - E::abs(low) * E::all(kGrazing), middle - half), E::all(begin));
+  const Floats leave = E::min(middle + half, high + E::abs(high) * E::all(kGrazing));
   store(enter, entries);
   // Written so that what is not a number, from infinite quotients, counts as met.
   const auto missed = (inside < zero) | (leave < enter) | (E::all(end) < enter);
@@ -60,7 +60,7 @@ ORCHARD_INLINE RayLeaf told_apart(const TriangleBlock& block, const typename Kin
                                   const typename Kind::Floats& q, const typename Kind::Floats& r,
                                   const typename Kind::Floats& room) noexcept {
   using E = Eight<Kind>;
-  const auto least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
+  const auto least = E::min(E::min(p, q), r), most = E::max(E::max(p, q), r);
   const std::uint32_t some = E::kAll & ~Kind::bits((least < -room) & (room < most));
   if (some == 0) return {&block, 0, 0};
   return {&block, some & used_lanes(block), Kind::bits((room < least) | (most < -room))};
@@ -79,7 +79,7 @@ ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& 
                         E::all(ray.origin[2] + at * ray.direction[2])};
   const Vectors a = E::minus(E::corner(block, 0), from), b = E::minus(E::corner(block, 1), from),
                 c = E::minus(E::corner(block, 2), from);
-  const Floats longest = E::larger(E::larger(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
+  const Floats longest = E::max(E::max(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
   const Floats room = longest * (E::all(4 * ray.margin) + longest * E::all(kProductError)) + E::all(kMinRoom);
   const Floats p = E::dot(d, E::cross(a, b)), q = E::dot(d, E::cross(b, c)), r = E::dot(d, E::cross(c, a));
   return told_apart<Kind>(block, p, q, r, room);
@@ -131,12 +131,12 @@ ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlo
 }
 
 template <typename Kind>
-struct BallSlabs {
+struct ObbNodes {
   const FloatRay& ray;
   float begin;
-  std::span<const BallSlabBlock> blocks;
-  ORCHARD_INLINE std::uint32_t met(const BallSlabBlock& block, float end, RayEntries& entries) const noexcept {
-    return find_ball_slabs<Kind>(ray, block, begin, end, entries);
+  std::span<const ObbNodeBlock> blocks;
+  ORCHARD_INLINE std::uint32_t met(const ObbNodeBlock& block, float end, RayEntries& entries) const noexcept {
+    return find_obb_nodes<Kind>(ray, block, begin, end, entries);
   }
   ORCHARD_INLINE RayLeaf triangles(const TriangleBlock& block, std::uint64_t) const noexcept {
     return find_triangles<Kind>(ray, block);
@@ -174,12 +174,10 @@ struct Boxes {
     const auto* const bytes = reinterpret_cast<const std::byte*>(&block);
     const auto at = [&](std::size_t side, const Floats& from, std::size_t i)
                         ORCHARD_INLINE_LAMBDA { return (load_at(bytes + side) - from) * inverse[i]; };
-    const Floats enter =
-        E::larger(E::larger(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
-                  E::larger(at(own.near_side[2], near_from[2], 2), begin));
-    const Floats leave =
-        E::smaller(E::smaller(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
-                   E::smaller(at(own.far_side[2], far_from[2], 2), E::all(end)));
+    const Floats enter = E::max(E::max(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
+                                E::max(at(own.near_side[2], near_from[2], 2), begin));
+    const Floats leave = E::min(E::min(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
+                                E::min(at(own.far_side[2], far_from[2], 2), E::all(end)));
     store(enter, entries);
     return Kind::bits(enter <= leave);
   }
@@ -208,7 +206,7 @@ struct Boxes {
 
 template <typename Kind>
 ORCHARD_INLINE RayLeaf find_leaf_of_tree(const TreeView& tree, RayWalk& walk) noexcept {
-  return find_leaf(BallSlabs<Kind>{walk.ray, walk.begin, tree.ball_slabs}, tree.triangle_blocks, walk);
+  return find_leaf(ObbNodes<Kind>{walk.ray, walk.begin, tree.obb_nodes}, tree.triangle_blocks, walk);
 }
 
 template <typename Kind>
@@ -226,18 +224,18 @@ RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcep
   return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(tree, ray, walk);
 }
 
-std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
-                                    RayEntries& entries) noexcept {
-  return find_ball_slabs<PlainFloats>(ray, ball_slabs, begin, end, entries);
+std::uint32_t ray_obb_nodes_scalar(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
+                                   RayEntries& entries) noexcept {
+  return find_obb_nodes<PlainFloats>(ray, obb_nodes, begin, end, entries);
 }
 
 RayLeaf ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
   return find_triangles<PlainFloats>(ray, block);
 }
 
-std::uint32_t ray_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
-                             RayEntries& entries) noexcept {
-  return PerMachine<find_ball_slabs<Widest>, find_ball_slabs<Base>>::call(ray, ball_slabs, begin, end, entries);
+std::uint32_t ray_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
+                            RayEntries& entries) noexcept {
+  return PerMachine<find_obb_nodes<Widest>, find_obb_nodes<Base>>::call(ray, obb_nodes, begin, end, entries);
 }
 
 RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {

@@ -111,10 +111,10 @@ RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcep
 // The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it
 // meets between begin and end.
 using RayEntries = std::array<float, kBlockWidth>;
-std::uint32_t ray_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
-                             RayEntries& entries) noexcept;
-std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
-                                    RayEntries& entries) noexcept;
+std::uint32_t ray_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
+                            RayEntries& entries) noexcept;
+std::uint32_t ray_obb_nodes_scalar(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
+                                   RayEntries& entries) noexcept;
 
 // Which triangles the ray's line may meet.
 RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept;

@@ -25,8 +25,7 @@ struct EdgeWay {
   // Ericson 2005, 5.1.9: the best place on the one's line, then the best on the other for that, and back.
   ORCHARD_INLINE EdgeWay(const Vectors& w, const Floats& ww, const Vectors& from, const Vectors& edge) noexcept {
     const Floats zero = E::all(0.0f), one = E::all(1.0f), least = E::all(kMinSquare);
-    const auto clamped = [&](const Floats& x)
-                             ORCHARD_INLINE_LAMBDA -> Floats { return E::smaller(E::larger(x, zero), one); };
+    const auto clamped = [&](const Floats& x) ORCHARD_INLINE_LAMBDA -> Floats { return E::min(E::max(x, zero), one); };
     const Floats ee = E::dot(edge, edge), we = E::dot(w, edge), wf = E::dot(w, from), ef = E::dot(edge, from);
     const Floats across = ww * ee - we * we;
     const Floats on_line = clamped((wf * ee - we * ef) / (across + least));
@@ -67,11 +66,11 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
   const auto gap = [&](const Vectors& axis) ORCHARD_INLINE_LAMBDA -> Floats {
     const Extent<Kind> of_triangle = extent_along<Kind>(axis, t);
     const Floats end = E::dot(axis, w);
-    return E::larger(of_triangle.low - E::larger(end, zero), E::smaller(end, zero) - of_triangle.high);
+    return E::max(of_triangle.low - E::max(end, zero), E::min(end, zero) - of_triangle.high);
   };
   const Floats by_edge = gap(normalised<Kind>(best.way)), by_face = gap(normalised<Kind>(E::cross(edge[0], edge[1])));
   const Floats margin = E::all(2 * placement.margin * placement.unit);
-  store((E::larger(by_edge, by_face) - margin) * E::all(placement.whole), lower);
+  store((E::max(by_edge, by_face) - margin) * E::all(placement.whole), lower);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #pragma once
-#include "collision/kernels/ball_slab_pair.h"
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
+#include "collision/kernels/obb_node_pair.h"
 
-// What the inner loops over triangles (ball_slab_block.cpp, ball_slab_block_plain.cpp) are made of.
+// What the inner loops over triangles (obb_node_block.cpp, obb_node_block_plain.cpp) are made of.
 //
 // Rounding. Ball slabs: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
@@ -26,7 +26,7 @@ template <typename Kind>
 ORCHARD_INLINE Extent<Kind> extent(const typename Kind::Floats& a, const typename Kind::Floats& b,
                                    const typename Kind::Floats& c) noexcept {
   using E = Eight<Kind>;
-  return {E::smaller(E::smaller(a, b), c), E::larger(E::larger(a, b), c)};
+  return {E::min(E::min(a, b), c), E::max(E::max(a, b), c)};
 }
 
 template <typename Kind>
@@ -118,14 +118,14 @@ ORCHARD_INLINE typename Kind::Floats own_height(const typename Eight<Kind>::Vect
                                                 const typename Eight<Kind>::Vectors (&edge)[2],
                                                 const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
-  return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) +
+  return E::max(E::abs(E::dot(normal, edge[0])), E::abs(E::dot(normal, edge[1]))) +
          (E::one_norm(normal) * margin + E::all(kMinRoom));
 }
 
 template <typename Kind>
 ORCHARD_INLINE typename Eight<Kind>::Vectors normalised(const typename Eight<Kind>::Vectors& v) noexcept {
   using E = Eight<Kind>;
-  const typename E::Floats size = Kind::root(E::dot(v, v)) + E::all(kMinDistance);
+  const typename E::Floats size = Kind::sqrt(E::dot(v, v)) + E::all(kMinDistance);
   return {v.x / size, v.y / size, v.z / size};
 }
 
@@ -153,9 +153,8 @@ template <typename Kind>
 ORCHARD_INLINE typename Kind::Floats gap_between(const Box<Kind>& a, const typename Eight<Kind>::Vectors& low,
                                                  const typename Eight<Kind>::Vectors& high) noexcept {
   using E = Eight<Kind>;
-  return E::larger(
-      E::larger(E::larger(a.low.x - high.x, low.x - a.high.x), E::larger(a.low.y - high.y, low.y - a.high.y)),
-      E::larger(a.low.z - high.z, low.z - a.high.z));
+  return E::max(E::max(E::max(a.low.x - high.x, low.x - a.high.x), E::max(a.low.y - high.y, low.y - a.high.y)),
+                E::max(a.low.z - high.z, low.z - a.high.z));
 }
 
 // And along any axis: of the triangles `lane` from the triangle p.
@@ -167,7 +166,7 @@ ORCHARD_INLINE typename Kind::Floats gap_along(const typename Eight<Kind>::Vecto
   const auto project = [&](const auto& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
   const Extent<Kind> l = extent<Kind>(project(lane[0]), project(lane[1]), project(lane[2]));
   const Extent<Kind> r = extent<Kind>(E::all(0.0f), project(p[1]), project(p[2]));
-  return E::larger(l.low - r.high, r.low - l.high);
+  return E::max(l.low - r.high, r.low - l.high);
 }
 
 }  // namespace orchard::runtime::detail

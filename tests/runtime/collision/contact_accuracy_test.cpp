@@ -33,7 +33,7 @@ TEST(ContactAccuracy, ComesCloseToTheLeastWayOutOfManyDirections) {
     if (m.depth < 1e-7 * pose->reach) continue;  // too shallow for the judge
     ++shallow;
     LeastWayOut judge(pair, pose->a, pose->b);
-    const std::vector<WayOut> ways = judge.find(draw, 1.5 * m.depth);
+    const std::vector<MinimumTranslation> ways = judge.find(draw, 1.5 * m.depth);
     if (ways.empty()) {  // nothing of the judge's is as good
       ++depths;
       continue;

@@ -186,7 +186,7 @@ TEST(Contacts, AreNoneWhereNothingTouchesAndGuessedWhereNothingIsKnown) {
   const auto tree = build_tree(box({-1, -1, -1}, {1, 1, 1}));
   auto spheres = tree;  // without triangles
   spheres.triangles.clear(), spheres.vertices.clear(), spheres.leaf_triangles.clear();
-  spheres.ball_slabs.clear(), spheres.triangle_blocks.clear(), spheres.supports.clear();
+  spheres.obb_nodes.clear(), spheres.triangle_blocks.clear(), spheres.supports.clear();
   for (SiblingBlock& block : spheres.blocks) {
     for (std::uint32_t& link : block.link) link = link & kLeafBit ? kEmptyLeaf : link;
   }

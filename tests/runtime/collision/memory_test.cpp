@@ -45,7 +45,7 @@ TEST(Memory, ThatIsNotAlignedIsAFault) {
   EXPECT_EQ(structure_fault(spheres), nullptr);
   spheres.blocks = moved(tree.blocks, room);
   EXPECT_NE(structure_fault(spheres), nullptr);
-  slabs.ball_slabs = moved(tree.ball_slabs, room);
+  slabs.obb_nodes = moved(tree.obb_nodes, room);
   EXPECT_NE(structure_fault(slabs), nullptr);
   triangles.triangle_blocks = moved(tree.triangle_blocks, room);
   EXPECT_NE(structure_fault(triangles), nullptr);

@@ -191,33 +191,33 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
     pose.scale = draw.uniform(0.5, 2);
     const detail::Placement placement = placement_of(pose, 12);
     const auto of_a = placed_triangles(a, {}), of_b = placed_triangles(b, pose);
-    const auto block_a = static_cast<std::uint32_t>(draw.bits() % a.ball_slabs.size());
-    const auto block_b = static_cast<std::uint32_t>(draw.bits() % b.ball_slabs.size());
-    const detail::NodeBox own = detail::node_box_at(a.ball_slabs[block_a], 0),
-                          other = detail::moved(detail::node_box_at(b.ball_slabs[block_b], 0), placement);
+    const auto block_a = static_cast<std::uint32_t>(draw.bits() % a.obb_nodes.size());
+    const auto block_b = static_cast<std::uint32_t>(draw.bits() % b.obb_nodes.size());
+    const detail::NodeBox own = detail::node_box_at(a.obb_nodes[block_a], 0),
+                          other = detail::moved(detail::node_box_at(b.obb_nodes[block_b], 0), placement);
     // The first tree's node against the second one's eight, the other way round, and eight against eight.
     detail::BoxAxes axes[3]{}, plain[3]{};
     const float margin = placement.box_margin;
     const detail::NodeBox back = detail::moved_back(own, placement);
-    detail::box_axes_scalar(back, b.ball_slabs[block_b], &placement, margin, plain[0]);
-    detail::box_axes_scalar(other, a.ball_slabs[block_a], nullptr, margin, plain[1]);
-    detail::box_pair_axes_scalar(a.ball_slabs[block_a], b.ball_slabs[block_b], placement, margin, plain[2]);
+    detail::box_axes_scalar(back, b.obb_nodes[block_b], &placement, margin, plain[0]);
+    detail::box_axes_scalar(other, a.obb_nodes[block_a], nullptr, margin, plain[1]);
+    detail::box_pair_axes_scalar(a.obb_nodes[block_a], b.obb_nodes[block_b], placement, margin, plain[2]);
     const auto same = [](const detail::BoxAxes& p, const detail::BoxAxes& q) {
       return std::memcmp(&p.gap, &q.gap, sizeof p.gap) == 0 && std::memcmp(&p.ux, &q.ux, sizeof p.ux) == 0 &&
              std::memcmp(&p.uy, &q.uy, sizeof p.uy) == 0 && std::memcmp(&p.uz, &q.uz, sizeof p.uz) == 0 &&
              p.used == q.used && p.meeting == q.meeting;
     };
     on_every_machine([&] {
-      detail::box_axes(back, b.ball_slabs[block_b], &placement, margin, axes[0]);
-      detail::box_axes(other, a.ball_slabs[block_a], nullptr, margin, axes[1]);
-      detail::box_pair_axes(a.ball_slabs[block_a], b.ball_slabs[block_b], placement, margin, axes[2]);
+      detail::box_axes(back, b.obb_nodes[block_b], &placement, margin, axes[0]);
+      detail::box_axes(other, a.obb_nodes[block_a], nullptr, margin, axes[1]);
+      detail::box_pair_axes(a.obb_nodes[block_a], b.obb_nodes[block_b], placement, margin, axes[2]);
       for (int i = 0; i < 3; ++i) ASSERT_TRUE(same(axes[i], plain[i])) << seed << " " << i;
     });
     if (HasFatalFailure()) return;
     const auto check = [&](const detail::BoxAxes& found, std::uint32_t node_of_a, std::uint32_t node_of_b,
                            std::uint32_t lane, float sign) {
-      if (a.ball_slabs[node_of_a / kBlockWidth].radius[node_of_a % kBlockWidth] < 0) return;
-      if (b.ball_slabs[node_of_b / kBlockWidth].radius[node_of_b % kBlockWidth] < 0) return;
+      if (a.obb_nodes[node_of_a / kBlockWidth].radius[node_of_a % kBlockWidth] < 0) return;
+      if (b.obb_nodes[node_of_b / kBlockWidth].radius[node_of_b % kBlockWidth] < 0) return;
       const std::array<float, 3> u = {sign * found.ux[lane], sign * found.uy[lane], sign * found.uz[lane]};
       ASSERT_LE(found.gap[lane],
                 apart_along(triangles_below(a, node_of_a, of_a), triangles_below(b, node_of_b, of_b), u))
@@ -230,7 +230,7 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
       check(plain[2], block_a * kBlockWidth + lane, block_b * kBlockWidth + lane, lane, 1);
     }
     const std::uint32_t node_a = block_a * kBlockWidth, node_b = block_b * kBlockWidth;
-    const std::uint32_t leaf_a = a.ball_slabs[block_a].child[0], leaf_b = b.ball_slabs[block_b].child[0];
+    const std::uint32_t leaf_a = a.obb_nodes[block_a].child[0], leaf_b = b.obb_nodes[block_b].child[0];
     if ((leaf_a & leaf_b & kLeafBit) == 0) continue;
     const detail::LeafPair pair = {a.triangle_blocks[leaf_a & ~kLeafBit], b.triangle_blocks[leaf_b & ~kLeafBit], own,
                                    other};

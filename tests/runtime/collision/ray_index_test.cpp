@@ -119,7 +119,7 @@ LatticeRay lattice_ray(Draw& draw, const LatticeMesh& mesh, const PackedSphereTr
   LatticeRay result;
   const int pace = result.pace = static_cast<int>(draw.bits() % 40) - 20;
   const double unit = std::ldexp(1, power);
-  const BallSlabBlock& root = tree.ball_slabs[0];
+  const ObbNodeBlock& root = tree.obb_nodes[0];
   const std::array<float, 3> middle = {root.x[0], root.y[0], root.z[0]};
   double away = 0, size = 0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -95,7 +95,7 @@ TEST(Walls, HaveAFlatLeafForEachFaceOfABox) {
     for (Vec& v : mesh.vertices) v = transform(turn, v);
     const PackedSphereTree tree = build_tree(mesh, {.bounds = false});
     ASSERT_EQ(tree.triangle_blocks.size(), 6u) << seed;
-    for (const BallSlabBlock& block : tree.ball_slabs) {
+    for (const ObbNodeBlock& block : tree.obb_nodes) {
       for (std::size_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
         if ((block.child[lane] & kLeafBit) == 0) continue;
         ASSERT_LE(block.height[lane], 1e-6f * block.radius[lane]) << seed;

@@ -126,25 +126,25 @@ Changes unsafe_sphere_changes() {
 Changes unsafe_triangle_changes() {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   return {
-      {"no tree of triangles", [](auto& t) { t.ball_slabs.clear(), t.triangle_blocks.clear(); }},
-      {"slab not a number", [=](auto& t) { t.ball_slabs[1].height[1] = nan; }},
-      {"slab with a negative radius", [](auto& t) { t.ball_slabs[1].radius[0] = -2; }},
-      {"second root slab", [](auto& t) { t.ball_slabs[0].radius[1] = 1; }},
-      {"slab behind an empty lane", [](auto& t) { t.ball_slabs[1].radius[0] = -1; }},
-      {"normal too long", [](auto& t) { t.ball_slabs[1].nx[0] += 0.01f; }},
-      {"second normal too long", [](auto& t) { t.ball_slabs[1].mx[0] += 1.01f; }},
+      {"no tree of triangles", [](auto& t) { t.obb_nodes.clear(), t.triangle_blocks.clear(); }},
+      {"slab not a number", [=](auto& t) { t.obb_nodes[1].height[1] = nan; }},
+      {"slab with a negative radius", [](auto& t) { t.obb_nodes[1].radius[0] = -2; }},
+      {"second root slab", [](auto& t) { t.obb_nodes[0].radius[1] = 1; }},
+      {"slab behind an empty lane", [](auto& t) { t.obb_nodes[1].radius[0] = -1; }},
+      {"normal too long", [](auto& t) { t.obb_nodes[1].nx[0] += 0.01f; }},
+      {"second normal too long", [](auto& t) { t.obb_nodes[1].mx[0] += 1.01f; }},
       {"normals not at right angles",
        [](auto& t) {
-         auto& block = t.ball_slabs[1];
+         auto& block = t.obb_nodes[1];
          block.mx[0] = block.nx[0], block.my[0] = block.ny[0], block.mz[0] = block.nz[0];
        }},
-      {"slab with a negative width", [](auto& t) { t.ball_slabs[1].width[0] = -1; }},
+      {"slab with a negative width", [](auto& t) { t.obb_nodes[1].width[0] = -1; }},
       {"slab with an infinite length",
-       [](auto& t) { t.ball_slabs[1].length[0] = std::numeric_limits<float>::infinity(); }},
-      {"slab its own child", [](auto& t) { t.ball_slabs[0].child[0] = 0; }},
-      {"slab child beyond the end", [](auto& t) { t.ball_slabs[1].child[0] = 1u << 20; }},
-      {"triangle block beyond the end", [](auto& t) { t.ball_slabs[1].child[0] = kLeafBit | (1u << 20); }},
-      {"shared triangle block", [](auto& t) { t.ball_slabs[1].child[1] = t.ball_slabs[1].child[0]; }},
+       [](auto& t) { t.obb_nodes[1].length[0] = std::numeric_limits<float>::infinity(); }},
+      {"slab its own child", [](auto& t) { t.obb_nodes[0].child[0] = 0; }},
+      {"slab child beyond the end", [](auto& t) { t.obb_nodes[1].child[0] = 1u << 20; }},
+      {"triangle block beyond the end", [](auto& t) { t.obb_nodes[1].child[0] = kLeafBit | (1u << 20); }},
+      {"shared triangle block", [](auto& t) { t.obb_nodes[1].child[1] = t.obb_nodes[1].child[0]; }},
       {"orphan triangle block", [](auto& t) { t.triangle_blocks.push_back(t.triangle_blocks.back()); }},
       {"wrong slab depth", [](auto& t) { t.triangle_tree_depth += 1; }},
       {"block names no triangle", [](auto& t) { t.triangle_blocks[0].triangle[0] = kNoTriangle; }},

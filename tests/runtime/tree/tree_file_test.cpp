@@ -61,8 +61,8 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   EXPECT_EQ(get<std::uint32_t>(file, 8), 4u);
   EXPECT_EQ(get<std::uint32_t>(file, 12), kHeaderSize);
   EXPECT_EQ(get<std::uint64_t>(file, kFileSizeAt), file.size());
-  const std::size_t counts[] = {tree.blocks.size(),         tree.vertices.size(),   tree.triangles.size(),
-                                tree.leaf_triangles.size(), tree.ball_slabs.size(), tree.triangle_blocks.size(),
+  const std::size_t counts[] = {tree.blocks.size(),         tree.vertices.size(),  tree.triangles.size(),
+                                tree.leaf_triangles.size(), tree.obb_nodes.size(), tree.triangle_blocks.size(),
                                 tree.supports.size()};
   const std::uint32_t sizes[] = {224, 12, 12, 4, 448, 320, 4};
   for (std::size_t i = 0; i < 7; ++i) {
@@ -75,9 +75,9 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   EXPECT_EQ(get<float>(file, kHeaderSize), tree.blocks[0].x[0]);
   EXPECT_EQ(get<float>(file, kHeaderSize + 96), tree.blocks[0].radius[0]);
   EXPECT_EQ(get<std::uint32_t>(file, 88), tree.triangle_tree_depth);
-  const auto ball_slabs = get<std::uint64_t>(file, kTableAt + 24 * 4 + 8),
+  const auto obb_nodes = get<std::uint64_t>(file, kTableAt + 24 * 4 + 8),
              triangles = get<std::uint64_t>(file, kTableAt + 24 * 5 + 8);
-  EXPECT_EQ(get<float>(file, ball_slabs + 192), tree.ball_slabs[0].radius[0]);
+  EXPECT_EQ(get<float>(file, obb_nodes + 192), tree.obb_nodes[0].radius[0]);
   EXPECT_EQ(get<float>(file, triangles + 32), tree.triangle_blocks[0].corner[0][1][0]);
   EXPECT_EQ(get<std::uint32_t>(file, triangles + 288), tree.triangle_blocks[0].triangle[0]);
   const auto sealed = file;

@@ -82,18 +82,18 @@ void add_triangles_below(const PackedSphereTree& tree, std::uint32_t child, std:
     }
     return;
   }
-  const BallSlabBlock& block = tree.ball_slabs[child];
+  const ObbNodeBlock& block = tree.obb_nodes[child];
   for (std::size_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
     add_triangles_below(tree, block.child[lane], triangles);
   }
 }
 
 // Without any tolerance: rays and capsules allow ball slabs no more than the rounding of doubles.
-TEST(TriangleTree, HoldsEveryTriangleInEveryBallSlabAboveItAsStored) {
+TEST(TriangleTree, HoldsEveryTriangleInEveryObbNodeAboveItAsStored) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const PackedSphereTree tree = build_tree(seed % 2 == 0 ? spikes(seed, 12, 9) : soup(seed, 80), {.bounds = false});
-    for (std::size_t b = 0; b < tree.ball_slabs.size(); ++b) {
-      const BallSlabBlock& p = tree.ball_slabs[b];
+    for (std::size_t b = 0; b < tree.obb_nodes.size(); ++b) {
+      const ObbNodeBlock& p = tree.obb_nodes[b];
       for (std::size_t lane = 0; lane < kBlockWidth && p.radius[lane] >= 0; ++lane) {
         std::vector<std::uint32_t> triangles;
         add_triangles_below(tree, p.child[lane], triangles);

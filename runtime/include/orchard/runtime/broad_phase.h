@@ -159,10 +159,11 @@ struct StepsAhead {
 
 class BroadPhase;
 
-namespace detail {  // not for applications: the private header broad_phase/method.h says what they are
-class Method;
+namespace detail {  // not for applications: the private header broad_phase/broad_phase_algorithm.h says what they are
+class BroadPhaseAlgorithm;
 class BodyPool;
-using MakeMethod = std::function<std::unique_ptr<Method>(BodyPool& pool, const BroadPhaseOptions& options)>;
+using MakeMethod =
+    std::function<std::unique_ptr<BroadPhaseAlgorithm>(BodyPool& pool, const BroadPhaseOptions& options)>;
 BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
 }  // namespace detail
 
@@ -246,7 +247,7 @@ class BroadPhase {
   // steps[i] becomes what is due at the i-th step after `time`, up to which steps have been processed. What has been
   // cancelled since is not in it, what has become void is: an estimate. Returns how many are known, at most 254; 0 for
   // other methods than the default one. O(what is due).
-  std::size_t foresee(double time, std::span<StepsAhead> steps) const noexcept;
+  std::size_t predict_load(double time, std::span<StepsAhead> steps) const noexcept;
 
   bool valid() const noexcept { return max_time_ >= 0; }    // the options are, and no step has thrown
   double next_time() const noexcept { return next_time_; }  // nothing happens before

@@ -64,8 +64,8 @@ struct BodyState {
 
 // Fills states[i] with what is known of bodies[i] at `time`, the time of a step. It throws nothing. Called from within
 // step() only, in the thread that called this. While a source, a filter or a listener runs, the detector that called it
-// refuses every change and every call of step(), manifold() and foresee(): they return what they return for a body that
-// does not exist, and Frame::time_refused is true. Destroying or moving the detector there is an error.
+// refuses every change and every call of step(), manifold() and predict_load(): they return what they return for a body
+// that does not exist, and Frame::time_refused is true. Destroying or moving the detector there is an error.
 using StateSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states)>;
 
 // For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with. The vector
@@ -340,7 +340,7 @@ class Detector {
 
   // What the steps after the last one will cost, as far as the broad phase knows now: loads[i] is that of the i-th step
   // after it. At most 254 are filled; returns how many.
-  std::size_t foresee(std::span<StepLoad> loads) const noexcept;
+  std::size_t predict_load(std::span<StepLoad> loads) const noexcept;
 
   std::uint64_t promises_broken() const noexcept;             // found so far (watch)
   std::uint64_t promises_broken(BodyId body) const noexcept;  // of one body

@@ -38,7 +38,7 @@ class FlexibleTree {
   bool move(std::span<const std::uint32_t> vertices, std::span<const std::array<double, 3>> places) noexcept;
 
   std::size_t nodes_touched() const noexcept { return touched_; }  // by the last move, of both trees
-  std::size_t nodes() const noexcept { return spheres_.size() + ball_slabs_.size(); }
+  std::size_t nodes() const noexcept { return spheres_.size() + obb_nodes_.size(); }
   // By how much the leaves are larger than at rest: the sum of what they were enlarged by over the sum of their radii.
   double looseness() const noexcept { return rest_radii_ > 0 ? enlarged_ / rest_radii_ : 0; }
   // Beyond this, queries cost several times as much as with a tree built for the present shape.
@@ -65,13 +65,13 @@ class FlexibleTree {
   static void adopt(std::vector<Node>& nodes, std::uint32_t parent, std::uint32_t child) noexcept;
   static Levels room_by_level(const std::vector<Node>& nodes);
   void link_spheres();
-  void link_ball_slabs();
+  void link_obb_nodes();
   void list_triangles();
   void enlarge_for_good();
   void mark(std::vector<Node>& nodes, Levels& levels, std::uint32_t node) noexcept;
   void rewrite(std::uint32_t block) noexcept;
   void refit_spheres() noexcept;
-  void refit_ball_slabs() noexcept;
+  void refit_obb_nodes() noexcept;
   double max_of_leaf(std::uint32_t link) const noexcept;
   double max_of_block(std::uint32_t block) const noexcept;
 
@@ -79,8 +79,8 @@ class FlexibleTree {
   double largest_;
   bool valid_ = false;
   std::vector<std::array<float, 3>> rest_;
-  std::vector<double> moved_;               // by triangle: how far its corners are from rest, at most
-  std::vector<Node> spheres_, ball_slabs_;  // by node
+  std::vector<double> moved_;              // by triangle: how far its corners are from rest, at most
+  std::vector<Node> spheres_, obb_nodes_;  // by node
   Lists triangles_of_vertex_, leaves_of_triangle_;
   std::vector<std::uint32_t> block_of_triangle_, slab_of_block_;
   Levels dirty_spheres_, dirty_slabs_;

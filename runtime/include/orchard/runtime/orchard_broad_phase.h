@@ -131,8 +131,8 @@ orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t
 uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t);
 /* What is due at the `count` steps after `time`: fills the arrays (each may be null), and returns how many are known.
  */
-size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
-                                   size_t* meetings, size_t* overlaps);
+size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
+                                        size_t* meetings, size_t* overlaps);
 
 uint64_t orchard_broad_phase_motions_asked(const orchard_broad_phase* world);
 uint64_t orchard_broad_phase_promises_broken(const orchard_broad_phase* world); /* found by `validate` */

@@ -169,7 +169,7 @@ uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index
 uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index);
 uint64_t orchard_detector_promises_broken(const orchard_detector* detector);
 /* What the next `count` steps will cost: fills the arrays (each may be null), and returns how many are known. */
-size_t orchard_detector_foresee(const orchard_detector* detector, size_t count, double* pairs, double* work);
+size_t orchard_detector_predict_load(const orchard_detector* detector, size_t count, double* pairs, double* work);
 
 #ifdef __cplusplus
 }

@@ -69,7 +69,7 @@ constexpr std::uint32_t last_linked_block(std::uint32_t branching) noexcept {
 // between two parallel planes, the same distance from its centre; every triangle below the node lies in it, in every
 // node above it. With two more pairs of planes, across the first ones and each other, it is also an oriented box: the
 // third pair's normal is the first one's times the second one's (cross product in float).
-struct alignas(32) BallSlabBlock {
+struct alignas(32) ObbNodeBlock {
   std::array<float, kBlockWidth> x{}, y{}, z{};     // centre
   std::array<float, kBlockWidth> nx{}, ny{}, nz{};  // normal of the planes: unit to 1e-6
   std::array<float, kBlockWidth> radius{};          // of the ball; -1 in lanes that hold no node
@@ -79,7 +79,7 @@ struct alignas(32) BallSlabBlock {
   std::array<float, kBlockWidth> length{};          // and along the third one
   std::array<std::uint32_t, kBlockWidth> child{};   // block of the first child; with kLeafBit set, a triangle block
 };
-static_assert(sizeof(BallSlabBlock) == 448 && alignof(BallSlabBlock) == 32);
+static_assert(sizeof(ObbNodeBlock) == 448 && alignof(ObbNodeBlock) == 32);
 
 // Up to eight triangles side by side, as the exact level reads them.
 struct alignas(32) TriangleBlock {
@@ -112,7 +112,7 @@ struct PackedSphereTree {
   std::vector<std::array<float, 3>> vertices;           // relative to origin
   std::vector<std::array<std::uint32_t, 3>> triangles;  // into vertices
   std::vector<std::uint32_t> leaf_triangles;            // into triangles; kLeafBit marks the last one of a leaf
-  std::vector<BallSlabBlock> ball_slabs;
+  std::vector<ObbNodeBlock> obb_nodes;
   std::vector<TriangleBlock> triangle_blocks;
   // How far the triangles reach: the largest of direction . point, rounded up, for directions on the surface of the
   // cube of side 2, in the order of support_direction(). kSupportCount of them if there are triangles, or none.
@@ -139,7 +139,7 @@ struct TreeView {
   std::span<const std::array<float, 3>> vertices;
   std::span<const std::array<std::uint32_t, 3>> triangles;
   std::span<const std::uint32_t> leaf_triangles;
-  std::span<const BallSlabBlock> ball_slabs;
+  std::span<const ObbNodeBlock> obb_nodes;
   std::span<const TriangleBlock> triangle_blocks;
   std::span<const float> supports;
 
@@ -156,7 +156,7 @@ struct TreeView {
         vertices(tree.vertices),
         triangles(tree.triangles),
         leaf_triangles(tree.leaf_triangles),
-        ball_slabs(tree.ball_slabs),
+        obb_nodes(tree.obb_nodes),
         triangle_blocks(tree.triangle_blocks),
         supports(tree.supports) {}
 };

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "bodies.h"
-#include "collision/kernels/ball_slab_block.h"
-#include "collision/kernels/ball_slab_time.h"
+#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/obb_node_time.h"
 #include "collision/kernels/point_block.h"
 #include "collision/kernels/ray_block.h"
 #include "collision/kernels/segment_block.h"
@@ -106,7 +106,7 @@ TEST(SegmentBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachin
   });
 }
 
-TEST(RayBlock, KeepsEveryTriangleAndBallSlabOnTheRayOnEveryMachine) {
+TEST(RayBlock, KeepsEveryTriangleAndObbNodeOnTheRayOnEveryMachine) {
   on_every_machine([] {
     long kept = 0, tested = 0;
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
@@ -131,13 +131,13 @@ TEST(RayBlock, KeepsEveryTriangleAndBallSlabOnTheRayOnEveryMachine) {
       }
       ray.margin = static_cast<float>(std::max(4 * scale * 48 * 0x1p-24, 1e-15));
       const auto begin = static_cast<float>(-2 * scale), end = static_cast<float>(2 * scale);
-      for (std::size_t b = 0; b < tree.ball_slabs.size(); ++b) {
+      for (std::size_t b = 0; b < tree.obb_nodes.size(); ++b) {
         RayEntries entries, plain;
-        const std::uint32_t met = ray_ball_slabs(ray, tree.ball_slabs[b], begin, end, entries);
-        ASSERT_EQ(met, ray_ball_slabs_scalar(ray, tree.ball_slabs[b], begin, end, plain)) << seed;
+        const std::uint32_t met = ray_obb_nodes(ray, tree.obb_nodes[b], begin, end, entries);
+        ASSERT_EQ(met, ray_obb_nodes_scalar(ray, tree.obb_nodes[b], begin, end, plain)) << seed;
         ASSERT_TRUE(same_bits(entries, plain)) << seed;
-        for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[b].radius[lane] >= 0; ++lane) {
-          const BallSlabBlock& slab = tree.ball_slabs[b];
+        for (std::uint32_t lane = 0; lane < kBlockWidth && tree.obb_nodes[b].radius[lane] >= 0; ++lane) {
+          const ObbNodeBlock& slab = tree.obb_nodes[b];
           const Vec3 from = {target[0] - double{slab.x[lane]}, target[1] - double{slab.y[lane]},
                              target[2] - double{slab.z[lane]}};
           const double height =
@@ -164,8 +164,8 @@ TEST(RayBlock, KeepsEveryTriangleAndBallSlabOnTheRayOnEveryMachine) {
   });
 }
 
-BallSlabBlock random_ball_slabs(Draw& draw) {
-  BallSlabBlock lanes;
+ObbNodeBlock random_obb_nodes(Draw& draw) {
+  ObbNodeBlock lanes;
   for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
     const auto n = draw.direction();
     lanes.x[i] = static_cast<float>(draw.uniform(-3, 3)), lanes.y[i] = static_cast<float>(draw.uniform(-3, 3));
@@ -206,20 +206,20 @@ Vec3 turned(const Turning& t, const Vec3& p, double time) {
 }
 
 // Until the time that is told, no two points of the ball slabs meet: corners of triangles in them, moved and turned.
-TEST(BallSlabTimes, AreNotLaterThanAnyContactOnEveryMachine) {
+TEST(ObbNodeTimes, AreNotLaterThanAnyContactOnEveryMachine) {
   on_every_machine([] {
     int met = 0, late = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
       Draw draw(seed);
-      const BallSlabBlock lanes = random_ball_slabs(draw);
+      const ObbNodeBlock lanes = random_obb_nodes(draw);
       const auto m = draw.direction();
-      const BallSlab single = {
+      const ObbNode single = {
           0, 0, 0, static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]), 0.5f, 0.1f};
       const Closing closing = random_closing(draw, seed);
       const Placement placement = still(8);
-      BallSlabTimes times, plain;
-      ball_slab_times(single, lanes, &placement, closing, placement.margin, times);
-      ball_slab_times_scalar(single, lanes, &placement, closing, placement.margin, plain);
+      ObbNodeTimes times, plain;
+      obb_node_times(single, lanes, &placement, closing, placement.margin, times);
+      obb_node_times_scalar(single, lanes, &placement, closing, placement.margin, plain);
       ASSERT_TRUE(same_bits(times.time, plain.time) && same_bits(times.x, plain.x)) << seed;
       ASSERT_EQ(times.used, 0x7fu);
       // As far as the axes go: the gap of two balls' centres along a line must not close before.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "collision/kernels/ball_slab_block.h"
+#include "collision/kernels/obb_node_block.h"
 #include "collision/support_map.h"
 #include "every_machine.h"
 #include "orchard/runtime/pose.h"
@@ -41,7 +41,7 @@ PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
 }
 
 // What the compiler's vectors find against what is found one number at a time.
-void expect_same_on_every_machine(const NodeBox& single, const BallSlabBlock& lanes, float scale, float margin,
+void expect_same_on_every_machine(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                                   std::uint64_t seed, BoxGaps& plain) {
   box_gaps_scalar(single, lanes, scale, margin, plain);
   on_every_machine([&] {
@@ -75,7 +75,7 @@ TEST(NodeBox, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance)
     const auto placed_a = test::placed_triangles(a, Pose{}), placed_b = test::placed_triangles(b, pose);
     const auto check = [&](const BoxGaps& gaps, const PackedSphereTree& lanes, const auto& placed, const auto& single) {
       for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-        ASSERT_EQ(gaps.used >> lane & 1, lanes.ball_slabs[1].radius[lane] >= 0 ? 1u : 0u);
+        ASSERT_EQ(gaps.used >> lane & 1, lanes.obb_nodes[1].radius[lane] >= 0 ? 1u : 0u);
         if ((gaps.used >> lane & 1) == 0) continue;
         ASSERT_EQ(gaps.meeting >> lane & 1, gaps.gap[lane] <= 0 ? 1u : 0u);
         const auto distance = test::surface_distance(single, test::triangles_below(lanes, kBlockWidth + lane, placed));
@@ -85,12 +85,12 @@ TEST(NodeBox, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance)
       }
     };
     BoxGaps gaps;
-    expect_same_on_every_machine(moved_back(node_box_at(a.ball_slabs[0], 0), placement), b.ball_slabs[1],
-                                 placement.scale, placement.box_margin, seed, gaps);
+    expect_same_on_every_machine(moved_back(node_box_at(a.obb_nodes[0], 0), placement), b.obb_nodes[1], placement.scale,
+                                 placement.box_margin, seed, gaps);
     check(gaps, b, placed_b, placed_a);
     if (HasFatalFailure()) return;
-    if (a.ball_slabs.size() < 2) continue;
-    expect_same_on_every_machine(moved(node_box_at(b.ball_slabs[0], 0), placement), a.ball_slabs[1], 1,
+    if (a.obb_nodes.size() < 2) continue;
+    expect_same_on_every_machine(moved(node_box_at(b.obb_nodes[0], 0), placement), a.obb_nodes[1], 1,
                                  placement.box_margin, seed, gaps);
     check(gaps, a, placed_a, placed_b);
     if (HasFatalFailure()) return;
@@ -158,8 +158,7 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
     if (seed % 2 == 0) pose.scale = draw.uniform(0.25, 4);
     const Placement placement = placement_of(pose, 10);
     const TriangleBlock lanes = test::one_block(a), rows = test::one_block(b);
-    const NodeBox lane_box = node_box_at(a.ball_slabs[0], 0),
-                  row_box = moved(node_box_at(b.ball_slabs[0], 0), placement);
+    const NodeBox lane_box = node_box_at(a.obb_nodes[0], 0), row_box = moved(node_box_at(b.obb_nodes[0], 0), placement);
     const LeafPair pair{lanes, rows, lane_box, row_box};
     const std::uint64_t found = triangle_candidates_scalar(pair, placement);
     on_every_machine([&] {

@@ -27,9 +27,9 @@ class PortionVisitor {
 
 // A way to find what happens next. Steps are processed in ascending order; those in between had nothing to do.
 // Where step() throws, the method is not asked again. Where the others do, they have changed nothing.
-class Method {
+class BroadPhaseAlgorithm {
  public:
-  virtual ~Method() = default;
+  virtual ~BroadPhaseAlgorithm() = default;
   // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
   virtual void changed(BodyIndex body) = 0;
   // Called while the body pool still has it.
@@ -40,7 +40,7 @@ class Method {
   virtual void skip() noexcept {}
   virtual std::size_t memory_bytes() const noexcept = 0;
   // Adds what is due at the steps after `now`, one after the other; returns for how many it knows.
-  virtual std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept {
+  virtual std::size_t predict_load(Step now, std::span<StepsAhead> steps) const noexcept {
     (void)now, (void)steps;
     return 0;
   }
@@ -61,7 +61,7 @@ class Method {
   virtual double cell_size() const noexcept { return 0; }  // a length to begin a search with; 0: none
 };
 
-std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options);
+std::unique_ptr<BroadPhaseAlgorithm> make_kinetic_broad_phase(BodyPool& pool, const BroadPhaseOptions& options);
 
 // The seam for code that finds what happens next in another way (declared in broad_phase.h, for the friendship):
 //   BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);

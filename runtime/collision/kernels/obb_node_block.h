@@ -13,11 +13,11 @@
 // with, and all that some compilers get.
 namespace orchard::runtime::detail {
 
-inline BallSlab ball_slab_at(const BallSlabBlock& b, std::uint32_t i) noexcept {
+inline ObbNode obb_node_at(const ObbNodeBlock& b, std::uint32_t i) noexcept {
   return {b.x[i], b.y[i], b.z[i], b.nx[i], b.ny[i], b.nz[i], b.radius[i], b.height[i]};
 }
 
-BallSlab moved(const BallSlab& slab, const Placement& placement) noexcept;
+ObbNode moved(const ObbNode& slab, const Placement& placement) noexcept;
 
 struct LeafPair {
   const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second

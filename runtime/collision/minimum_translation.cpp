@@ -1,4 +1,4 @@
-#include "collision/way_out.h"
+#include "collision/minimum_translation.h"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ constexpr std::size_t kObstacles = 8;  // kept at most
 struct MovingPoint {
   Vec3 start, velocity;
 
-  MovingPoint(const WayOutSearch& search, const SolidBox& solid, const Pose& back, const Vec3& u,
+  MovingPoint(const MinimumTranslationSearch& search, const SolidBox& solid, const Pose& back, const Vec3& u,
               const Vec3& piece) noexcept {
     const PlacedPair& pair = search.pair;
     const Vec3 first_origin = pair.first.tree.origin, second_origin = pair.second.tree.origin;
@@ -56,7 +56,7 @@ struct MovingPoint {
 
 // When the last of the pieces that are inside boxes at `at` has left them by its point, or minus infinity if there is
 // none.
-double leaves_boxes(const WayOutSearch& search, const Vec3& u, double at) noexcept {
+double leaves_boxes(const MinimumTranslationSearch& search, const Vec3& u, double at) noexcept {
   double last = -std::numeric_limits<double>::infinity();
   for (const SolidBox& solid : search.solids) {
     const Pose back = inverse(search.pair.relative);
@@ -77,7 +77,7 @@ struct Meeting {
   Vec3 normal;
 };
 
-Meeting meeting_at(const WayOutSearch& search, const Way& way, double at, double limit) noexcept {
+Meeting meeting_at(const MinimumTranslationSearch& search, const Way& way, double at, double limit) noexcept {
   const PlacedPair ahead = search.pair.moved(along({0, 0, 0}, way.u, at));
   Meeting meeting;
   meeting.normal = way.u;
@@ -100,9 +100,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Along one direction to the end, or until it is longer than `limit`. What is in the way beyond `give_up` at some place
 // ends it there, at the first pair of triangles that is.
-WayOut follow(const WayOutSearch& search, const Vec3& direction, double limit, double give_up = kInfinity) noexcept {
+MinimumTranslation follow(const MinimumTranslationSearch& search, const Vec3& direction, double limit,
+                          double give_up = kInfinity) noexcept {
   const Way way(direction);
-  WayOut out{way.u, 0, way.u, true};
+  MinimumTranslation out{way.u, 0, way.u, true};
   for (const Cut& cut : search.cuts) {
     const Exit exit = exit_along(cut.first, cut.second, way);
     if (exit.t > out.way) out.way = exit.t, out.normal = exit.normal;
@@ -129,7 +130,7 @@ WayOut follow(const WayOutSearch& search, const Vec3& direction, double limit, d
 }
 
 // To where the bodies' extents along a direction part: always an end, seldom the first one.
-WayOut way_past(const WayOutSearch& search, const Vec3& direction) noexcept {
+MinimumTranslation way_past(const MinimumTranslationSearch& search, const Vec3& direction) noexcept {
   const Way way(direction);
   const Pose &relative = search.pair.relative, turn = {.rotation = relative.rotation};
   const Vec3 back = rotate(inverse(turn), along({0, 0, 0}, way.u, -1));
@@ -142,7 +143,7 @@ WayOut way_past(const WayOutSearch& search, const Vec3& direction) noexcept {
 // From one direction to a local minimum.
 class Descent {
  public:
-  explicit Descent(const WayOutSearch& search) noexcept : search_(search) {}
+  explicit Descent(const MinimumTranslationSearch& search) noexcept : search_(search) {}
 
   // False if it was tried before, nearly.
   bool try_direction(const Vec3& direction) noexcept {
@@ -173,8 +174,8 @@ class Descent {
     }
   }
 
-  const WayOut& best() const noexcept { return best_; }
-  const WayOut& last() const noexcept { return last_; }
+  const MinimumTranslation& best() const noexcept { return best_; }
+  const MinimumTranslation& last() const noexcept { return last_; }
 
  private:
   void add(const Obstacle& obstacle) noexcept {
@@ -187,8 +188,8 @@ class Descent {
     if (obstacle_count_ < kObstacles) obstacles_[obstacle_count_++] = obstacle;
   }
 
-  const WayOutSearch& search_;
-  WayOut best_{{}, std::numeric_limits<double>::infinity(), {}, false}, last_{};
+  const MinimumTranslationSearch& search_;
+  MinimumTranslation best_{{}, std::numeric_limits<double>::infinity(), {}, false}, last_{};
   std::array<Obstacle, kObstacles> obstacles_{};
   std::size_t obstacle_count_ = 0;
   std::array<Vec3, 32> tried_{};
@@ -200,11 +201,12 @@ class Descent {
 class AllAround {
  public:
   // Looks for ways shorter than `limit`. `best`: the shortest one so far.
-  AllAround(const WayOutSearch& search, const WayOut& best, double limit, std::uint32_t refinements) noexcept
+  AllAround(const MinimumTranslationSearch& search, const MinimumTranslation& best, double limit,
+            std::uint32_t refinements) noexcept
       : search_(search), best_(best), refinements_(refinements), limit_(limit) {}
 
   // `thorough`: also along the shortest way out of every pair of triangles, not only of those that are in the way.
-  WayOut find(bool thorough) noexcept {
+  MinimumTranslation find(bool thorough) noexcept {
     if (thorough) {
       for (std::size_t i = 0; i < remembered(); ++i) shifts_of(i);
       try_shortest();
@@ -237,7 +239,7 @@ class AllAround {
 
   std::size_t remembered() const noexcept { return std::min(kRemembered, search_.cuts.size()); }
 
-  void offer(const WayOut& out) noexcept {
+  void offer(const MinimumTranslation& out) noexcept {
     if (out.ended && (!best_.ended || out.way < best_.way)) best_ = out;
   }
 
@@ -262,7 +264,7 @@ class AllAround {
   void try_direction(const Vec3& direction) noexcept {
     const Vec3 u = along({0, 0, 0}, direction, 1 / std::sqrt(dot(direction, direction)));
     if (is_blocked(u)) return;
-    const WayOut out = follow(search_, u, limit_, limit_);
+    const MinimumTranslation out = follow(search_, u, limit_, limit_);
     if (!out.ended || !(out.way < limit_)) return;
     limit_ = std::min(limit_, kWorthStarting * out.way);
     std::size_t at = start_count_ < kStarts ? start_count_++ : kStarts;
@@ -305,20 +307,20 @@ class AllAround {
     return shifts_[i];
   }
 
-  const WayOutSearch& search_;
-  WayOut best_;
+  const MinimumTranslationSearch& search_;
+  MinimumTranslation best_;
   std::uint32_t refinements_;
   double limit_;
   std::size_t blocking_ = 0;
   std::array<MeetingShifts, kRemembered> shifts_;
   std::array<bool, kRemembered> known_{};
-  std::array<WayOut, kStarts> starts_{};
+  std::array<MinimumTranslation, kStarts> starts_{};
   std::size_t start_count_ = 0;
 };
 
 // Whether a way is so long, beside the smaller body or beside the curves in which the surfaces cut each other, that a
 // shorter one is likely to lead elsewhere.
-bool is_doubtful(const WayOutSearch& search, double way) noexcept {
+bool is_doubtful(const MinimumTranslationSearch& search, double way) noexcept {
   constexpr double kDeep = 0.01, kBeyondContact = 2;
   const PlacedPair& pair = search.pair;
   if (way > kDeep * std::min(pair.first.radius, pair.second.radius * pair.relative.scale)) return true;
@@ -334,7 +336,7 @@ bool is_doubtful(const WayOutSearch& search, double way) noexcept {
 
 }  // namespace
 
-const Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept {
+const Vec3* piece_inside(const MinimumTranslationSearch& search, const SolidBox& solid) noexcept {
   const Pose back = inverse(search.pair.relative);
   for (const Vec3& piece : solid.pieces) {
     if (MovingPoint(search, solid, back, {0, 0, 0}, piece).is_inside(solid.half, 0)) return &piece;
@@ -342,12 +344,13 @@ const Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noex
   return nullptr;
 }
 
-WayOut least_way_out(const WayOutSearch& search, std::span<const Vec3> directions, std::uint32_t refinements) noexcept {
+MinimumTranslation minimum_translation(const MinimumTranslationSearch& search, std::span<const Vec3> directions,
+                                       std::uint32_t refinements) noexcept {
   Descent descent(search);
   for (const Vec3& direction : directions) descent.try_direction(direction);
   std::uint32_t left = refinements;
   if (descent.best().ended) descent.refine(left);
-  WayOut best = descent.best();
+  MinimumTranslation best = descent.best();
   if (refinements > 0) {
     // A way that is not doubtful is given up only for one that is shorter by far.
     constexpr double kShorterByFar = 0.85;

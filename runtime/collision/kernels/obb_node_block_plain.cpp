@@ -2,11 +2,11 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/kernels/ball_slab_block.h"
-#include "collision/kernels/ball_slab_pair.h"
+#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/obb_node_pair.h"
 #include "collision/kernels/triangle_tests.h"
 
-// The inner loops of ball_slab_block.cpp one number at a time: the same operations, but only those whose results are
+// The inner loops of obb_node_block.cpp one number at a time: the same operations, but only those whose results are
 // asked for.
 namespace orchard::runtime::detail {
 namespace {
@@ -74,7 +74,7 @@ struct Corners {
     Extent<OneFloat> all = extent_along<OneFloat>(axis, triangle[0].corner);
     for (std::uint32_t i = 1; i < kBlockWidth; ++i) {
       const Extent<OneFloat> own = extent_along<OneFloat>(axis, triangle[i].corner);
-      all = {E::smaller(all.low, own.low), E::larger(all.high, own.high)};
+      all = {E::min(all.low, own.low), E::max(all.high, own.high)};
     }
     return all;
   }
@@ -116,7 +116,7 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
   const Corners lane(lanes, nullptr, placement.unit), row(rows, &placement, placement.unit);
   const Extent<OneFloat> lane_extent = lane.along(given), row_extent = row.along(given);
   const float all_beyond =
-      (E::larger(row_extent.low - lane_extent.high, lane_extent.low - row_extent.high) - margin) * placement.whole;
+      (E::max(row_extent.low - lane_extent.high, lane_extent.low - row_extent.high) - margin) * placement.whole;
   result.near = {};
   if (!(all_beyond <= reach)) {
     for (auto& lower : result.lower) lower.fill(all_beyond);
@@ -147,15 +147,14 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
         }
         const auto along = [&](const Vectors& axis) { return gap_along<OneFloat>(axis, t, p); };
         const Vectors line = normalised<OneFloat>(E::minus(middle[l], row_middle));
-        const float gap =
-            E::larger(E::larger(along(row_normal), along(normal[l])), E::larger(along(line), along(given)));
-        lower = E::larger((gap - margin) * placement.whole, lower);
+        const float gap = E::max(E::max(along(row_normal), along(normal[l])), E::max(along(line), along(given)));
+        lower = E::max((gap - margin) * placement.whole, lower);
       }
       if (lanes.triangle[l] == kNoTriangle) continue;
       if (lower <= reach) {
         result.near[r] |= 1u << l;
       } else {
-        result.beyond = E::smaller(result.beyond, lower);
+        result.beyond = E::min(result.beyond, lower);
       }
     }
   }

@@ -1,14 +1,14 @@
 #pragma once
 #include <cstdint>
 
-#include "collision/kernels/ball_slab_block.h"
+#include "collision/kernels/obb_node_block.h"
 #include "simd/vector_support.h"
 
 namespace orchard::runtime::detail {
 
 // The order of the children of a pair, the least last, where a stack is opened first; of equal ones the later one.
 // Each one's place comes from comparing all: sorting them takes branches that nothing foresees.
-struct LeastLast {
+struct FarthestFirst {
   std::uint32_t place[kBlockWidth], count = 0;
   float keys[kBlockWidth];
 

@@ -1,4 +1,4 @@
-#include "broad_phase/events.h"
+#include "broad_phase/kinetic_broad_phase.h"
 
 #include <cmath>
 #include <numeric>
@@ -14,7 +14,7 @@ constexpr Step kNotSorted = 256;                      // steps for which nothing
 
 }  // namespace
 
-Events::Events(BodyPool& pool, const BroadPhaseOptions& options)
+KineticBroadPhase::KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& options)
     : pool_(pool),
       options_(options),
       windows_(pool_, options_.window),
@@ -24,7 +24,7 @@ Events::Events(BodyPool& pool, const BroadPhaseOptions& options)
       updates_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, options_),
       budgeted_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, updates_) {}
 
-void Events::changed(BodyIndex body) {
+void KineticBroadPhase::changed(BodyIndex body) {
   const std::size_t n = pool_.slots();
   if (windows_.size() < n) {
     boxes_.make_room(n);
@@ -36,7 +36,7 @@ void Events::changed(BodyIndex body) {
 }
 
 // Their boxes are all over memory: they are taken out together, at the next step.
-void Events::removed(BodyIndex body) {
+void KineticBroadPhase::removed(BodyIndex body) {
   if (gone_.size() >= windows_.size()) take_away_gone();
   append(gone_, body);
   budgeted_.leave(body);
@@ -44,7 +44,7 @@ void Events::removed(BodyIndex body) {
   overlaps_.mark(body, OverlapList::kUpdated);
 }
 
-void Events::take_away_gone() noexcept {
+void KineticBroadPhase::take_away_gone() noexcept {
   constexpr std::size_t kAhead = 16, kKept = 1024;
   boxes_.take_away(gone_);
   for (std::size_t i = 0; i < gone_.size(); ++i) {
@@ -58,11 +58,11 @@ void Events::take_away_gone() noexcept {
   if (gone_.capacity() > kKept) give_back(gone_);
 }
 
-void Events::note_cancelled(BodyIndex body, Step now) {
+void KineticBroadPhase::note_cancelled(BodyIndex body, Step now) {
   if (windows_.note_cancelled(body, now)) planner_.note_cancelled();
 }
 
-void Events::collect_due(Step now) {
+void KineticBroadPhase::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
   // Then all bodies are new, each is noted at least once, and none has had a window.
   if (first_ && changes_.size() == pool_.size()) return changes_.take_all(due_);
@@ -89,7 +89,7 @@ void Events::collect_due(Step now) {
 }
 
 // After a step by sorting: all windows were of one step.
-void Events::collect_all(Step now) {
+void KineticBroadPhase::collect_all(Step now) {
   for (BodyIndex body = 0; body < pool_.slots(); ++body) {
     if (changes_.has(body)) {
       changes_.forget(body);
@@ -105,7 +105,7 @@ void Events::collect_all(Step now) {
 }
 
 // What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
-void Events::complete_due(Step now) {
+void KineticBroadPhase::complete_due(Step now) {
   if (changes_.empty() && pool_.size() == pool_.slots()) return;  // nor is anybody gone
   std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
   const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
@@ -117,7 +117,7 @@ void Events::complete_due(Step now) {
 }
 
 // When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
-bool Events::worth_a_rebuild(std::size_t due) const noexcept {
+bool KineticBroadPhase::worth_a_rebuild(std::size_t due) const noexcept {
   const std::size_t n = pool_.size();
   if (windows_.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
   if (due == 0 || n == 0) return false;
@@ -125,7 +125,7 @@ bool Events::worth_a_rebuild(std::size_t due) const noexcept {
 }
 
 // False if a budget interrupted it.
-bool Events::replan(Step now, BudgetTracker& tracker) {
+bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
   GridCounts counts = boxes_.counts();
   if (sorting_) counts = {.bodies = pool_.size(), .pairs = sorted_.boxes_met()};
   const Planner::Outcome outcome = planner_.replan(now, counts, tracker);
@@ -133,13 +133,13 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
   boxes_.begin_counts();
   if (outcome == Planner::Outcome::same) return true;
   const Vec3* const surveyed = planner_.surveyed_middle();
-  boxes_.set_lattice(surveyed != nullptr ? *surveyed : boxes_.lattice_at(now).origin(), planner_.velocity(),
+  boxes_.set_lattice(surveyed != nullptr ? *surveyed : boxes_.quantized_grid_at(now).origin(), planner_.velocity(),
                      planner_.plan().cell_size, 2 * options_.position_slack, options_.time_step, now);
   windows_.plan(planner_.plan().window, boxes_.moves());
   return true;
 }
 
-void Events::all_are_due() {
+void KineticBroadPhase::all_are_due() {
   if (due_.capacity() > 2 * pool_.size()) give_back(due_);
   due_.resize(pool_.size());
   if (pool_.size() == pool_.slots()) return std::iota(due_.begin(), due_.end(), BodyIndex{0});
@@ -150,7 +150,7 @@ void Events::all_are_due() {
   }
 }
 
-void Events::place_all_anew() {
+void KineticBroadPhase::place_all_anew() {
   if (sorting_) sorted_.release();
   sorting_ = false;
   wheel_.clear_bodies();
@@ -159,18 +159,18 @@ void Events::place_all_anew() {
   all_are_due();
 }
 
-void Events::note_spheres() {
+void KineticBroadPhase::note_spheres() {
   const WindowPlan& plan = planner_.plan();
   pairs_.note_spheres(plan.window == 1 || plan.pairs_per_body >= kManyPairs, pool_.slots());
 }
 
-void Events::make_room_for_boxes() {
+void KineticBroadPhase::make_room_for_boxes() {
   boxes_.make_room_for_boxes(pool_.slots());
   pairs_.make_room_for_spheres(pool_.slots());
 }
 
 // Everything that is due, and what a budget left over before.
-void Events::step_in_full(Step now, bool completing) {
+void KineticBroadPhase::step_in_full(Step now, bool completing) {
   if (!budgeted_.nothing_left()) {
     for (const BodyIndex body : due_) budgeted_.leave(body);  // changed while it waited: one update is enough
     budgeted_.take_all(due_, waiting_);
@@ -206,7 +206,7 @@ void Events::step_in_full(Step now, bool completing) {
 
 // A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
 // speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
-unsigned Events::step_within(Step now, BudgetTracker& tracker) {
+unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
   const bool has_to = sorting_ || boxes_.outgrown(pool_.slots()) || windows_.rounds_run_out();
   const bool anew = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
@@ -225,12 +225,12 @@ unsigned Events::step_within(Step now, BudgetTracker& tracker) {
 }
 
 // Static bodies have windows without end, which are worth keeping if there are many.
-bool Events::worth_sorting(Step now) const noexcept {
+bool KineticBroadPhase::worth_sorting(Step now) const noexcept {
   return planner_.plan().window == 1 && pool_.slots() > BoxList::kMaxBodies && now >= sorts_from_ &&
          2 * pool_.statics() <= pool_.size();
 }
 
-void Events::begin_sorting() {
+void KineticBroadPhase::begin_sorting() {
   sorting_ = true;
   common_expiry_ = kNeverStep;
   wheel_.clear();
@@ -240,11 +240,11 @@ void Events::begin_sorting() {
   boxes_.begin_counts();
 }
 
-void Events::step_by_sorting(Step now) {
+void KineticBroadPhase::step_by_sorting(Step now) {
   if (!sorting_) begin_sorting();
   windows_.begin_anew();
   all_are_due();
-  sorted_.begin(due_.size(), boxes_.lattice_at(now).origin(), planner_.spacing());
+  sorted_.begin(due_.size(), boxes_.quantized_grid_at(now).origin(), planner_.spacing());
   for (std::size_t done = 0; done < due_.size(); done += kBlock) {
     auto block = std::span(due_).subspan(done, std::min(kBlock, due_.size() - done));
     const std::span<const Motion> motions = updates_.ask_valid(now, block);
@@ -261,7 +261,7 @@ void Events::step_by_sorting(Step now) {
 // A step ahead of the common expiry: the present bounds have answered for this step, and hold no longer than that. If
 // the next ones are known already, half of the work is done now, in updates with windows that begin at the common
 // expiry.
-bool Events::prepare(Step now) {
+bool KineticBroadPhase::prepare(Step now) {
   const Step from = now + 1;
   common_expiry_ = kNeverStep;
   std::array<BodyIndex, kAskedAhead> sample;
@@ -289,7 +289,7 @@ bool Events::prepare(Step now) {
 }
 
 // Nothing is left to plan for, nor to wake up for.
-void Events::forget_all() noexcept {
+void KineticBroadPhase::forget_all() noexcept {
   wheel_.clear();
   overlaps_.clear();
   pairs_.forget_all();
@@ -300,7 +300,7 @@ void Events::forget_all() noexcept {
   common_expiry_ = kNeverStep;
 }
 
-void Events::begin(Step now) {
+void KineticBroadPhase::begin(Step now) {
   windows_.begin_round();
   entries_.clear();
   waiting_.clear();
@@ -311,7 +311,7 @@ void Events::begin(Step now) {
   first_ = false;
 }
 
-StepReport Events::step(Step now, BudgetTracker& tracker) {
+StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
   take_away_gone();
   if (pool_.size() == 0) {
     forget_all();
@@ -334,7 +334,7 @@ StepReport Events::step(Step now, BudgetTracker& tracker) {
   return end(now, incomplete_from, tracker);
 }
 
-StepReport Events::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
+StepReport KineticBroadPhase::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
   StepReport report{now + 1, overlaps_.pairs()};
   if (incomplete_from != kNoClass) {
     report.incomplete_from = incomplete_from;
@@ -348,7 +348,7 @@ StepReport Events::end(Step now, unsigned incomplete_from, const BudgetTracker& 
   return report;
 }
 
-std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
+std::size_t KineticBroadPhase::predict_load(Step now, std::span<StepsAhead> steps) const noexcept {
   const std::size_t known = std::min<std::size_t>(steps.size(), kWheelSteps - 2);
   if (sorting_ && known > 0) steps[0].updates += pool_.size();
   for (std::size_t i = 0; i < known; ++i) {
@@ -362,34 +362,34 @@ std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcep
 
 // New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one: they
 // have no box, or an old one, and may be anywhere.
-void Events::append_loose(std::vector<BodyIndex>& bodies) const {
+void KineticBroadPhase::append_loose(std::vector<BodyIndex>& bodies) const {
   changes_.append_to(bodies);
   budgeted_.append_bodies(bodies);
   if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
 }
 
-Near Events::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+Near KineticBroadPhase::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
   append_loose(bodies);
   if (!sorting_) return boxes_.near_box(now, lower, upper, bodies);
   return sorted_.append_near(lower, upper, bodies) ? Near::some : Near::untold;
 }
 
-bool Events::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
-                   PortionVisitor& visitor) const {
+bool KineticBroadPhase::along(Step now, const Vec3& origin, const Vec3& way, double length,
+                              std::vector<BodyIndex>& portion, PortionVisitor& visitor) const {
   portion.clear();
   append_loose(portion);
   return !sorting_ && boxes_.along(now, origin, way, length, portion, visitor);
 }
 
-std::size_t Events::memory_bytes() const noexcept {
+std::size_t KineticBroadPhase::memory_bytes() const noexcept {
   return sizeof(*this) + changes_.memory_bytes() + bytes_of(gone_) + windows_.memory_bytes() + boxes_.memory_bytes() +
          wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
          pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
          bytes_of(due_) + bytes_of(entries_) + bytes_of(waiting_);
 }
 
-std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options) {
-  return std::make_unique<Events>(pool, options);
+std::unique_ptr<BroadPhaseAlgorithm> make_kinetic_broad_phase(BodyPool& pool, const BroadPhaseOptions& options) {
+  return std::make_unique<KineticBroadPhase>(pool, options);
 }
 
 }  // namespace orchard::runtime::detail

@@ -15,7 +15,7 @@ namespace orchard::detail {
 // Around a mixed vertex others may be replaced all the same. Across a facet all of whose points lie in one region there
 // is a vertex of this region or a mixed one, before and after, and only the thread of the region changes which: nobody
 // else may read it. Across other facets there are mixed vertices, which stay.
-struct Territory {
+struct Region {
   static constexpr std::uint8_t kMixed = 255;
 
   const std::uint8_t* region_of = nullptr;  // by vertex, free ones included; null where one thread does it all

@@ -1,10 +1,10 @@
-#include "collision/kernels/ball_slab_block.h"
+#include "collision/kernels/obb_node_block.h"
 
 #include <bit>
 #include <limits>
 
-#include "collision/kernels/ball_slab_pair.h"
 #include "collision/kernels/eight.h"
+#include "collision/kernels/obb_node_pair.h"
 #include "collision/kernels/triangle_tests.h"
 #include "simd/machine.h"
 
@@ -124,8 +124,8 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   const Floats margin = E::all(2 * placement.margin * placement.unit), limit = E::all(reach);
   // All of them together, along the direction that has parted others.
   const Extent<Kind> lane_extent = extent_along<Kind>(given, lane), row_extent = extent_along<Kind>(given, row);
-  const Floats apart = E::larger(E::all(least_of<Kind>(row_extent.low)) + E::all(least_of<Kind>(-lane_extent.high)),
-                                 E::all(least_of<Kind>(lane_extent.low)) + E::all(least_of<Kind>(-row_extent.high)));
+  const Floats apart = E::max(E::all(least_of<Kind>(row_extent.low)) + E::all(least_of<Kind>(-lane_extent.high)),
+                              E::all(least_of<Kind>(lane_extent.low)) + E::all(least_of<Kind>(-row_extent.high)));
   const Floats all_beyond = (apart - margin) * whole;
   if (Kind::bits(all_beyond <= limit) == 0) {
     for (std::uint32_t r = 0; r < kBlockWidth; ++r) store(all_beyond, result.lower[r]), result.near[r] = 0;
@@ -145,7 +145,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
     store(by_boxes, result.lower[r]);
     const bool settled = Kind::bits(by_boxes <= limit) == 0;
     open |= std::uint32_t{!settled} << r;
-    beyond = E::smaller(beyond, settled ? by_boxes : infinite);
+    beyond = E::min(beyond, settled ? by_boxes : infinite);
   }
   if (open != 0) {
     const Vectors lane_normal = normal_of<Kind>(lane), lane_middle = middle_of<Kind>(lane);
@@ -155,14 +155,13 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
       const auto r = static_cast<std::uint32_t>(std::countr_zero(open));
       const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
       const Vectors line = normalised<Kind>(E::minus(lane_middle, middle_of<Kind>(p)));
-      const Floats gap =
-          E::larger(E::larger(gap_along<Kind>(normals[r], lane, p), gap_along<Kind>(lane_normal, lane, p)),
-                    E::larger(gap_along<Kind>(line, lane, p), gap_along<Kind>(given, lane, p)));
-      const Floats lower = E::larger((gap - margin) * whole, load<Floats>(result.lower[r]));
+      const Floats gap = E::max(E::max(gap_along<Kind>(normals[r], lane, p), gap_along<Kind>(lane_normal, lane, p)),
+                                E::max(gap_along<Kind>(line, lane, p), gap_along<Kind>(given, lane, p)));
+      const Floats lower = E::max((gap - margin) * whole, load<Floats>(result.lower[r]));
       store(lower, result.lower[r]);
       const auto near = lower <= limit;
       result.near[r] = used & Kind::bits(near);
-      beyond = E::smaller(beyond, Kind::choose(near, infinite, lower));
+      beyond = E::min(beyond, Kind::choose(near, infinite, lower));
     }
   }
   result.beyond = least_of<Kind>(beyond);  // what is not used repeats the first lane
@@ -170,7 +169,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
 
 }  // namespace
 
-BallSlab moved(const BallSlab& slab, const Placement& p) noexcept {
+ObbNode moved(const ObbNode& slab, const Placement& p) noexcept {
   const auto turn = [](const std::array<float, 9>& r, float x, float y, float z) -> std::array<float, 3> {
     return {r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z};
   };

@@ -18,9 +18,9 @@ namespace orchard::runtime::detail {
 // is known already.
 //
 // Here is what a step does and when all is made anew; each part owns what it needs for that.
-class Events final : public Method {
+class KineticBroadPhase final : public BroadPhaseAlgorithm {
  public:
-  Events(BodyPool& pool, const BroadPhaseOptions& options);
+  KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& options);
 
   void changed(BodyIndex body) override;
   void removed(BodyIndex body) override;
@@ -28,7 +28,7 @@ class Events final : public Method {
   StepReport step(Step now, BudgetTracker& tracker) override;
   void skip() noexcept override { prepared_ = false, common_expiry_ = kNeverStep; }
   std::size_t memory_bytes() const noexcept override;
-  std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
+  std::size_t predict_load(Step now, std::span<StepsAhead> steps) const noexcept override;
   Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const override;
@@ -67,7 +67,7 @@ class Events final : public Method {
   BoxIndex boxes_;
   TimingWheel wheel_;
   OverlapList overlaps_;
-  Refusals refusals_;
+  InvalidBodies refusals_;
   Planner planner_;
   NearPairs pairs_;
   WindowUpdates updates_;

@@ -9,15 +9,15 @@
 namespace orchard::runtime::detail {
 
 // A box in quanta, both ends included. A cell is kQuanta quanta wide.
-struct QuantumBox {
+struct QuantizedAabb {
   std::array<std::uint32_t, 3> lower, upper;
 
-  bool meets(const QuantumBox& other) const noexcept {
+  bool meets(const QuantizedAabb& other) const noexcept {
     bool meet = true;
     for (std::size_t i = 0; i < 3; ++i) meet = meet && lower[i] <= other.upper[i] && other.lower[i] <= upper[i];
     return meet;
   }
-  void include(const QuantumBox& other) noexcept {
+  void include(const QuantizedAabb& other) noexcept {
     for (std::size_t i = 0; i < 3; ++i) {
       lower[i] = std::min(lower[i], other.lower[i]);
       upper[i] = std::max(upper[i], other.upper[i]);
@@ -26,18 +26,18 @@ struct QuantumBox {
 };
 // One that takes four cells along an axis at most, in two thirds of the memory: how far each upper end lies above the
 // lower one, a byte each. Of another box nothing but its lower ends is right.
-struct alignas(16) NarrowBox {
+struct alignas(16) PackedAabb {
   std::array<std::uint32_t, 3> lower;
   std::uint32_t lengths;
 
-  NarrowBox() = default;
-  explicit NarrowBox(const QuantumBox& box) noexcept : lower(box.lower), lengths(0) {
+  PackedAabb() = default;
+  explicit PackedAabb(const QuantizedAabb& box) noexcept : lower(box.lower), lengths(0) {
     for (std::size_t d = 0; d < 3; ++d) lengths |= (box.upper[d] - box.lower[d]) << 8 * d;
   }
-  QuantumBox whole() const noexcept {
+  QuantizedAabb whole() const noexcept {
     return {lower, {lower[0] + (lengths & 0xff), lower[1] + (lengths >> 8 & 0xff), lower[2] + (lengths >> 16 & 0xff)}};
   }
-  bool meets(const QuantumBox& other) const noexcept { return whole().meets(other); }
+  bool meets(const QuantizedAabb& other) const noexcept { return whole().meets(other); }
 };
 inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
@@ -50,16 +50,16 @@ inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & 
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
   // Of all boxes that were made together, if it is wanted:
-  QuantumBox around;         // what includes them
+  QuantizedAabb around;      // what includes them
   std::uint32_t more_cells;  // bits of how many cells they take along an axis beyond one
 
-  QuantumBox get(std::size_t i) const noexcept {
+  QuantizedAabb get(std::size_t i) const noexcept {
     return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
   }
   // Box i to places[i].
-  void store(std::span<const std::uint32_t> places, std::span<QuantumBox> to) const noexcept;
-  void store(std::span<const std::uint32_t> places, std::span<NarrowBox> to) const noexcept;
-  void set(std::size_t i, const QuantumBox& box) noexcept {
+  void store(std::span<const std::uint32_t> places, std::span<QuantizedAabb> to) const noexcept;
+  void store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept;
+  void set(std::size_t i, const QuantizedAabb& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
       lower[d][i] = box.lower[d];
       upper[d][i] = box.upper[d];
@@ -69,17 +69,17 @@ struct BoxBlock {
 
 // Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta. It may move with a crowd
 // that flies all the same way: what meets in space meets there at the same time.
-class Lattice {
+class QuantizedGrid {
  public:
-  Lattice() = default;
+  QuantizedGrid() = default;
   // slack: what positions may be wrong by
-  Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept;
+  QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept;
 
   void move_to(double seconds) noexcept;                   // since it was made
   const Vec3& origin() const noexcept { return origin_; }  // where it has moved to
   const Vec3& velocity() const noexcept { return velocity_; }
   bool moves() const noexcept { return velocity_ != Vec3{}; }
-  // Where a point lies along an axis, to less than a quantum if it lies within the lattice.
+  // Where a point lies along an axis, to less than a quantum if it lies within the quantized grid.
   double quantum(double coordinate, std::size_t axis) const noexcept;
   double quanta(double length) const noexcept { return length * per_length_; }
   // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a

@@ -1,14 +1,14 @@
 #pragma once
 #include "collision/kernels/eight.h"
 
-// One ball slab against eight: what their times (ball_slab_time.cpp) are made of.
+// One ball slab against eight: what their times (obb_node_time.cpp) are made of.
 namespace orchard::runtime::detail {
 
 // Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
 inline constexpr float kSineError = 0x1p-17f;
 
 template <typename Kind>
-struct BallSlabPair {
+struct ObbNodePair {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
@@ -22,8 +22,8 @@ struct BallSlabPair {
 
   // `placement` moves the lanes unless it is null. The lanes as they are tested go to `result`.
   template <typename Result>
-  ORCHARD_INLINE BallSlabPair(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                              Result& result) noexcept
+  ORCHARD_INLINE ObbNodePair(const ObbNode& single, const ObbNodeBlock& lanes, const Placement* placement,
+                             Result& result) noexcept
       : c{load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)},
         n{load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)},
         place{E::all(single.x), E::all(single.y), E::all(single.z)},
@@ -52,17 +52,17 @@ struct BallSlabPair {
     const Floats zero = E::all(0.0f), slack = E::all(kSineError);
     d = E::minus(c, place);
     over_n = E::dot(d, n), over_m = E::dot(d, m);
-    const Floats square = E::dot(d, d), along_n = E::size(over_n), along_m = E::size(over_m);
-    const Floats cosine = E::size(E::dot(n, m));
-    const Floats sine = Kind::root(E::larger(E::all(1.0f) - cosine * cosine, zero) + slack);
-    distance = Kind::root(square);
+    const Floats square = E::dot(d, d), along_n = E::abs(over_n), along_m = E::abs(over_m);
+    const Floats cosine = E::abs(E::dot(n, m));
+    const Floats sine = Kind::sqrt(E::max(E::all(1.0f) - cosine * cosine, zero) + slack);
+    distance = Kind::sqrt(square);
     const Floats slope = square * slack;
-    const Floats across_n = Kind::root(E::larger(square - along_n * along_n, zero) + slope);
-    const Floats across_m = Kind::root(E::larger(square - along_m * along_m, zero) + slope);
+    const Floats across_n = Kind::sqrt(E::max(square - along_n * along_n, zero) + slope);
+    const Floats across_m = Kind::sqrt(E::max(square - along_m * along_m, zero) + slope);
     by_n = along_n - (h + (k * cosine + s * sine));
     by_m = along_m - (k + (h * cosine + r * sine));
     const Floats reach = (h * along_n + r * across_n) + (k * along_m + s * across_m);
-    by_line = E::larger(distance - reach / (distance + E::all(kMinDistance)), distance - (r + s));
+    by_line = E::max(distance - reach / (distance + E::all(kMinDistance)), distance - (r + s));
   }
 };
 

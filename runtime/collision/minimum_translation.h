@@ -17,7 +17,7 @@ struct SolidBox {
 };
 
 // What a way out is looked for in. The second tree is moved, in the first tree's frame and units.
-struct WayOutSearch {
+struct MinimumTranslationSearch {
   const PlacedPair& pair;
   const WalkStack& room;
   std::span<const Workspace::Scratch::Cut> cuts;  // triangles that meet where the second one is now; more may
@@ -28,7 +28,7 @@ struct WayOutSearch {
 
 // How far the second tree has to move along a direction until no triangle of it meets any of the first one, and no
 // piece of a surface is inside a box.
-struct WayOut {
+struct MinimumTranslation {
   Vec3 direction;
   double way;          // at its end the bodies are free of each other, rounding included
   Vec3 normal;         // of what the surfaces leave each other in at its end, pointing along the direction
@@ -37,13 +37,14 @@ struct WayOut {
 };
 
 // The first of the points of pieces that are inside a box where the second tree is now, or null.
-const Vec3* piece_inside(const WayOutSearch& search, const SolidBox& solid) noexcept;
+const Vec3* piece_inside(const MinimumTranslationSearch& search, const SolidBox& solid) noexcept;
 
 // The shortest way out that is found from `directions` on, at least one of them, by following what is in the way: where
 // the last triangles part at a face or two edges, the way across these is tried next, or the shortest one that leaves
 // all such obstacles behind. Directions all around are tried as well, so that no wrong first direction decides: for any
 // shorter way where that one is long beside the bodies or the contact, else for one that is shorter by far. Where no
 // direction comes to an end in time, the way is that to where the bodies' extents part, and `ended` is false.
-WayOut least_way_out(const WayOutSearch& search, std::span<const Vec3> directions, std::uint32_t refinements) noexcept;
+MinimumTranslation minimum_translation(const MinimumTranslationSearch& search, std::span<const Vec3> directions,
+                                       std::uint32_t refinements) noexcept;
 
 }  // namespace orchard::runtime::detail

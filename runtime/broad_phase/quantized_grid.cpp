@@ -1,4 +1,4 @@
-#include "broad_phase/box_lattice.h"
+#include "broad_phase/quantized_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,15 +25,15 @@ struct MotionColumns {
 // How many bodies are worked on together, and their numbers; row(i) points to the i-th one's motion.
 struct PlainMotions {
   static constexpr std::size_t kLanes = 4;
-  static constexpr bool kClips = true;  // boxes to the lattice; others tell that some do not lie in it
+  static constexpr bool kClips = true;  // boxes to the quantized grid; others tell that some do not lie in it
   using Numbers = Plain<double, kLanes>;
   using Mask = Numbers::Mask;
   using Columns = MotionColumns<Numbers>;
   static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
   }
-  static Numbers least(const Numbers& a, const Numbers& b) noexcept { return choose(b < a, b, a); }
-  static Numbers most(const Numbers& a, const Numbers& b) noexcept { return choose(a < b, b, a); }
+  static Numbers min(const Numbers& a, const Numbers& b) noexcept { return choose(b < a, b, a); }
+  static Numbers max(const Numbers& a, const Numbers& b) noexcept { return choose(a < b, b, a); }
   static Mask within(const Numbers& first, const Numbers& a, const Numbers& b, const Numbers& last) noexcept {
     return (first <= a) & (b <= last);
   }
@@ -95,10 +95,10 @@ struct EightMotions {
   using Numbers __attribute__((vector_size(64))) = double;
   using Columns = MotionColumns<Numbers>;
   using Mask = std::uint8_t;
-  ORCHARD_INLINE static Numbers least(const Numbers& a, const Numbers& b) noexcept {  // a of two that do not compare
+  ORCHARD_INLINE static Numbers min(const Numbers& a, const Numbers& b) noexcept {  // a of two that do not compare
     return __builtin_ia32_minpd512_mask(b, a, a, kAll, kRounding);
   }
-  ORCHARD_INLINE static Numbers most(const Numbers& a, const Numbers& b) noexcept {
+  ORCHARD_INLINE static Numbers max(const Numbers& a, const Numbers& b) noexcept {
     return __builtin_ia32_maxpd512_mask(b, a, a, kAll, kRounding);
   }
   ORCHARD_INLINE static Mask within(const Numbers& first, const Numbers& a, const Numbers& b,
@@ -165,7 +165,7 @@ struct EightMotions {
 
 }  // namespace
 
-void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantumBox> to) const noexcept {
+void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantizedAabb> to) const noexcept {
   std::size_t i = 0;
 #ifdef ORCHARD_VECTORS
   using Four __attribute__((vector_size(16))) = std::uint32_t;
@@ -178,7 +178,7 @@ void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantumBox
   const auto low_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
   const auto high_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
   const auto put = [&](std::size_t k, const Two& first, std::uint64_t last) {
-    static_assert(sizeof(QuantumBox) == sizeof first + sizeof last);
+    static_assert(sizeof(QuantizedAabb) == sizeof first + sizeof last);
     auto* const box = reinterpret_cast<unsigned char*>(&to[places[i + k]]);
     std::memcpy(box, &first, sizeof first);
     std::memcpy(box + sizeof first, &last, sizeof last);
@@ -200,7 +200,7 @@ void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantumBox
   for (; i < places.size(); ++i) to[places[i]] = get(i);
 }
 
-void BoxBlock::store(std::span<const std::uint32_t> places, std::span<NarrowBox> to) const noexcept {
+void BoxBlock::store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept {
   std::size_t i = 0;
 #ifdef ORCHARD_VECTORS
   using Four __attribute__((vector_size(16))) = std::uint32_t;
@@ -210,7 +210,7 @@ void BoxBlock::store(std::span<const std::uint32_t> places, std::span<NarrowBox>
     return result;
   };
   const auto put = [&](std::size_t k, const Four& box) {
-    static_assert(sizeof(NarrowBox) == sizeof box);
+    static_assert(sizeof(PackedAabb) == sizeof box);
     std::memcpy(&to[places[i + k]], &box, sizeof box);
   };
   for (; i + 4 <= places.size(); i += 4) {
@@ -225,15 +225,15 @@ void BoxBlock::store(std::span<const std::uint32_t> places, std::span<NarrowBox>
     put(3, __builtin_shufflevector(second, more_rest, 2, 3, 6, 7));
   }
 #endif
-  for (; i < places.size(); ++i) to[places[i]] = NarrowBox(get(i));
+  for (; i < places.size(); ++i) to[places[i]] = PackedAabb(get(i));
 }
 
-Lattice::Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
+QuantizedGrid::QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
     : first_(origin), velocity_(velocity), per_length_(kQuanta / cell_size), slack_(slack) {
   move_to(0);
 }
 
-void Lattice::move_to(double seconds) noexcept {
+void QuantizedGrid::move_to(double seconds) noexcept {
   origin_ = first_ + seconds * velocity_;
   double size = 0;
   for (const double x : origin_) size = std::max(size, std::fabs(x));
@@ -241,13 +241,13 @@ void Lattice::move_to(double seconds) noexcept {
       kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack_ + kMinLength) * per_length_;
 }
 
-double Lattice::quantum(double coordinate, std::size_t axis) const noexcept {
+double QuantizedGrid::quantum(double coordinate, std::size_t axis) const noexcept {
   return kMiddle + (coordinate - origin_[axis]) * per_length_;
 }
 
 // What tells whether all motions are valid, put together from those of each few: NaN stays in the sum.
 template <typename Kind>
-struct Lattice::Validity {
+struct QuantizedGrid::Validity {
   using Numbers = typename Kind::Numbers;
   typename Kind::Mask inside;
   Numbers squares = zero();  // of velocities, accelerations and so on
@@ -281,10 +281,10 @@ ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
 }
 
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
-// that does not lie within the lattice is everything: rounding would no longer be under control.
+// that does not lie within the quantized grid is everything: rounding would no longer be under control.
 template <typename Kind, typename Row>
-ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, BoxBlock& boxes, std::size_t first,
-                                       Validity<Kind>& valid) const noexcept {
+ORCHARD_INLINE void QuantizedGrid::make_some(const Row& row, const double* durations, BoxBlock& boxes,
+                                             std::size_t first, Validity<Kind>& valid) const noexcept {
   using Numbers = typename Kind::Numbers;
   const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return spread<Numbers>(x); };
   const typename Kind::Columns of = Kind::columns(row);
@@ -298,8 +298,8 @@ ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, 
   for (std::size_t d = 0; d < 3; ++d) {
     const Numbers begin = all(kMiddle) + (of.position[d] - all(origin_[d])) * per_length;
     const Numbers way = (of.velocity[d] - all(velocity_[d])) * per_speed;
-    lower[d] = begin + Kind::least(zero, way - wide) - radius;
-    upper[d] = begin + Kind::most(zero, way + wide) + radius;
+    lower[d] = begin + Kind::min(zero, way - wide) - radius;
+    upper[d] = begin + Kind::max(zero, way + wide) + radius;
   }
   for (std::size_t d = 0; d < 3; ++d) {
     const auto within = Kind::within(zero, lower[d], upper[d], last);
@@ -313,15 +313,15 @@ ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, 
   }
   const auto square = [](const Numbers& x) ORCHARD_INLINE_LAMBDA { return x * x; };
   valid.inside = valid.inside & inside;
-  valid.least = Kind::least(Kind::least(valid.least, of.radius), Kind::least(of.acceleration, of.drift));
+  valid.least = Kind::min(Kind::min(valid.least, of.radius), Kind::min(of.acceleration, of.drift));
   valid.squares = valid.squares + ((of.rest + square(of.acceleration)) +
                                    (square(of.velocity[0]) + square(of.velocity[1])) + square(of.velocity[2]));
 }
 
 // The last ones with copies of the very last one, or with some before it once more.
 template <typename Kind>
-ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
-                                      BoxBlock& boxes, bool extent) const noexcept {
+ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std::span<const double> durations,
+                                            BoxBlock& boxes, bool extent) const noexcept {
   constexpr std::size_t kLanes = Kind::kLanes;
   Validity<Kind> valid;
   const std::size_t count = std::min(motions.size(), kBlock);
@@ -346,8 +346,8 @@ ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span
   return valid.all();
 }
 
-bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
-                    bool extent) const noexcept {
+bool QuantizedGrid::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                          bool extent) const noexcept {
   const Machine chosen = machine();
   if (chosen == Machine::portable) return make_all<PlainMotions>(motions, durations, boxes, extent);
   bool good = false;
