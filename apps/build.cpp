@@ -188,7 +188,7 @@ std::string write_views(const BuildCommand& command, const Surface&, const Spher
 }
 #endif
 
-// The page, with the picture in it; a picture that nobody asked for by itself goes.
+// The page, with the picture in it; a picture that was not asked for by itself is removed.
 void write_page(const BuildCommand& command, BuildPage page, const std::string& picture, Outputs& outputs) {
   if (!picture.empty()) page.picture = content_of(outputs.staged(picture));
   if (!picture.empty() && !command.picture) fs::remove(outputs.staged(picture));

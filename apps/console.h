@@ -7,7 +7,7 @@
 
 namespace orchard::apps {
 
-// A progress bar on stderr, if that is a terminal and nobody asked for quiet; else nothing.
+// A progress bar on stderr, if that is a terminal and --quiet is not given; else nothing.
 class ProgressBar {
  public:
   explicit ProgressBar(bool wanted);

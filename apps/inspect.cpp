@@ -132,7 +132,7 @@ RepairDistance distance_of(const json& repair) {
   return {.to_input = bounds("repaired_to_input"), .from_input = bounds("input_to_repaired")};
 }
 
-// What a mesh's numbers mean to whoever wants a tree of it.
+// What a mesh's numbers mean for a sphere-tree of it.
 void print_verdict(const json& report) {
   const auto faults = report["faults"].get<std::string>();
   if (!report.contains("self_intersections")) {

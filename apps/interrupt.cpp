@@ -35,7 +35,7 @@ void write_text(const char* text) {
 
 extern "C" void on_signal(int number) {
   received = number;
-  // Whoever changes the state first wins: either nothing has been made yet, or its maker clears it away.
+  // The first to change the state wins: either nothing has been made yet, or its maker clears it away.
   State expected = State::idle;
   if (state.compare_exchange_strong(expected, State::ending)) end(number);
 }

@@ -3,7 +3,7 @@
 
 // What Ctrl-C does (SIGINT; SIGTERM, SIGHUP and SIGPIPE likewise). While nothing is being written, and so there is
 // nothing to clear away, the program ends at once. While a Writing lives the signal is remembered: what writes asks
-// throw_if_interrupted() where nothing is half done, whoever made something removes it on the way out, and the end of
+// throw_if_interrupted() where nothing is half done, what was made is removed on the way out, and the end of
 // the Writing is that of the program. Either way the exit code is 128 + the number of the signal: 130 for Ctrl-C.
 namespace orchard::apps {
 

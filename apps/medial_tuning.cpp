@@ -161,11 +161,12 @@ std::vector<TuningFlag> refining_flags() {
 }
 
 std::vector<TuningFlag> open_place_flags() {
-  return {idle_where(whole("open-rounds", "1", 0, 20,
-                           "Times that points are added where the surface is left open, and all is made anew: more "
-                           "resolve thin parts, and take longer",
-                           [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
-                     no_refining)};
+  return {
+      idle_where(whole("open-rounds", "1", 0, 20,
+                       "Times that points are added where the surface is left open, and everything is rebuilt: more "
+                       "resolve thin parts, and take longer",
+                       [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
+                 no_refining)};
 }
 
 std::vector<TuningFlag> report_flags() {

@@ -277,7 +277,7 @@ void profile(const ProfileCommand& command) {
   const Provenance provenance = provenance_of(command.output.run, inputs);
   const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(second);
   if (a.triangles.empty() || b.triangles.empty())
-    throw InputError(fmt::format("{}: has no triangles, so nothing tells which poses touch; build it anew",
+    throw InputError(fmt::format("{}: has no triangles, so nothing tells which poses touch; build it again",
                                  (a.triangles.empty() ? command.a : second).string()));
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const Progress progress = bar.callback();

@@ -128,7 +128,7 @@ class MedialBuilder {
     });
   }
 
-  // Those that a refined axis leaves open; and makes the diagram anew. False if they are so few that they are left to
+  // Those that a refined axis leaves open; and rebuilds the diagram. False if they are so few that they are left to
   // reaching.
   bool add_open_places(const detail::Refiner& refiner) {
     SurfaceSampling added;

@@ -142,7 +142,7 @@ class Prober {
   Index last_ = kNone;  // the leaf that decided the last distance: it is near the next point as well
 };
 
-// Of those whose distance is not above `beyond`, it stays at that, and nobody knows where they are farthest.
+// Of those whose distance is not above `beyond`, it stays at that, and where they are farthest is not known.
 std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, Prober prober, double near,
                                                   double beyond) {
   std::vector<UncoveredRegion> regions;

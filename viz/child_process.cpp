@@ -123,7 +123,8 @@ std::optional<int> ChildProcess::wait_until(Clock::time_point deadline, const Pr
     report_progress(progress, "picture", 0);
     int status = 0;
     const pid_t result = waitpid(pid_, &status, WNOHANG);
-    if (result == pid_ || (result < 0 && errno == ECHILD)) {  // ECHILD: the host ignores SIGCHLD, so nobody knows how
+    if (result == pid_ ||
+        (result < 0 && errno == ECHILD)) {  // ECHILD: the host ignores SIGCHLD, so it is not known how
       ended_ = result == pid_ ? status : 0;
     } else if (Clock::now() >= deadline) {
       break;

@@ -107,7 +107,7 @@ class Cavity {
     return territory_.whole() || facets_.size() <= deleted_.size() + territory_.free_vertices->size();
   }
 
-  // Starts anew for a new point: nothing deleted, all marks removed.
+  // Starts over for a new point: nothing deleted, all marks removed.
   void begin(Index new_point);
   // Removes all marks.
   void end();

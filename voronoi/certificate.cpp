@@ -34,13 +34,13 @@ constexpr std::size_t kCached = 1u << 13;
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
 
-// Times that the hull as a whole is looked at, each after what was wrong there has been made anew.
+// Times that the hull as a whole is looked at, each after what was wrong there has been rebuilt.
 constexpr int kHullRounds = 4;
 
-// How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
+// How many doubts are still local ones, those of all rounds together: more are rebuilt sooner than mended.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
-// Facets that mending may look at, for each point and beside those: what takes more is made anew sooner.
+// Facets that mending may look at, for each point and beside those: what takes more is rebuilt sooner.
 constexpr std::size_t kMendingForEach = 4, kMending = 1u << 16;
 
 void sort_unique(std::vector<Index>& numbers) {

@@ -16,7 +16,7 @@ constexpr double kHopelesslyTold = 0x1p11;
 
 }  // namespace
 
-// And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed anew, and
+// And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed again, and
 // so is what was given a neighbour's sphere and is too far from it.
 bool Certifier::is_oriented(Index v) { return workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, look(v)); }
 

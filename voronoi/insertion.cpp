@@ -11,7 +11,7 @@
 namespace orchard::detail {
 namespace {
 
-// How many insertions may need exact signs or the constrained search, or be deferred, before all are made anew with
+// How many insertions may need exact signs or the constrained search, or be deferred, before all are rebuilt with
 // exact signs.
 constexpr std::uint64_t kMaxDoubtful = 16, kMaxDoubtfulOneIn = 4;
 

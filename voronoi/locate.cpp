@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kNearby = 64;  // vertices in doubt that are searched before all others are
 
 // How many vertices may be searched, in terms of all that there are and beside that: rarely is one found that way, and
-// to make all anew with exact signs takes less time then.
+// to rebuild everything with exact signs takes less time then.
 constexpr std::size_t kMaxSearches = 8, kMaxSearched = 1u << 20;
 
 // Steps of a walk that may have been led astray by what it must not read: a few times the way through a million points.

@@ -11,8 +11,8 @@ namespace {
 // first rounds, a point may have that many by itself.
 constexpr std::size_t kMaxDeleted = 256, kMaxDeletedOfFew = 2048, kFewDoubts = 16;
 constexpr int kFirstRounds = 8;
-constexpr int kPatient = 2;   // rounds before what insertions do not mend is made anew
-constexpr int kHopeless = 8;  // rounds before nothing is inserted any more, and more around it is made anew each time
+constexpr int kPatient = 2;   // rounds before what insertions do not mend is rebuilt
+constexpr int kHopeless = 8;  // rounds before nothing is inserted any more, and more around it is rebuilt each time
 constexpr int kStricter = 2;  // bits that a round takes off the intrusion that does no harm
 
 // How deep a point is in a sphere through the origin, both relative to it.

@@ -25,7 +25,7 @@ class Repairer {
   // The vertices that are new, those whose spheres have become their own, and those of doubts that could not be mended;
   // some may be free again. Each round is stricter than the last, lest one insertion undo another.
   std::vector<Index> mend(std::span<const Doubt> doubts, int round);
-  // Makes these vertices, which may be free, anew with exact signs, with so many layers around them, and others that
+  // Rebuilds these vertices, which may be free, with exact signs, with so many layers around them, and others that
   // have to go with them (see Patch). The new ones; none where that takes too many.
   std::vector<Index> patch(std::vector<Index> vertices, int layers = 0);
   // Whether none took too many: where one did, what insertions do not mend stays in doubt.

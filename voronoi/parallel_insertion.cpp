@@ -195,7 +195,7 @@ class Pass {
     for (const Part& part : parts_) waiting += part.waiting.size();
     const double of_all =
         static_cast<double>(workspace_.vertices.size() - free.size()) / static_cast<double>(end - waiting);
-    // Vertices that are mixed are nobody's: only how the regions differ is told by what they own.
+    // Mixed vertices belong to no region: only how the regions differ is told by what they own.
     std::vector<double> shares(parts_.size());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
       const auto points = static_cast<double>(parts_[r].waiting.size());

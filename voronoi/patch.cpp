@@ -9,7 +9,8 @@
 namespace orchard::detail {
 namespace {
 
-// Vertices that a patch may have, beside one in so many of all: where more have to go, making all anew takes less time.
+// Vertices that a patch may have, beside one in so many of all: where more have to go, rebuilding everything takes less
+// time.
 constexpr std::size_t kMaxPatch = 1u << 12, kMaxPatchOneIn = 64;
 
 // Times that a patch may grow, and after how many of these by a layer more.

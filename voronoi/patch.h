@@ -10,7 +10,7 @@
 
 namespace orchard::detail {
 
-// Makes a part of a diagram anew where no insertion fits: by the diagram of the points of this part alone, made with
+// Rebuilds a part of a diagram where no insertion fits: by the diagram of the points of this part alone, made with
 // exact signs. What is Delaunay among all points is so among some of them, so that the facets around the patch should
 // be in that diagram, too. The vertex across from one that is not goes with the patch, and so do some around it, until
 // all are. What the exact diagram has between them takes the place of the patch then: as it is made of exact signs and
@@ -19,7 +19,7 @@ class Patch {
  public:
   explicit Patch(Workspace& workspace) : workspace_(workspace) {}
 
-  // Makes these vertices anew, so many layers around them, and others that have to go with them, so that the additional
+  // Rebuilds these vertices, so many layers around them, and others that have to go with them, so that the additional
   // points, too, form vertices. False, with the diagram as it was, if that takes too many.
   bool replace(std::span<const Index> vertices, int layers, std::span<const Index> additional = {});
   // The new vertices, after replace().

@@ -8,13 +8,13 @@
 namespace orchard::detail {
 
 // The vertices that one thread may replace while others work elsewhere: those all of whose forming points lie in one
-// region of space. What has points in several regions is mixed: nobody replaces it, so that everybody may read it, nor
-// marks it. The regions of vertices stay as they are all the while: a vertex that takes the place of owned ones is
-// owned, too.
+// region of space. What has points in several regions is mixed: no thread replaces it, so that every thread may read
+// it, nor marks it. The regions of vertices stay as they are all the while: a vertex that takes the place of owned ones
+// is owned, too.
 //
 // Around a mixed vertex others may be replaced all the same. Across a facet all of whose points lie in one region there
-// is a vertex of this region or a mixed one, before and after, and only the thread of the region changes which: nobody
-// else may read it. Across other facets there are mixed vertices, which stay.
+// is a vertex of this region or a mixed one, before and after, and only the thread of the region changes which: no
+// other may read it. Across other facets there are mixed vertices, which stay.
 struct Region {
   static constexpr std::uint8_t kMixed = 255;
 

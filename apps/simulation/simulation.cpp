@@ -150,7 +150,7 @@ FrameRecord Simulation::frame(const runtime::Budget& budget, const Steering& ste
   recording_.limits = replay_ != nullptr ? replay_->limits : limits_of(budget);
   for (int step = 0; step < steps_; ++step) {
     auto begin = std::chrono::steady_clock::now();
-    // Counted anew, so that times of steps do not drift off the broad phase's own.
+    // Counted again, so that times of steps do not drift off the broad phase's own.
     world_->time = static_cast<double>(steps_done_) * world_->scene.step;
     world_->scene.before(*world_, world_->time);
     record.seconds_other += seconds_since(begin);

@@ -17,11 +17,11 @@ using runtime::operator*;
 
 // Spheres of radius 0.5 to 1.5 in a ball, 100 in radius 200 at density 1 (dissertation 4.2.5), speeds 5 to 15 at speed
 // 1, accelerations below M, which is uniform in [0, 4] at acceleration 1 for each body; M and the acceleration are
-// drawn anew every second.
+// drawn again every second.
 struct SceneShape {
   std::size_t bodies = 1000;
   double density = 1, speed = 1, acceleration = 1;
-  bool staggered = false;  // a hundredth of the bodies draws anew at each step, not all at the end of each second
+  bool staggered = false;  // a hundredth of the bodies draws again at each step, not all at the end of each second
   double time_step = 0.01;
 };
 

@@ -1,5 +1,5 @@
 // The boundary lemma with many disks on one triangle, beside looking at all pairs; and one changed sphere of a tree
-// beside checking everything anew. CPU seconds, one thread.
+// beside checking everything from scratch. CPU seconds, one thread.
 // Usage: orchard_lemma_bench MESH..
 #include <tbb/global_control.h>
 
@@ -70,7 +70,7 @@ void changes(const char* file) {
   const SphereTree tree = bench::merged_tree(surface);
   double start = bench::cpu_seconds();
   const bool complete = surface_coverage(surface, path_balls(tree)).complete();
-  const double anew = bench::cpu_seconds() - start;
+  const double from_scratch = bench::cpu_seconds() - start;
   IncrementalCover kept(surface, path_balls(tree));
   Random random(1, 2);
   constexpr int kChanges = 2000;
@@ -88,8 +88,8 @@ void changes(const char* file) {
       "%s: %zu triangles, %zu spheres%s: all %.4f s; a change %.6f s, %.1f triangles, %.0f times as fast; %d of %d "
       "taken\n",
       std::filesystem::path(file).stem().c_str(), surface.mesh().triangles.size(), tree.nodes.size(),
-      complete ? "" : " NOT COVERED", anew, each, static_cast<double>(kept.triangles_checked() - before) / kChanges,
-      anew / each, taken, kChanges);
+      complete ? "" : " NOT COVERED", from_scratch, each,
+      static_cast<double>(kept.triangles_checked() - before) / kChanges, from_scratch / each, taken, kChanges);
 }
 
 }  // namespace

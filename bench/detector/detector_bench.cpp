@@ -26,7 +26,7 @@ using runtime::test::Promises;
 using runtime::test::Scene;
 using Clock = std::chrono::steady_clock;
 
-// Of this thread: what else the machine does is nobody's fault.
+// Of this thread: what else the machine does is left out.
 double processor_ms() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -7,7 +7,7 @@
 // Other libraries' whole frames: all bodies are moved, then all pairs that touch are found and counted.
 namespace orchard::bench {
 
-// After the first step nobody has to look at it: it stays where it is, for good.
+// After the first step it need not be looked at: it stays where it is permanently.
 inline bool stays(const runtime::test::SceneBody& body) {
   const runtime::test::SceneBody always;
   return body.is_static && body.birth == always.birth && body.death == always.death;

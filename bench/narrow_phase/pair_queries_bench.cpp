@@ -142,7 +142,7 @@ void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>&
   std::printf("\n");
 }
 
-// Adds the sums of the times of "with a front", "coherently", "each anew" and of FCL to `sums`.
+// Adds the sums of the times of "with a front", "coherently", "each from scratch" and of FCL to `sums`.
 void coherent(Bodies& bodies, const Motion& motion, const std::string& title, std::array<double, 4>& sums) {
   const std::vector<Query>& queries = motion.queries;
   bodies.place(queries);
@@ -157,7 +157,7 @@ void coherent(Bodies& bodies, const Motion& motion, const std::string& title, st
                        if (motion.first[i]) pair.forget();
                        collide_coherently(bodies.workspace, pair, queries[i].a, queries[i].b);
                      }});
-  engines.push_back({"orchard, each anew",
+  engines.push_back({"orchard, each from scratch",
                      [&](std::size_t i) { collide(bodies.workspace, bodies.pair, queries[i].a, queries[i].b); }});
   engines.push_back({"orchard, closer than 1 % of R", [&](std::size_t i) {
                        closer_than(bodies.workspace, bodies.pair, queries[i].a, queries[i].b, 0.01 * bodies.radius);
@@ -180,7 +180,7 @@ void coherent_classes(Bodies& bodies, const std::vector<Query>& starts) {
     const std::string name = kClassNames[static_cast<std::size_t>(c)];
     coherent(bodies, Motion(bodies, starts, c, 1, 0.005), "in motion, from " + name, sums);
   }
-  std::printf("in motion, all classes: of FCL's mean: with a front %.3f, without %.3f, each anew %.3f\n",
+  std::printf("in motion, all classes: of FCL's mean: with a front %.3f, without %.3f, each from scratch %.3f\n",
               sums[0] / sums[3], sums[1] / sums[3], sums[2] / sums[3]);
   coherent(bodies, Motion(bodies, starts, 3, 0.1, 0.0005), "at a tenth of that speed, from gap 0.1 % R", slow);
 }

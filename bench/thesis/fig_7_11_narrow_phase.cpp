@@ -162,7 +162,7 @@ void print_row(const std::string& tree, const std::string& what, const Picked& p
   std::printf("| %.2f |\n", quantile(picked.microseconds, 0.5));
 }
 
-// Whoever wants a yes or no and no bounds leaves the levels out, as BSP-trees and FCL do.
+// A query that wants a yes or no and no bounds leaves the levels out, as BSP-trees and FCL do.
 Picked pick_straight(const Tree& tree, const std::vector<Engine>& engines, bool touching) {
   Picked picked{std::vector<std::vector<double>>(engines.size()), {}, {}};
   for (std::size_t i = 0; i < tree.calls.size(); ++i) {

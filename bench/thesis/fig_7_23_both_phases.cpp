@@ -4,7 +4,7 @@
 //   fig_7_23_both_phases FOLDER TREE.orchard [asteroids, default 10000]
 // The same motion for both ways: bodies move by the exact answers. Degradation is by counted work, so that it repeats:
 // a frame's budget is a half, a quarter and an eighth of what exact answers take in the busiest frames (the 99th
-// percentile), without what the step before found. Frames are drawn by nobody here, so the other time is that of the
+// percentile), without what the step before found. Frames are not drawn here, so the other time is that of the
 // dynamics alone. All times are the processor's for this thread, so that nothing else that the machine does is in them.
 // One experiment with many tables, hence more than 300 lines.
 #include <time.h>

@@ -23,7 +23,7 @@ double status_bytes(const std::string& field) {
 }
 
 double measure(const std::function<void()>& run, bool warm) {
-  // What the parent freed must neither be reused unseen nor what the run frees be kept: large blocks are mapped anew.
+  // What the parent freed must neither be reused unseen nor what the run frees be kept: large blocks are mapped again.
   mallopt(M_MMAP_THRESHOLD, 1 << 16);
   mallopt(M_TRIM_THRESHOLD, 1 << 16);
   if (warm) run();  // brings the program's own pages in

@@ -67,7 +67,7 @@ class Table {
  public:
   Table() {
     std::printf("%-20s %7s %9s %9s %6s %6s %6s  %6s %7s %6s %6s %5s %6s  %8s %6s %6s\n", "set", "points", "orchard s",
-                "CGAL s", "ratio", "kpt/s", "growth", "certif", "settled", "exact", "constr", "anew", "look %",
+                "CGAL s", "ratio", "kpt/s", "growth", "certif", "settled", "exact", "constr", "again", "look %",
                 "inacc/R", "vert/p", "B/pt");
   }
 
@@ -162,8 +162,9 @@ void insertion(const char* name, const test::Points& points, std::size_t last) {
   }
   const double whole = seconds([&] { highest_first_voronoi(points); });
   std::printf(
-      "%-20s %7zu + %4zu points: %5.1f ms of processor time, %5.1f ms; all anew: %5.1f ms, %4.1f times as long\n", name,
-      points.size() - last, last, 1e3 * best, 1e3 * best_wall, 1e3 * whole, whole / best);
+      "%-20s %7zu + %4zu points: %5.1f ms of processor time, %5.1f ms; all from scratch: %5.1f ms, %4.1f times as "
+      "long\n",
+      name, points.size() - last, last, 1e3 * best, 1e3 * best_wall, 1e3 * whole, whole / best);
 }
 
 void metric(const char* name, const test::Points& points) {

@@ -36,7 +36,7 @@ int main() {
   const double dt = 0.02;
   for (int frame = 0; frame < frames; ++frame) {
     const double time = frame * dt;
-    // The ship's bounds are given anew whenever the broad phase asks: they start from its present place.
+    // The ship's bounds are given again whenever the broad phase asks: they start from its present place.
     motions[ship.index] = rocket_motion(rocket, time, 2);
     const Advance now = world.advance(time);
     for (const BodyPair& pair : now.pairs) {

@@ -145,7 +145,7 @@ class ObjReader {
     faces_.add(corners_, offset(statement));
   }
 
-  // v, v/vt, v//vn or v/vt/vn. Texture and normal indices must be integers, but nobody looks them up.
+  // v, v/vt, v//vn or v/vt/vn. Texture and normal indices must be integers, but they are not looked up.
   Index read_corner() {
     const char* corner = at_;
     std::int64_t vertex = 0, unused = 0;

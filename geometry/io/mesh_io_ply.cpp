@@ -133,7 +133,7 @@ class PlyReader {
 
   // Strips of triangles one after another, each ended by -1 or by the list. Every corner after the second makes a
   // triangle with the two before it; every second one of a strip is turned round, so that all face the same way.
-  // Corners that are repeated lead a strip elsewhere, and their triangles without area are nobody's.
+  // Corners that are repeated lead a strip elsewhere, and their triangles without area belong to no face.
   void read_strips(const PlyProperty& property) {
     const std::uint64_t length = list_length(property);
     std::uint64_t place = 0;  // in the strip

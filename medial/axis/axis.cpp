@@ -78,7 +78,7 @@ void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, co
 }
 
 // The farthest forming point, not the diagram's radius: coalescing moved centres a little, robust diagrams approximate
-// some, and whoever merges the balls relies on each holding its forming points.
+// some, and merging relies on each ball holding its forming points.
 void measure_radii(MedialAxis& axis) {
   axis.radii.resize(axis.size());
   for (Index i = 0; i < axis.size(); ++i) {

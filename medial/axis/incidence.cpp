@@ -123,7 +123,7 @@ EdgeNumbers::EdgeNumbers(const std::vector<std::array<Index, 2>>& edges, Index v
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
 }
 
-// Rows are short: to count what is before it is faster than to divide them, which nobody can predict.
+// Rows are short: to count what is before it is faster than to divide them by branches that cannot be predicted.
 Index EdgeNumbers::operator()(Index a, Index b) const {
   const Index low = std::min(a, b), high = std::max(a, b);
   const Index begin = begin_[low], end = begin_[low + 1];

@@ -31,7 +31,7 @@ constexpr double kSpread = 1;
 // Repair points that spawn repair points, across a gap and back again: after so many, the bounce is cut short.
 constexpr int kBounceLength = 3;
 
-// Whether insert_points() made the diagram anew, so that old cells, too, may differ.
+// Whether insert_points() rebuilt the diagram, so that old cells, too, may differ.
 bool made_anew(const InsertionReport& report, std::size_t inserted) {
   return report.certified_insertions + report.settled_insertions + report.exact_insertions +
              report.constrained_insertions >
@@ -243,7 +243,7 @@ class Repair {
 
 constexpr int kThinningRounds = 4;  // the first saves most; later ones a few percent each
 
-// Takes crowded pairs out and mends again. What the report says of passes goes on; the diagram is made anew.
+// Takes crowded pairs out and mends again. What the report says of passes goes on; the diagram is rebuilt.
 GapRepair thinned(const Surface& surface, GapRepair repaired, Index original, const GapRepairOptions& options,
                   const Progress& progress) {
   const double spacing = std::sqrt(surface.report().area / original);

@@ -39,7 +39,7 @@ class RestrictedVoronoi {
   // All references must outlive this object. Parallel; the same for any thread count. O(pieces x neighbours of a cell).
   RestrictedVoronoi(const Surface& surface, std::span<const Point> points, const CellNeighbors& neighbors);
 
-  // Divides the triangles anew where a `changed` cell has or may have got a part, after `neighbors` was updated;
+  // Divides the triangles again where a `changed` cell has or may have got a part, after `neighbors` was updated;
   // returns these triangles, ascending.
   std::vector<Index> update(std::span<const Point> points, const std::vector<std::uint8_t>& changed);
 

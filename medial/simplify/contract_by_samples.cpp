@@ -233,7 +233,7 @@ class SampledContraction {
     const Ball4 ball = candidate(a, b).ball;
     mesh_.contract(a, b, ball);
     feet_.contract(a, b, seen);
-    // What the neighbours cost may have changed; it is found anew when their turn comes.
+    // What the neighbours cost may have changed; it is found again when their turn comes.
     stamp_[a] += stamp_[b] + 1;
     std::vector<Index> around(mesh_.neighbors(a).begin(), mesh_.neighbors(a).end());
     for (const Index other : around) ++stamp_[other];

@@ -60,7 +60,7 @@ class ContractibleMesh {
   // vertex in common.
   bool fold();
 
-  // The living cells, vertices numbered anew in their order.
+  // The living cells, vertices renumbered in their order.
   MedialMesh mesh() const;
   // The living triangles.
   std::vector<Triangle> triangles() const;

@@ -19,7 +19,7 @@ class BoxIndex {
   bool outgrown(std::size_t slots) const noexcept { return few_ && slots > BoxList::kMaxBodies; }
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
-  // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is made anew.
+  // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is rebuilt.
   // The grid is in order from empty() on, or once jobs have emptied each part, and nothing else happens before.
   void make_anew(std::size_t slots, std::size_t lines);
   void empty(const Executor& executor);  // nothing if it is in order
@@ -93,11 +93,11 @@ class BoxIndex {
     QuantizedAabb box;
   };
   std::vector<Oversized> oversized_, noted_;  // the latter are to be inserted
-  bool any_oversized_ = false;                // since it was made anew
+  bool any_oversized_ = false;                // since it was rebuilt
   bool few_ = true, in_order_ = true;
   BoxList list_;
   SweptGrid grid_;
-  QuantizedAabb extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was made anew
+  QuantizedAabb extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was rebuilt
   QuantizedGrid quantized_grid_;
   double time_step_ = 0;
   Step lattice_from_ = 0;  // at which it was made

@@ -192,7 +192,7 @@ bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   return true;
 }
 
-// A window update finds all near pairs anew, and those found before become void.
+// A window update finds all near pairs again, and those found before become void.
 bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
   if (!may_change() || !contains(body)) return false;
   detail::BodyPool& pool = state_->pool;

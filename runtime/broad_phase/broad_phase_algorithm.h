@@ -52,7 +52,7 @@ class BroadPhaseAlgorithm {
     return Near::untold;
   }
   // Visits all bodies whose spheres origin + t way may meet, |way| = 1 and 0 <= t <= length. `portion` is for its use.
-  // False: it may be any body, and nobody has been visited.
+  // False: it may be any body, and no body has been visited.
   virtual bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
                      PortionVisitor& visitor) const {
     (void)now, (void)origin, (void)way, (void)length, (void)portion, (void)visitor;

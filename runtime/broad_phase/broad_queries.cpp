@@ -140,7 +140,7 @@ void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilt
   }
 }
 
-std::span<const BodyIndex> BodyQueries::everybody() {
+std::span<const BodyIndex> BodyQueries::all_bodies() {
   candidates_.clear();
   for (BodyIndex body = 0; body < world_->state_->pool.slots(); ++body) candidates_.push_back(body);
   return candidates_;
@@ -150,7 +150,7 @@ template <typename Hits>
 void BodyQueries::walk(const Line& line, Hits& hits) {
   const detail::BroadPhaseAlgorithm& method = *world_->state_->method;
   if (!method.along(step(), line.origin, line.way, line.length, candidates_, hits))
-    hits.visit(everybody(), line.length);
+    hits.visit(all_bodies(), line.length);
 }
 
 std::optional<BodyHit> BodyQueries::first_hit(const Ray& ray, const QueryFilter& filter) {
@@ -198,7 +198,7 @@ std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& 
   const double spare = kQueryRounding * std::max(max_coordinate(lower), max_coordinate(upper));
   const Vec3 wider = {spare, spare, spare};
   const Near near = world_->state_->method->near_box(step(), lower - wider, upper + wider, candidates_);
-  use_motions(near == Near::untold ? everybody() : candidates_, filter, [&](BodyIndex body, const Motion& motion) {
+  use_motions(near == Near::untold ? all_bodies() : candidates_, filter, [&](BodyIndex body, const Motion& motion) {
     if (touches(motion)) found_.push_back(body);
   });
   std::sort(found_.begin(), found_.end());
@@ -242,7 +242,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
     candidates_.clear();
     covered = reach > 0 && reach < kMaxNumber ? method.near_box(step(), point - wide, point + wide, candidates_)
                                               : Near::untold;
-    use_motions(covered == Near::untold ? everybody() : candidates_, filter, note);
+    use_motions(covered == Near::untold ? all_bodies() : candidates_, filter, note);
     if (near_.size() < k) continue;
     std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(k) - 1, near_.end(), nearer);
     if (near_[k - 1].distance <= reach * (1 - kQueryRounding)) break;

@@ -18,7 +18,7 @@ class Changes {
   const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
   bool empty() const noexcept { return changed_.empty(); }
   std::size_t size() const noexcept { return changed_.size(); }  // at most
-  // All of them leave, as they came. For whoever knows that no body has been forgotten.
+  // All of them leave, as they came. For callers that know that no body has been forgotten.
   void take_all(std::vector<BodyIndex>& bodies) {
     bodies.assign(changed_.begin(), changed_.end());
     std::fill(pending_.begin(), pending_.end(), std::uint8_t{0});

@@ -154,7 +154,7 @@ void KineticBroadPhase::place_all_anew() {
   if (sorting_) sorted_.release();
   sorting_ = false;
   wheel_.clear_bodies();
-  windows_.begin_anew();
+  windows_.start_over();
   boxes_.make_anew(pool_.slots(), planner_.plan().lines);
   all_are_due();
 }
@@ -191,7 +191,7 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
   }
   make_room_for_boxes();
   if (all_anew) {
-    overlaps_.begin_anew();
+    overlaps_.start_over();
     note_spheres();
   }
   all_anew ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
@@ -209,10 +209,10 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
 unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
   const bool has_to = sorting_ || boxes_.outgrown(pool_.slots()) || windows_.rounds_run_out();
-  const bool anew = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
+  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
   budgeted_.join(due_, waiting_);
   due_.clear();
-  if (anew) {
+  if (rebuild) {
     if (!replan(now, tracker)) return pool_.next_class(0);
     place_all_anew();
     boxes_.empty(options_.executor);
@@ -242,7 +242,7 @@ void KineticBroadPhase::begin_sorting() {
 
 void KineticBroadPhase::step_by_sorting(Step now) {
   if (!sorting_) begin_sorting();
-  windows_.begin_anew();
+  windows_.start_over();
   all_are_due();
   sorted_.begin(due_.size(), boxes_.quantized_grid_at(now).origin(), planner_.spacing());
   for (std::size_t done = 0; done < due_.size(); done += kBlock) {

@@ -7,17 +7,17 @@ namespace orchard::runtime::detail {
 // The default method. Each body is updated once per window of steps: a box around all that its bound allows until the
 // window's end goes into a grid, and every other body whose box it meets makes a near pair. A near pair has an event at
 // the first step at which the two bounds can touch; no event lies beyond the earlier end of the two windows, as the
-// update due there finds the pair anew. A pair that overlaps has an event at the first step at which it can have
+// update due there finds the pair again. A pair that overlaps has an event at the first step at which it can have
 // parted; until then it stays in the list that is reported.
 //
 // A body whose bounds are cancelled at every step gets windows of one step, and longer ones again once these go well.
-// Where no window is longer, boxes and events are of no use: the spheres are sorted anew at each step.
+// Where no window is longer, boxes and events are of no use: the spheres are sorted again at each step.
 //
-// Where most windows end at one step, the *common expiry*, all boxes are made anew then, and half of that work is done
+// Where most windows end at one step, the *common expiry*, all boxes are rebuilt then, and half of that work is done
 // a step ahead: a bound that holds up to the step before the common expiry still answers for it, while the next bound
 // is known already.
 //
-// Here is what a step does and when all is made anew; each part owns what it needs for that.
+// Here is what a step does and when everything is rebuilt; each part owns what it needs for that.
 class KineticBroadPhase final : public BroadPhaseAlgorithm {
  public:
   KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& options);

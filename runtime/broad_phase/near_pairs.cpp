@@ -51,7 +51,7 @@ void NearPairs::begin_step(bool within_budget) {
   doubtful_.clear();
 }
 
-// A pair that both have just been updated: true if nothing is to be done but what this does. It is found anew at the
+// A pair that both have just been updated: true if nothing is to be done but what this does. It is found again at the
 // end of the earlier window, and until then the spheres surely overlap, or surely do not.
 template <typename To>
 bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, To to) const {

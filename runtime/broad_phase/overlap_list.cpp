@@ -10,8 +10,8 @@ constexpr std::size_t kPairsWithRoom = 16;  // for each body
 std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
 
 // Looks pairs up that come in ascending order, in steps that double from where the last one was, and then without
-// branches: nobody can tell how far it is. Where it cannot be far the steps stay as they are, so that memory sees where
-// they lead.
+// branches: how far it is cannot be predicted. Where it cannot be far the steps stay as they are, so that memory sees
+// where they lead.
 class Finder {
  public:
   Finder(const std::vector<BodyPair>& sorted, std::size_t lookups)

@@ -4,7 +4,7 @@
 namespace orchard::runtime::detail {
 
 // The pairs that overlap at the step processed last, in ascending order, as they are reported. It lasts from step to
-// step: a step says which pairs it has tested and which of these touch, and what nobody tested stays.
+// step: a step says which pairs it has tested and which of these touch, and pairs that were not tested stay.
 class OverlapList {
  public:
   // What a step does to a body's pairs.

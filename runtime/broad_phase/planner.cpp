@@ -67,7 +67,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   }
   means_ = {};
   means_.frame = velocity;
-  return Outcome::anew;
+  return Outcome::rebuild;
 }
 
 // Static bodies have windows without end only where they stay in the same cells. Rounding stays below a

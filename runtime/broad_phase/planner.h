@@ -24,7 +24,7 @@ class Planner {
   enum class Outcome : std::uint8_t {
     interrupted,  // by a budget, which ended the survey before it was complete: it goes on at the next call
     same,
-    anew
+    rebuild
   };
   // `counts`: of the grid since the last call.
   Outcome replan(Step now, const GridCounts& counts, BudgetTracker& tracker);

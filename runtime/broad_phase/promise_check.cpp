@@ -5,7 +5,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Whoever keeps the one keeps the other, too.
+// A body that keeps the one keeps the other, too.
 bool implies(const Motion& newer, const Motion& older) noexcept {
   const bool any = dot(older.half_space, older.half_space) > 0;
   const bool side = !any || older.half_space == newer.half_space;

@@ -117,7 +117,7 @@ void SortedSpheres::add(std::span<const BodyIndex> bodies, std::span<const Motio
   }
 }
 
-// So that few are larger, and all anew.
+// So that few are larger, and all from scratch.
 void SortedSpheres::choose_cell() {
   x_.clear();
   for (const Sphere& sphere : spheres_) x_.push_back(sphere.radius);

@@ -118,7 +118,7 @@ struct SweptGrid::Insertion {
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
-// the boxes: in dense worlds nobody can tell.
+// the boxes: in dense worlds no branch can be predicted.
 void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps) {
   const BoxInCell box(insertion.boxes[body], steps);
   if (insertion.count + line.entries.size() > Insertion::kFound) insertion.hand_over();
@@ -160,7 +160,7 @@ struct SweptGrid::PutOff {
   std::size_t meetings, fulls;
 };
 
-// Without branches, as in dense worlds nobody can tell.
+// Without branches, as in dense worlds no branch can be predicted.
 template <typename Kind, typename Line, typename Entry, typename Query>
 ORCHARD_INLINE void SweptGrid::put_all(PutOff& put_off, std::size_t count, const Line& line_at, const Entry& entry_at,
                                        const Query& query_at) noexcept {

@@ -135,7 +135,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
   line->entries[line->count++] = entry;
 }
 
-// Without branches where a body takes two cells along an axis at most: nobody can tell which do.
+// Without branches where a body takes two cells along an axis at most: which do cannot be predicted.
 void SweptGrid::prepare_removal(BodyIndex body, const QuantizedAabb& box, Removals& removals) const noexcept {
   Cell first, more;  // cells, and how many beyond
   for (std::size_t d = 0; d < 3; ++d) {

@@ -27,7 +27,7 @@ class WindowUpdates {
   // The bodies' windows begin at `from`, from the motions at `now`. Where it is a later step, bodies whose bounds do
   // not reach it are left to it as changed ones. What is near is tested.
   void update(Step now, Step from, std::span<const BodyIndex> bodies);
-  // The same where all windows begin anew: many bodies by the executor's jobs.
+  // The same where all windows start over: many bodies by the executor's jobs.
   void update_all(Step now, Step from, std::span<const BodyIndex> bodies);
   // The same as update(), untested: what is near.
   std::span<const BodyPair> find_near(Step now, std::span<const BodyIndex> bodies);

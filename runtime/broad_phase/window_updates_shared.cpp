@@ -3,7 +3,7 @@
 #include "broad_phase/window_updates.h"
 #include "execution/guarded.h"
 
-// Window updates of many bodies, all of whose windows begin anew, by jobs that may run at once. Bodies come in waves.
+// Window updates of many bodies, all of whose windows start over, by jobs that may run at once. Bodies come in waves.
 // Of a wave each job first makes the boxes of a chunk, and notes which lines of the grid they go to; then each puts
 // those of all chunks into one part of the lines, and tests what it finds near. How that is cut depends on the number
 // of bodies alone, and everything that has an order is put together in that of the chunks, or of the parts: so nothing

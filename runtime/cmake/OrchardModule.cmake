@@ -2,7 +2,7 @@
 include(GNUInstallDirs)
 
 # The flags that orchard's own code must compile cleanly with. The same bytes out on every machine: nothing is fused into
-# one rounding (-ffp-contract=off; MSVC does not unless it is told to), nothing is kept in wider registers (x87). Nobody
+# one rounding (-ffp-contract=off; MSVC does not unless it is told to), nothing is kept in wider registers (x87). No code
 # reads errno after a square root: without it (-fno-math-errno) loops with roots are compiled to vectors, to the same bits.
 add_library(orchard_flags INTERFACE)
 target_compile_features(orchard_flags INTERFACE cxx_std_20)

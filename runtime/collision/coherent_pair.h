@@ -3,7 +3,7 @@
 
 namespace orchard::runtime {
 
-// collide_coherently() in two parts, for whoever has many pairs and not enough time.
+// collide_coherently() in two parts, for callers that have many pairs and not enough time.
 struct CoherentPair {
   // What is known without a search: that a clearance has lasted, or that the triangles that met last still do. False,
   // and `verdict` as it was, if that does not tell. Some 100 ns.

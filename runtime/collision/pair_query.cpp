@@ -98,7 +98,7 @@ PairQuery::PairQuery(const TreeView& a, const TreeView& b, std::size_t room) noe
 bool PairQuery::bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept {
   static_assert(std::is_trivially_copyable_v<PreparedTree>);
   if (ordered_by_pose_ && arguments_exchanged_) return false;  // as the last poses had it
-  if (!first_.owns() || !second_.owns()) return false;         // nobody knows whether those are still there
+  if (!first_.owns() || !second_.owns()) return false;         // whether those are still there is not known
   const Side &of_a = arguments_exchanged_ ? *second_ : *first_, &of_b = arguments_exchanged_ ? *first_ : *second_;
   return a.fingerprint != 0 && std::memcmp(&of_a, &a, sizeof a) == 0 && std::memcmp(&of_b, &b, sizeof b) == 0;
 }

@@ -3,7 +3,7 @@
 
 namespace orchard::runtime::detail {
 
-// nearest_point_to_segment() for whoever asks again and again.
+// nearest_point_to_segment() for callers that ask many times.
 struct NearestToSegment {
   SurfacePoint point;
   double beyond = 0;  // where there is no point: how far the surface is from the segment, at least

@@ -204,7 +204,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
   return certain;
 }
 
-// Bodies of several parts: those that touched mostly still do, and then nobody else is asked.
+// Bodies of several parts: those that touched mostly still do, and then no other part is asked.
 void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;

@@ -187,7 +187,7 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   if (!body.valid || !std::isfinite(size)) invalidate(index);
 }
 
-// Whoever is asked at each step is placed then.
+// A body that is asked at each step is placed then.
 void BodyTable::move_part(BodyIndex index, std::size_t part, const PartPlace& to, const Shape& shape) noexcept {
   Body& body = bodies_[index];
   PartRecord& now = body.parts[part];
@@ -229,7 +229,7 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
   ask_source(step, time, executor);
 }
 
-// Nobody comes up twice, so that each is marked where his answer is taken.
+// No body comes up twice, so that each is marked where its answer is used.
 void BodyTable::ask_everyone(Step step, double time, const Executor& executor) {
   asking_.clear();
   for (BodyIndex i = 0; i < bodies_.size(); ++i) {

@@ -5,8 +5,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Bringing a front up to date reads some of its 43 KB: a search of fewer tests is better done anew. Where everybody had
-// one, scenes of small bodies took up to twice as long; from this on they take up to 8 % less.
+// Bringing a front up to date reads some of its 43 KB: a search of fewer tests is better done from scratch. Where every
+// pair had one, scenes of small bodies took up to twice as long; from this on they take up to 8 % less.
 constexpr std::uint64_t kMinWork = 500;
 constexpr std::uint8_t kSearches = 3;   // so expensive ones, more or less in a row
 constexpr std::size_t kMinBlocks = 16;  // of eight triangles, that both trees have at least

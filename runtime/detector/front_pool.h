@@ -20,7 +20,7 @@ class FrontPool {
 
   // Takes a search's work into account. True: the pair is to have a front.
   static bool wants(CachedPair& record, std::uint64_t work) noexcept;
-  // To those records, as far as there are fronts, or some of whoever has not searched for long.
+  // To those records, as far as there are fronts, or fronts of pairs that have not searched for long.
   void give(PairCache& records, std::span<const std::uint32_t> wanting, Step now);
   void give_back(CachedPair& record) noexcept;  // whose pair is no more
   std::size_t memory_bytes() const noexcept {

@@ -29,7 +29,7 @@ struct CachedPair {
   bool large = false;     // trees, so that a front may be of use
   bool impact = false;
   bool swept = false;   // at the step before both poses were known: a sweep may start there
-  bool unseen = false;  // they were not, and should have been: nobody knows what was in between
+  bool unseen = false;  // there is no pose of the previous step, so no sweep is possible
   std::uint8_t importance = 0;
   std::uint8_t costly = 0;         // searches of late, see there
   std::uint8_t roots_wait = 0;     // steps within a budget for which the roots are not asked by themselves
@@ -125,7 +125,7 @@ class PairCache {
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
 
-  // In pieces, so that they stay where they are, and whose memory nobody touches before begin().
+  // In pieces, so that they stay where they are, and whose memory is not touched before begin().
   static constexpr std::size_t kPiece = 256;
   static_assert(std::is_trivially_destructible_v<CachedPair> && alignof(CachedPair) <= alignof(std::max_align_t));
   struct Piece {

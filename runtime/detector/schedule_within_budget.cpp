@@ -6,10 +6,10 @@
 #include "detector/schedule_pairs.h"
 
 // Within a budget: by class of importance, and there in the order of who has waited longest. At the same time
-// everybody's answer is begun with what costs next to nothing and tells most pairs: spheres, roots, what the last step
+// each pair's answer is begun with what costs next to nothing and tells most pairs: spheres, roots, what the last step
 // found, simple shapes; and those who need more go straight to their triangles, one after the other. As most take a few
-// microseconds, whoever takes more than kFirstSlice gives way, and is gone on with, by slices that grow, when everybody
-// in the class has had a turn.
+// microseconds, a pair that takes more than kFirstSlice gives way, and is gone on with, by slices that grow, when every
+// pair of the class has had a turn.
 namespace orchard::runtime::detail {
 namespace {
 
@@ -32,7 +32,7 @@ void sort_by(std::vector<std::uint32_t>& tasks, std::vector<std::uint32_t>& sort
 
 }  // namespace
 
-// A task for each two parts, with what their spheres say: so much is known of everybody whatever the budget.
+// A task for each two parts, with what their spheres say: so much is known of every pair whatever the budget.
 void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t> open, Step now) {
   const ShapePlacements& places = answerer_.places();
   tasks_.clear();

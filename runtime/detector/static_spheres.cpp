@@ -58,7 +58,7 @@ void StaticSpheres::put(BodyIndex body, std::span<const FloatSphere> spheres) {
   Place& place = places_[body];
   for (const FloatSphere& sphere : spheres) append(spheres_, {sphere, body, place.version});
   place.spheres = static_cast<std::uint32_t>(spheres.size());
-  if (gone_ > spheres_.size() / 2 + kFewChanges) sort();  // nobody may ask for long
+  if (gone_ > spheres_.size() / 2 + kFewChanges) sort();  // no query may come for long
 }
 
 // By the coordinate in which they differ most, the radius being one: large ones stay with large ones. In parts of whole

@@ -3,8 +3,8 @@
 
 namespace orchard::runtime::detail {
 
-// The spheres of static bodies' parts, for whoever asks at each step which of them another sphere touches: groups of
-// neighbours in boxes, and groups of groups. What changes is added at the end, and all is sorted anew once that is
+// The spheres of static bodies' parts, for queries at each step: which of them does another sphere touch: groups of
+// neighbours in boxes, and groups of groups. What changes is added at the end, and all is sorted again once that is
 // much.
 class StaticSpheres {
  public:

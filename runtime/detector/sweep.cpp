@@ -69,7 +69,7 @@ class PairSweep {
         if (certain) result_.answer = Answer::no;
         return result_;
       }
-      // So near that nobody knows; later they may be nearer still.
+      // So near that rounding decides; later they may be nearer still.
       options.begin = impact.t0 + skip;
       if (!impact.finished || impact.refused || !(options.begin < options.end)) return result_;
     }

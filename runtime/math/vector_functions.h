@@ -50,8 +50,8 @@ inline double power_above(double x) noexcept {
   return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);
 }
 
-// As std::min and std::max, but by value: an instruction each, where those can become branches that nobody predicts.
-// Where one is not a number, both give the first one.
+// As std::min and std::max, but by value: an instruction each, where those can become branches that cannot be
+// predicted. Where one is not a number, both give the first one.
 inline double min(double a, double b) noexcept { return b < a ? b : a; }
 inline double max(double a, double b) noexcept { return b > a ? b : a; }
 inline double max_abs(const Vec3& v) noexcept { return max(max(std::fabs(v[0]), std::fabs(v[1])), std::fabs(v[2])); }

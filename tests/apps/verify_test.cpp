@@ -64,7 +64,7 @@ TEST(Verify, EndsABuildOnAWrapWithALineOnWhatIsCertifiedAndHowFarThatIs) {
   EXPECT_NEAR(std::stod(last.substr(from + 34)), report["wrap"]["input_to_wrap"][1].get<double>(), 1e-5);
 }
 
-// Whoever wrote it: an earlier run, another program, the user.
+// Whatever wrote it: an earlier run, another program, the user.
 TEST(Verify, TakesNoMeshForTheTreesWrapThatIsNot) {
   const Wrapped built;
   const std::string wrap = built.here.files("out").at("open-wrap.obj");

@@ -212,7 +212,7 @@ TEST(Build, WritesAPageThatNeedsNothingElse) {
     EXPECT_LT(page.find("viewBox=\"0 0 ", svg), page.find('>', svg)) << "it would be cut off";
   for (const char* outside : {"src=\"http", "href=", "<script", "<link"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
-  EXPECT_FALSE(here.files("out").contains("a&b.png")) << "nobody asked for the picture by itself";
+  EXPECT_FALSE(here.files("out").contains("a&b.png")) << "the picture was not asked for by itself";
 }
 
 TEST(Build, SaysWhatTheAxisIsWorseFor) {

@@ -20,18 +20,18 @@ TEST(OverlapList, IsTheSetThatASetWouldBe) {
     list.make_room(bodies);
     std::set<BodyPair> expected;
     for (int step = 0; step < 30; ++step) {
-      const bool anew = draw.bits() % 8 == 0;
-      if (anew) list.begin_anew(), expected.clear();
+      const bool rebuild = draw.bits() % 8 == 0;
+      if (rebuild) list.start_over(), expected.clear();
       std::set<BodyPair> added, dropped;
       std::set<BodyIndex> updated, refused;
       for (std::uint64_t k = draw.bits() % 3; k > 0; --k)
         list.mark(*updated.insert(body()).first, OverlapList::kUpdated);
       if (draw.bits() % 4 == 0) list.mark(*refused.insert(body()).first, OverlapList::kRefused);
-      for (std::uint64_t k = draw.bits() % (anew ? 400 : 20); k > 0; --k) {
+      for (std::uint64_t k = draw.bits() % (rebuild ? 400 : 20); k > 0; --k) {
         const BodyIndex a = body(), b = body();
         if (a == b) continue;
         const BodyPair pair{std::min(a, b), std::max(a, b)};
-        const bool adds = anew || draw.bits() % 2 == 0;
+        const bool adds = rebuild || draw.bits() % 2 == 0;
         adds ? list.add(pair) : list.drop(pair);
         (adds ? added : dropped).insert(pair);
       }

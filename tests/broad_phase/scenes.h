@@ -9,7 +9,7 @@
 namespace orchard::runtime::test {
 
 enum class SceneKind : std::uint8_t {
-  uniform,         // a ball of bodies, 100 in radius 200 (dissertation 4.2.5); bounds drawn anew every second
+  uniform,         // a ball of bodies, 100 in radius 200 (dissertation 4.2.5); bounds drawn again every second
   staggered,       // the same, a hundredth of the bounds at each step
   slab,            // a floor: 20 x 20 for each body, 4 high
   corridor,        // 20 long for each body, 8 x 8 across

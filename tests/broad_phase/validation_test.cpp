@@ -63,7 +63,7 @@ std::vector<BodyPair> pairs_of(const Advance& now) { return {now.pairs.begin(), 
 class Validation : public testing::TestWithParam<test::AnyMethod> {};
 INSTANTIATE_TEST_SUITE_P(BroadPhase, Validation, testing::ValuesIn(test::kMethods));
 
-// Frames of any length, bounds that expire together or not, half-spaces: nobody is blamed, and nothing is other than
+// Frames of any length, bounds that expire together or not, half-spaces: no body is blamed, and nothing is other than
 // without.
 TEST_P(Validation, FindsNothingWherePromisesAreKept) {
   const bool events = GetParam() == test::AnyMethod::events;

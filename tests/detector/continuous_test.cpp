@@ -176,7 +176,7 @@ TEST(Continuous, JointsThatMoveBetweenTwoStepsAreSweptLikeBodies) {
   EXPECT_GT(hits, cases / 50);  // that only the sweep can see
 }
 
-// What a joint takes farther out than ever, from where the detector was not looking: nobody knows what was in between.
+// What a joint takes farther out than ever, from where the detector was not looking: what was in between is not known.
 TEST(Continuous, APartThatIsStretchedIntoTheUnknownIsPossible) {
   int asked = 0;
   const StateSource at_rest = [&](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {

@@ -387,7 +387,7 @@ TEST(DetectorBodies, AsleepAreAskedOnceAndCostNothing) {
   EXPECT_TRUE(w.detector.sleep(b));
   EXPECT_TRUE(w.detector.asleep(a));
   EXPECT_EQ(w.only().change, PairChange::stay);
-  w.put(b, {50, 0, 0});  // nobody hears
+  w.put(b, {50, 0, 0});  // without a word to the detector
   const Frame frame = w.step();
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::stay);
@@ -404,7 +404,7 @@ TEST(DetectorBodies, RemovedOrTeleportedEndTheirTouches) {
   const BodyId b = w.detector.add_body({{ball, {}}});
   EXPECT_EQ(w.only().change, PairChange::begin);
   EXPECT_TRUE(w.detector.teleport(b));
-  const Frame frame = w.step();  // to where it was: it touches anew
+  const Frame frame = w.step();  // to where it was: it touches again
   ASSERT_EQ(frame.events.size(), 2u);
   EXPECT_EQ(frame.events[0].change, PairChange::end);
   EXPECT_EQ(frame.events[1].change, PairChange::begin);
@@ -478,7 +478,7 @@ TEST(Detector, SaysWhenThereIsNoMemory) {
   }
 }
 
-// Nobody is asked while nothing can touch.
+// No body is asked while nothing can touch.
 TEST(Detector, SleepsWhileNothingCanTouch) {
   std::size_t asked = 0;
   Detector detector(
@@ -499,7 +499,7 @@ TEST(Detector, SleepsWhileNothingCanTouch) {
   EXPECT_GT(detector.step(10).next_time, 10);
 }
 
-// A class that matters more is certain first, and within a class nobody starves.
+// A class that matters more is certain first, and within a class no pair starves.
 TEST(DetectorBudget, GoesToTheMoreImportantFirstAndThenRound) {
   World w;
   const ShapeId torus = w.detector.add_shape(w.torus);

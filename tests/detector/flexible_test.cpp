@@ -180,7 +180,7 @@ TEST(FlexibleTree, RefusesWhatItDoesNotAllow) {
   EXPECT_FALSE(FlexibleTree(rest, 1e18).valid());
 }
 
-// In a detector: bodies at rest are answered anew once their shape has changed.
+// In a detector: bodies at rest are answered again once their shape has changed.
 TEST(FlexibleTree, ChangesTheAnswersOfADetector) {
   const PackedSphereTree rest = test::build_tree(test::torus(20, 10, 1, 0.3));
   FlexibleTree flexible(rest, 0.5);

@@ -53,7 +53,7 @@ TEST(OddBodies, AreNeverPairsOfThemselvesOrOfWhatIsGone) {
 }
 
 TEST(OddBodies, AreMetOnTheWayInTheStepInWhichTheyWake) {
-  for (const int who : {0, 1, 2, 3}) {  // nobody sleeps, the bullet, the wall, the bullet until its state is set
+  for (const int who : {0, 1, 2, 3}) {  // none sleeps, the bullet, the wall, the bullet until its state is set
     Detector world({.time_step = kStep, .watch = false});
     const ShapeId ball = world.add_sphere(0.05), plate = world.add_box({0.01, 1, 1});
     const BodyId bullet = world.add_body(ball, BodyState{.pose = at(-0.3)}, {.continuous_speed = 100});

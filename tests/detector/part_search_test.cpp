@@ -75,7 +75,7 @@ TEST(StaticSpheres, FindWhatAScanFindsWhateverHasChanged) {
   EXPECT_GT(found_at_all, 1000u);
 }
 
-// Whoever changes all the time keeps no more memory than that of twice as many.
+// A body that changes all the time keeps no more memory than that of twice as many.
 TEST(StaticSpheres, ForgetWhereBodiesHaveBeen) {
   Draw draw(1);
   detail::StaticSpheres spheres;
@@ -254,7 +254,7 @@ class Factory {
         ASSERT_TRUE(world_.teleport(thing.id));
       } else if (what == 4) {
         world_.asleep(thing.id) ? world_.wake(thing.id) : world_.sleep(thing.id);
-      } else if (what == 5 && draw_.uniform(0, 1) < 0.1) {  // from here on nobody is looked for by parts
+      } else if (what == 5 && draw_.uniform(0, 1) < 0.1) {  // from here on no body is looked for by parts
         add_bullet();
       }
     }

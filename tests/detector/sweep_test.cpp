@@ -302,7 +302,7 @@ TEST(Sweeps, TellNothingWrongWithinABudget) {
   }
 }
 
-// Where the budget has not sufficed to ask who is where, nothing that flies on is said to have met nobody.
+// Where the budget has not sufficed to ask where bodies are, no body that flies on is said to have met nothing.
 TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
   std::vector<BodyState> states(101);

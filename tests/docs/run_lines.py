@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the command lines of pages: exit code 1 if one fails.
 
-run_lines.py PROGRAM SOURCE FOLDER PAGE..    PAGE: relative to SOURCE; FOLDER: made anew, where the lines are run
+run_lines.py PROGRAM SOURCE FOLDER PAGE..    PAGE: relative to SOURCE; FOLDER: rebuilt, where the lines are run
 
 Every line of a ```sh block is run by itself, in the order of the pages, in a folder that looks like the repository after
 tools/demo: the bundled models, their trees (merged ones, which are made at once), and stand-ins for the files that the pages

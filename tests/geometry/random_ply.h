@@ -101,7 +101,7 @@ class RandomPly {
     PlyType length_type;
     std::string name;
   };
-  // The named column among some that nobody needs, in random order.
+  // The named column among some that are not needed, in random order.
   std::vector<Column> columns(std::vector<Column> named) {
     for (std::uint64_t i = random_.below(3); i > 0; --i) {
       named.push_back({any_type(), random_.below(3) == 0, any_type(), "extra" + std::to_string(i)});

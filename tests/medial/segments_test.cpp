@@ -252,11 +252,11 @@ TEST(Reconstruction, AfterChangesIsThatOfTheMeshAsItIs) {
       if (random.below(3) == 0) mesh.radii[any_vertex()] *= 0.5;
       if (random.below(3) == 0) mesh.centers[any_vertex()] = point();
       reconstruction.change(mesh);
-      const detail::Reconstruction anew(mesh);
+      const detail::Reconstruction fresh(mesh);
       for (int i = 0; i < 30; ++i) {
         const Point query = 1.5 * point();
         const detail::Reconstruction::Nearest nearest = reconstruction.nearest(query);
-        ASSERT_NEAR(nearest.distance, anew.distance(query), 1e-12) << "seed " << seed << ", change " << change;
+        ASSERT_NEAR(nearest.distance, fresh.distance(query), 1e-12) << "seed " << seed << ", change " << change;
         ASSERT_NEAR(nearest.distance, reconstruction.distance_to_cell(nearest.cell, query), 1e-12) << "seed " << seed;
         const auto& [a, b, c] = reconstruction.corners_of(nearest.cell);
         MedialMesh cell{.centers = {mesh.centers[a], mesh.centers[b], mesh.centers[c]},

@@ -128,7 +128,7 @@ TEST(HighestFirstVoronoi, TakesExactSignsSoonWhereASampleIsInDoubt) {
 TEST(HighestFirstVoronoi, IsMendedWhereRoundingLeavesSpheresOpen) {
   for (const test::Points& points : {test::turned(test::cone_ring_points(60, 80), 1), test::sphere_points(2000, 4)}) {
     const auto [diagram, report] = highest_first_voronoi(points);
-    EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
+    EXPECT_FALSE(report.exact_signs) << "all rebuilt for the sake of a few";
     EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
     EXPECT_NO_THROW(validate(diagram));
     if (points.size() > 3000) continue;  // the judge holds all points against all spheres

@@ -87,7 +87,7 @@ TEST(InsertPoints, LooksAtTheNewPointsOnlyAndMendsWhereSignsContradict) {
   VoronoiDiagram diagram = highest_first_voronoi(first(points, part)).diagram;
   const InsertionReport report = insert_points(diagram, rest(points, part));
   validate(diagram);
-  EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
+  EXPECT_FALSE(report.exact_signs) << "all rebuilt for the sake of a few";
   EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
   EXPECT_EQ(
       report.certified_insertions + report.settled_insertions + report.exact_insertions + report.constrained_insertions,

@@ -20,7 +20,7 @@ enum class SleepingMethod : std::uint8_t {
   horns         // by the parabolic horns themselves (8.2)
 };
 
-// Which bounds are asked for anew on waking (4.3).
+// Which bounds are asked for again on waking (4.3).
 enum class Rebuild : std::uint8_t { what_intersected, everything };
 
 struct SleepingOptions {

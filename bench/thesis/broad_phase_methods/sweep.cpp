@@ -63,7 +63,7 @@ void Sweep::run(Search& search, std::size_t axis, std::span<const Face> faces, d
     queue_.pop_back();
     if (begin + time > search.limit()) return;
     const std::uint32_t place = place_[below];
-    // Rounding can bring a third curve between them; once it is gone the crossing is expected anew.
+    // Rounding can bring a third curve between them; once it is gone the crossing is expected again.
     if (place + 1 >= count || order_[place + 1] != above) continue;
     const Face &a = curves_[below], &b = curves_[above];
     if (a.bend != b.bend && !crossed_.insert(below, above)) continue;

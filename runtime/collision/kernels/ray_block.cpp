@@ -111,7 +111,7 @@ ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlo
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits)) % kBlockWidth;
         return RayWalk::entry(entries[lane], block.child[lane]);
       };
-      // The nearest one goes on, the others wait. No branch tells one from two, which nobody predicts.
+      // The nearest one goes on, the others wait. No branch tells one from two: it could not be predicted.
       next = at(left);
       left &= left - 1;
       const std::uint64_t none = 0 - std::uint64_t{left == 0};

@@ -1,4 +1,4 @@
-// Every query, asked with poses that name no place: nothing is known, nobody misses a contact, nothing crashes.
+// Every query, asked with poses that name no place: nothing is known, no contact is missed, nothing crashes.
 #include <gtest/gtest.h>
 
 #include "bodies.h"

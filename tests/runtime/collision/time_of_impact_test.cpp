@@ -98,7 +98,7 @@ TEST(TimeOfImpact, NeverTunnelsThroughThinAndFastThings) {
       const double speed = draw.uniform(10, 1e6), height = draw.uniform(0.1, 0.9) * speed;
       const Impact impact =
           time_of_impact(workspace, pair, {}, straight(Pose{.translation = {0.3, 0.2, height}}, {0, 0, -speed}));
-      // Thinner than what rounding leaves of a length of 1, it may be "so near that nobody knows", but never "no".
+      // Thinner than what rounding leaves of a length of 1, it may be too near to be known, but never "no".
       ASSERT_TRUE(impact.answer == Answer::yes || (thin < 1e-8 && impact.answer == Answer::maybe)) << thin << seed;
       ASSERT_NEAR(impact.t0, (height - 2 * thin) / speed, 2e-4 / speed) << thin << " " << seed;
       // Edge to edge, and past each other by twice a hair.

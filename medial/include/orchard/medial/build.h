@@ -27,10 +27,10 @@ struct MedialBuildOptions {
   PruneOptions prune = {};
   std::optional<RefineOptions> refine = {};  // nothing: the axis stays as the diagram has it; an imported one always
   // How often surface points are added where the refined axis leaves the surface open by more than its border loss, as
-  // it does where the solid is thinner than the points' spacing, and all is made anew: each time takes as long as the
-  // first. Not where these and what gap repair added are less than a thirty-second of the points and triangles reach
-  // for them (RefineOptions) down to three border losses or less: nearly as good, and faster. Not with own points, nor
-  // with an own diagram.
+  // it does where the solid is thinner than the points' spacing, and everything is rebuilt: each time takes as long as
+  // the first. Not where these and what gap repair added are less than a thirty-second of the points and triangles
+  // reach for them (RefineOptions) down to three border losses or less: nearly as good, and faster. Not with own
+  // points, nor with an own diagram.
   int open_rounds = 1;
   // Compare the finished axis with axis_promise(). Costs about as much as one of the rounds that look for open places.
   bool check_promise = true;

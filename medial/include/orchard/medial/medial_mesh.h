@@ -54,7 +54,7 @@ struct FlaggedMedialMesh {
   Index tetrahedra = 0;  // that a file of MATTopo lists and does not delete; `mesh` has their triangles alone
 };
 
-// The cells that count, vertices numbered anew in their order: those that are not deleted, nor part of whose boundary
+// The cells that count, vertices renumbered in their order: those that are not deleted, nor part of whose boundary
 // is. Precondition: vectors of flags are empty or as long as their cells. Throws InputError if no vertex is left.
 MedialMesh without_deleted(const FlaggedMedialMesh& flagged);
 

@@ -31,7 +31,7 @@ inline constexpr BodyId kNoBody{};
 // category; but two of the same group, unless it is 0, always are if it is positive, and never if it is negative.
 // Bullet's group and mask are `category` and `mask`; of Jolt's layers each gets a category. What is one body for the
 // application, and several spheres for the broad phase, gets a negative group of its own: its parts are no pairs and
-// keep nobody awake.
+// keep no body awake.
 struct BodyFilter {
   std::uint32_t category = 1;        // bits: what the body is
   std::uint32_t mask = 0xffffffffu;  // bits: the categories it has pairs with

@@ -85,7 +85,7 @@ class BodyQueries {
   void walk(const Line& line, Hits& hits);
   std::optional<BodyHit> first_along(const Line& line, const QueryFilter& filter);
   std::span<const BodyHit> all_along(const Line& line, const QueryFilter& filter);
-  std::span<const BodyIndex> everybody();
+  std::span<const BodyIndex> all_bodies();
 
   BroadPhase* world_;
   bool refused_ = false;

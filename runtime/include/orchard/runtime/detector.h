@@ -82,7 +82,7 @@ struct BodyOptions {
   // Above 0: also what happens between two steps is found, by time_of_impact() from pose to pose, those of the body and
   // of its parts: of each part the centre straight, the rotation by the smallest angle. It is a promise that relative
   // to whatever the body may meet no origin moves faster. Lengths per second. Where the scale changes within a step,
-  // nobody knows: "possible".
+  // the answer is "possible".
   double continuous_speed = 0;
   // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new window update
   // whenever an articulated body stretches. 0: as far as the parts reach.
@@ -92,8 +92,8 @@ struct BodyOptions {
   bool suggest = false;
 };
 
-// What the broad phase relies on from `time` on, until it asks for the body again: for whoever wants to look at it. Of
-// the body's origin, or where BodyState::angular_speed allows it, of its middle.
+// An observer, for debugging and visualisation: what the broad phase relies on from `time` on, until it asks for the
+// body again. The motion is of the body's origin, or where BodyState::angular_speed allows it, of its middle.
 using PromiseListener = std::function<void(double time, BodyIndex body, const Motion& promise)>;
 
 struct DetectorOptions {

@@ -101,7 +101,7 @@ double drift_of(Integrator integrator, double dt, double max_acceleration,
 // rounded to float is off by float_slack() of its largest coordinate: that is drift.
 double float_slack(double max_coordinate) noexcept;
 
-// For a simulation that also *keeps* positions and velocities as floats: each step rounds anew, which is drift and
+// For a simulation that also *keeps* positions and velocities as floats: each step rounds again, which is drift and
 // acceleration. Gives the motion with both enlarged and without its half-space, as roundings point anywhere. The bounds
 // on the coordinates of position and velocity hold until the motion expires. Per step a position's coordinate is
 // rounded once, and its change dt v up to eight times, so it is off by u (L + 9 dt S) with u = 2^-24, the largest

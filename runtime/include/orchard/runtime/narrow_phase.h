@@ -69,7 +69,7 @@ class NarrowPhase {
   NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room = kDefaultRoom) noexcept;
   // Of no bodies yet: not to be started before bind().
   explicit NarrowPhase(std::size_t room = kDefaultRoom) noexcept;
-  // Of other bodies from now on, as if made anew of them, in some 50 ns; reserve()'s room stays. Not to be asked or
+  // Of other bodies from now on, as if built from them, in some 50 ns; reserve()'s room stays. Not to be asked or
   // refined before the next start(). Allocates only if these trees are deeper than all before; false if there is no
   // memory for that: "maybe" can then be final.
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;

@@ -80,8 +80,8 @@ int orchard_pose_from_quaternion(const double wxyz[4], const double translation[
 
 /* Null if it fails; `error`, unless null, then gets a sentence that lives as long as the program.
  * open() uses the file in place: its pages are shared between processes, and it must stay as it is until the tree is
- * closed. Whoever cuts it short meanwhile makes the program receive SIGBUS at the next query; whoever writes into it
- * makes queries leave their arrays. Replacing it by renaming another file over it is safe. Where others may write to
+ * closed. If it is cut short meanwhile, the program receives SIGBUS at the next query; if it is written to,
+ * queries may leave their arrays. Replacing it by renaming another file over it is safe. Where others may write to
  * files, read() copies it into memory; load() does so with bytes. */
 orchard_tree* orchard_tree_open(const char* path, const char** error);
 orchard_tree* orchard_tree_read(const char* path, const char** error);

@@ -16,7 +16,7 @@
 // allocated, nothing is thrown; trees are only read, so any number of threads may ask at once.
 // Preconditions: structure_fault(tree) is nullptr and the tree has triangles. Where a pose does not satisfy is_rigid(),
 // a number is not finite, or a place is more than kFarthest of the body's units away along an axis, the answer is the
-// one that makes nobody miss a contact, and names no triangle: distance 0, a hit where the ray begins, "inside". Cost:
+// one that misses no contact, and names no triangle: distance 0, a hit where the ray begins, "inside". Cost:
 // O(log n) ball slabs and a few dozen triangles where the surface is much larger than the distance asked for.
 namespace orchard::runtime {
 

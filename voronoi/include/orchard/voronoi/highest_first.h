@@ -20,7 +20,7 @@ VoronoiBuild highest_first_voronoi(std::span<const Point> points, const Progress
 
 // Adds points to a diagram that any of the algorithms made; new ones are numbered after those there are. A rebuild
 // agrees up to rounding. Old vertices may be renumbered. The report speaks of the new points, or of all of them if the
-// diagram had no vertices or had to be made anew, which costs as much as the first time: where the new points
+// diagram had no vertices or had to be rebuilt, which costs as much as the first time: where the new points
 // contradict the old ones, and these are not exactly Voronoi. Else O(n) with a small constant, plus about O(k log k)
 // for k new points. The certificate is of what is new: an old vertex that was wrong stays wrong. Throws InputError as
 // above; whatever is thrown, the diagram is as it was.
