@@ -32,7 +32,7 @@ constexpr double kSpread = 1;
 constexpr int kBounceLength = 3;
 
 // Whether insert_points() rebuilt the diagram, so that old cells, too, may differ.
-bool made_anew(const InsertionReport& report, std::size_t inserted) {
+bool was_rebuilt(const InsertionReport& report, std::size_t inserted) {
   return report.certified_insertions + report.settled_insertions + report.exact_insertions +
              report.constrained_insertions >
          inserted;
@@ -62,10 +62,10 @@ class Repair {
   }
 
   GapRepair run() {
-    find_anew();
+    find_from_scratch();
     for (int pass = 0; pass < options_.max_passes; ++pass) {
       report_progress(progress_, "gap repair", static_cast<double>(pass) / options_.max_passes);
-      if (!anything_to_mend() && !anew_) find_anew();
+      if (!anything_to_mend() && !from_scratch_) find_from_scratch();
       open_pass();
       if (!anything_to_mend()) break;
       const Index before = result_.sampling.size();
@@ -73,7 +73,7 @@ class Repair {
       if (result_.sampling.size() == before) break;
       update(before);
     }
-    if (!anew_) find_anew();
+    if (!from_scratch_) find_from_scratch();
     result_.report.faces_still_crossing = detail::count_faces(crossings_);
     std::erase_if(crossings_, [](const Crossing& crossing) { return !crossing.at_cut; });
     result_.report.faces_at_cuts = detail::count_faces(crossings_);
@@ -82,8 +82,8 @@ class Repair {
   }
 
  private:
-  void find_anew() {
-    anew_ = true;
+  void find_from_scratch() {
+    from_scratch_ = true;
     cells_tested_ = result_.sampling.size();
     restricted_.emplace(surface_, result_.diagram.points, neighbors_);
     crossings_ = detail::find_crossings(surface_, result_.sampling, *restricted_,
@@ -210,12 +210,12 @@ class Repair {
   void update(Index first_new) {
     const auto added = std::span<const Point>(result_.sampling.points).subspan(first_new);
     const InsertionReport inserted = insert_points(result_.diagram, added);
-    if (made_anew(inserted, added.size())) {
+    if (was_rebuilt(inserted, added.size())) {
       neighbors_ = detail::CellNeighbors(result_.diagram);
-      find_anew();
+      find_from_scratch();
       return;
     }
-    anew_ = false;
+    from_scratch_ = false;
     detail::ComponentScope scope;
     scope.cells = neighbors_.update(result_.diagram, first_new);
     cells_tested_ = static_cast<Index>(std::count(scope.cells.begin(), scope.cells.end(), std::uint8_t{1}));
@@ -236,7 +236,7 @@ class Repair {
   detail::CellNeighbors neighbors_;
   std::optional<detail::RestrictedVoronoi> restricted_;
   std::vector<Crossing> crossings_;         // known to be left, ascending by cell
-  bool anew_ = false;                       // they come from scratch, not from updates
+  bool from_scratch_ = false;                       // they come from scratch, not from updates
   Index cells_tested_ = 0;                  // when they were last looked for
   std::vector<std::array<Index, 2>> cuts_;  // triangles that cut each other, both ways round; ascending
 };

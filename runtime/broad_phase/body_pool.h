@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "broad_phase/promise_check.h"
+#include "broad_phase/motion_bound_check.h"
 #include "simd/vector_support.h"
 
 namespace orchard::runtime::detail {
@@ -211,10 +211,10 @@ class BodyPool {
   }
   void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
   bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
-  void check_promises(BrokenPromiseListener listener, double position_slack) {
-    check_ = std::make_unique<PromiseCheck>(std::move(listener), position_slack);
+  void check_promises(MotionBoundViolationListener listener, double position_slack) {
+    check_ = std::make_unique<MotionBoundCheck>(std::move(listener), position_slack);
   }
-  const PromiseCheck* promises() const noexcept { return check_.get(); }  // null: they are not checked
+  const MotionBoundCheck* promises() const noexcept { return check_.get(); }  // null: they are not checked
   void forget_promise(BodyIndex body) noexcept {
     if (check_) check_->forget(body);
   }
@@ -236,7 +236,7 @@ class BodyPool {
 
   MotionSource source_;
   const MotionArrays* arrays_;
-  std::unique_ptr<PromiseCheck> check_;
+  std::unique_ptr<MotionBoundCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
   std::vector<BodyFilter> filters_;  // empty until a body has another than all

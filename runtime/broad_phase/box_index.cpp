@@ -28,7 +28,7 @@ void BoxIndex::make_room_for_boxes(std::size_t slots) {
   }
 }
 
-void BoxIndex::make_anew(std::size_t slots, std::size_t lines) {
+void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   noted_.clear();

@@ -21,7 +21,7 @@ class BoxIndex {
 
   // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is rebuilt.
   // The grid is in order from empty() on, or once jobs have emptied each part, and nothing else happens before.
-  void make_anew(std::size_t slots, std::size_t lines);
+  void rebuild(std::size_t slots, std::size_t lines);
   void empty(const Executor& executor);  // nothing if it is in order
   // The quantized_grid of all boxes from now on; it moves at `velocity`.
   void set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,

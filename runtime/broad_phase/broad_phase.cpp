@@ -242,8 +242,8 @@ std::size_t BroadPhase::predict_load(double time, std::span<StepsAhead> steps) c
 
 std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }
 std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->pool.asked(); }
-std::uint64_t BroadPhase::promises_broken() const noexcept {
-  const detail::PromiseCheck* const promises = state_->pool.promises();
+std::uint64_t BroadPhase::motion_bound_violations() const noexcept {
+  const detail::MotionBoundCheck* const promises = state_->pool.promises();
   return promises == nullptr ? 0 : promises->broken();
 }
 std::size_t BroadPhase::memory_bytes() const noexcept {

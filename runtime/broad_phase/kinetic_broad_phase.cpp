@@ -150,12 +150,12 @@ void KineticBroadPhase::all_are_due() {
   }
 }
 
-void KineticBroadPhase::place_all_anew() {
+void KineticBroadPhase::place_all() {
   if (sorting_) sorted_.release();
   sorting_ = false;
   wheel_.clear_bodies();
   windows_.start_over();
-  boxes_.make_anew(pool_.slots(), planner_.plan().lines);
+  boxes_.rebuild(pool_.slots(), planner_.plan().lines);
   all_are_due();
 }
 
@@ -175,14 +175,14 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
     for (const BodyIndex body : due_) budgeted_.leave(body);  // changed while it waited: one update is enough
     budgeted_.take_all(due_, waiting_);
   }
-  bool all_anew = completing;
+  bool rebuild_all = completing;
   if (!completing) {
-    all_anew = sorting_ || boxes_.outgrown(pool_.slots()) || worth_a_rebuild(due_.size());
-    if (all_anew) {
+    rebuild_all = sorting_ || boxes_.outgrown(pool_.slots()) || worth_a_rebuild(due_.size());
+    if (rebuild_all) {
       BudgetTracker unlimited;
       replan(now, unlimited);
       if (worth_sorting(now)) return step_by_sorting(now);
-      place_all_anew();
+      place_all();
       wheel_.clear_events();  // updates of all windows void them
     } else {
       make_room_for_boxes();
@@ -190,15 +190,15 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
     }
   }
   make_room_for_boxes();
-  if (all_anew) {
+  if (rebuild_all) {
     overlaps_.start_over();
     note_spheres();
   }
-  all_anew ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
+  rebuild_all ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
   std::erase_if(waiting_, [&](const PairEvent& event) { return !windows_.valid(event); });
   pairs_.test(now, waiting_);
   pairs_.take_overlaps_ahead();
-  if (!all_anew) return;
+  if (!rebuild_all) return;
   const bool lasts = planner_.plan().window >= kMinStepsBeforeCommonExpiry;
   const bool common = pool_.size() >= kMinBodiesAtCommonExpiry && 4 * windows_.votes() > pool_.size();
   common_expiry_ = lasts && common ? windows_.voted() : kNeverStep;
@@ -214,7 +214,7 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   due_.clear();
   if (rebuild) {
     if (!replan(now, tracker)) return pool_.next_class(0);
-    place_all_anew();
+    place_all();
     boxes_.empty(options_.executor);
     budgeted_.postpone(due_);
     due_.clear();
@@ -236,7 +236,7 @@ void KineticBroadPhase::begin_sorting() {
   wheel_.clear();
   pairs_.forget_all();
   pairs_.release_spheres();
-  boxes_.make_anew(pool_.slots(), 0);
+  boxes_.rebuild(pool_.slots(), 0);
   boxes_.begin_counts();
 }
 
@@ -278,7 +278,7 @@ bool KineticBroadPhase::prepare(Step now) {
   windows_.begin_round();
   BudgetTracker unlimited;
   replan(now, unlimited);
-  place_all_anew();
+  place_all();
   wheel_.clear_events();
   const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.size()));
   note_spheres();

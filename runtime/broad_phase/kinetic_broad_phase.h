@@ -53,7 +53,7 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
 
   bool replan(Step now, BudgetTracker& tracker);
   void all_are_due();
-  void place_all_anew();
+  void place_all();
   void begin_sorting();
   void make_room_for_boxes();
   void note_spheres();

@@ -118,15 +118,15 @@ void OverlapList::clear_marks() noexcept {
 void OverlapList::forget_marked() {
   const auto marked = [&](const BodyPair& pair) { return (marks_[pair.a] | marks_[pair.b]) != 0; };
   const auto refused = [&](const BodyPair& pair) { return ((marks_[pair.a] | marks_[pair.b]) & kRefused) != 0; };
-  if (!anew_) std::erase_if(pairs_, marked);
-  if (refuses_) std::erase_if(anew_ ? pairs_ : added_, refused);
+  if (!from_scratch_) std::erase_if(pairs_, marked);
+  if (refuses_) std::erase_if(from_scratch_ ? pairs_ : added_, refused);
 }
 
-void OverlapList::begin_anew() noexcept {
+void OverlapList::start_over() noexcept {
   pairs_.clear();
   added_.clear();
   clear_marks();
-  anew_ = true;
+  from_scratch_ = true;
 }
 
 // Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
@@ -181,7 +181,7 @@ void OverlapList::update(std::size_t slots) {
     forget_marked();
     clear_marks();
   }
-  if (anew_) {
+  if (from_scratch_) {
     sort(pairs_, slots, added_);  // where nothing is
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   } else if (!added_.empty() || !dropped_.empty()) {
@@ -195,14 +195,14 @@ void OverlapList::update(std::size_t slots) {
   }
   added_.clear();
   dropped_.clear();
-  anew_ = false;
+  from_scratch_ = false;
 }
 
 void OverlapList::clear() noexcept {
   pairs_.clear();
   added_.clear();
   dropped_.clear();
-  anew_ = false;
+  from_scratch_ = false;
   clear_marks();
 }
 

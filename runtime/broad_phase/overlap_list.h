@@ -14,18 +14,18 @@ class OverlapList {
   std::span<const BodyPair> pairs() const noexcept { return pairs_; }
 
   // Of the step under way, in any order, any number of times.
-  void add(const BodyPair& pair) { append(anew_ ? pairs_ : added_, pair); }  // it touches
+  void add(const BodyPair& pair) { append(from_scratch_ ? pairs_ : added_, pair); }  // it touches
   void drop(const BodyPair& pair) { dropped_.push_back(pair); }              // it does not, unless it is added, too
   void make_room(std::size_t slots) { grow(marks_, slots); }                 // bodies that are marked are below
   void mark(BodyIndex body, std::uint8_t what) noexcept {
-    if (anew_ && what == kUpdated) return;
+    if (from_scratch_ && what == kUpdated) return;
     marks_[body] |= what;
     first_marked_ = std::min(first_marked_, body);
     last_marked_ = std::max(last_marked_, body);
     refuses_ = refuses_ || what == kRefused;
   }
   void mark_updated(std::span<const BodyIndex> bodies) noexcept {
-    if (anew_) return;
+    if (from_scratch_) return;
     std::uint8_t* const marks = marks_.data();
     BodyIndex first = first_marked_, last = last_marked_;
     for (const BodyIndex body : bodies) {
@@ -36,7 +36,7 @@ class OverlapList {
   }
   // The list is these from now on, in any order, each once; what was said of the step under way is void.
   void assign(std::span<const BodyPair> pairs, std::size_t slots);
-  void begin_anew() noexcept;  // until the end of the step nothing counts but what is added from now on
+  void start_over() noexcept;  // until the end of the step nothing counts but what is added from now on
   // Moves the pairs for which it holds out of the list, at once.
   template <typename Leaves>
   void take_out(const Leaves& leaves, std::vector<BodyPair>& taken) {
@@ -68,7 +68,7 @@ class OverlapList {
   std::vector<std::uint32_t> added_places_, dropped_places_;  // in pairs_, before it changes
   std::vector<std::uint8_t> marks_;                           // by body
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
-  bool anew_ = false, refuses_ = false;
+  bool from_scratch_ = false, refuses_ = false;
   std::vector<std::uint32_t> begins_, ends_;  // by body, while many pairs are sorted
   std::vector<BodyPair> by_digit_;            // while some are; changes
 };

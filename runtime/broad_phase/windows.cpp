@@ -8,7 +8,7 @@ constexpr std::uint8_t kPatience = 2;  // bounds that last for a step at most, o
 
 }  // namespace
 
-void Windows::begin_anew() noexcept {
+void Windows::start_over() noexcept {
   rebuilt_round_ = round_;
   any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
                                          [](const Window& window) { return window.lasting < kLastsAsEver; });

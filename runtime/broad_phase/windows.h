@@ -35,7 +35,7 @@ class Windows {
 
   Round round() const noexcept { return round_; }
   void begin_round() noexcept { ++round_; }
-  void begin_anew() noexcept;  // all are updated in this round
+  void start_over() noexcept;  // all are updated in this round
   bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
 
   // From now on, so many steps; windows of bodies at rest end, too, or never.

@@ -57,20 +57,20 @@ rt::MotionSource source_of(orchard_motion_source source, void* context) {
   };
 }
 
-rt::BrokenPromiseListener listener_of(orchard_promise_listener listener, void* context) {
+rt::MotionBoundViolationListener listener_of(orchard_motion_bound_listener listener, void* context) {
   if (listener == nullptr) return {};
-  return [listener, context](const rt::BrokenPromise& broken) {
-    const rt::PromiseExcess& by = broken.by;
-    const orchard_broken_promise in_c{body_of(broken.body),
-                                      broken.promise_time,
-                                      broken.time,
-                                      motion_in_c(broken.promise),
-                                      motion_in_c(broken.given),
-                                      by.position,
-                                      by.side,
-                                      by.velocity,
-                                      by.turn,
-                                      by.radius};
+  return [listener, context](const rt::MotionBoundViolation& broken) {
+    const rt::MotionBoundExcess& by = broken.by;
+    const orchard_motion_bound_violation in_c{body_of(broken.body),
+                                              broken.bound_time,
+                                              broken.time,
+                                              motion_in_c(broken.bound),
+                                              motion_in_c(broken.given),
+                                              by.position,
+                                              by.side,
+                                              by.velocity,
+                                              by.turn,
+                                              by.radius};
     listener(context, &in_c);
   };
 }
@@ -238,8 +238,8 @@ size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double
 }
 
 uint64_t orchard_broad_phase_motions_asked(const orchard_broad_phase* world) { return world->world.motions_asked(); }
-uint64_t orchard_broad_phase_promises_broken(const orchard_broad_phase* world) {
-  return world->world.promises_broken();
+uint64_t orchard_broad_phase_motion_bound_violations(const orchard_broad_phase* world) {
+  return world->world.motion_bound_violations();
 }
 size_t orchard_broad_phase_memory_bytes(const orchard_broad_phase* world) {
   return sizeof(*world) + world->world.memory_bytes() + world->queries.memory_bytes();

@@ -30,7 +30,7 @@ rt::BodyOptions options_of(const orchard_body_options* from) noexcept {
 }
 
 rt::BodyState state_of(const orchard_body_state& from) noexcept {
-  const double angular_speed = from.turns_promised != 0 ? from.angular_speed : std::numeric_limits<double>::infinity();
+  const double angular_speed = from.turns_bounded != 0 ? from.angular_speed : std::numeric_limits<double>::infinity();
   return {pose_of(from.pose), vector_of(from.velocity),   from.acceleration,
           from.drift,         vector_of(from.half_space), from.expiry,
           angular_speed};
@@ -44,8 +44,8 @@ orchard_body_state state_of(const rt::BodyState& from) noexcept {
   std::copy(from.velocity.begin(), from.velocity.end(), result.velocity);
   std::copy(from.half_space.begin(), from.half_space.end(), result.half_space);
   result.acceleration = from.acceleration, result.drift = from.drift, result.expiry = from.expiry;
-  result.turns_promised = std::isfinite(from.angular_speed) ? 1 : 0;
-  result.angular_speed = result.turns_promised != 0 ? from.angular_speed : 0;
+  result.turns_bounded = std::isfinite(from.angular_speed) ? 1 : 0;
+  result.angular_speed = result.turns_bounded != 0 ? from.angular_speed : 0;
   return result;
 }
 
@@ -302,8 +302,8 @@ uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index
 uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index) {
   return detector->frame.broken[index];
 }
-uint64_t orchard_detector_promises_broken(const orchard_detector* detector) {
-  return detector->detector->promises_broken();
+uint64_t orchard_detector_motion_bound_violations(const orchard_detector* detector) {
+  return detector->detector->motion_bound_violations();
 }
 
 size_t orchard_detector_predict_load(const orchard_detector* detector, size_t count, double* pairs, double* work) {

@@ -127,7 +127,7 @@ bool PairQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
     const bool exchanged = arguments_exchanged_;
     first_.copy(exchanged ? b : a), second_.copy(exchanged ? a : b);
   }
-  return begin_anew();
+  return start_over();
 }
 
 bool PairQuery::bind_where(const PreparedTree& a, const PreparedTree& b) noexcept {
@@ -135,11 +135,11 @@ bool PairQuery::bind_where(const PreparedTree& a, const PreparedTree& b) noexcep
     order(a, b);
     first_.refer_to(arguments_exchanged_ ? b : a), second_.refer_to(arguments_exchanged_ ? a : b);
   }
-  return begin_anew();
+  return start_over();
 }
 
 // Nothing is known of what is bound now. False if there is no memory for its stack.
-bool PairQuery::begin_anew() noexcept {
+bool PairQuery::start_over() noexcept {
   finished_ = true;
   refused_ = true;
   roots_pending_ = exact_started_ = placed_ = false;

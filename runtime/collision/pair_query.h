@@ -149,7 +149,7 @@ class PairQuery {
   bool bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept;
   bool bound_where(const PreparedTree& a, const PreparedTree& b) const noexcept;
   void order(const PreparedTree& a, const PreparedTree& b) noexcept;
-  bool begin_anew() noexcept;
+  bool start_over() noexcept;
   void reset_counts() noexcept;
   void find_exact_error(const Pose& first, const Pose& second) noexcept;
   void keep(const Pose& a, const Pose& b) noexcept;

@@ -98,8 +98,8 @@ double Detector::reach(ShapeId shape) const noexcept {
 }
 std::size_t Detector::size() const noexcept { return state_->world.body_count; }
 bool Detector::valid() const noexcept { return state_->valid; }
-std::uint64_t Detector::promises_broken() const noexcept { return state_->sampler.monitor().broken(); }
-std::uint64_t Detector::promises_broken(BodyId body) const noexcept {
+std::uint64_t Detector::motion_bound_violations() const noexcept { return state_->sampler.monitor().broken(); }
+std::uint64_t Detector::motion_bound_violations(BodyId body) const noexcept {
   return state_->contains(body) ? state_->sampler.monitor().broken(body.index) : 0;
 }
 

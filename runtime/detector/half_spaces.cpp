@@ -48,7 +48,7 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
 
 void HalfSpaces::make_room(std::size_t bodies) {
   grow(due_, bodies);
-  grow(promises_, due_.size());
+  grow(bounds_, due_.size());
   while (moving_places_.size() < due_.size()) append(moving_places_, kNoIndex);
   detail::make_room(moving_, due_.size());
 }
@@ -103,7 +103,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
     const BodyIndex body = bodies[k];
     Motion motion = motions[k];
     motion.radius += 2 * slack;  // where it is, and where it was promised to be
-    promises_[body] = {clock.time(now), motion, table.relies_on_middle(body, time_step)};
+    bounds_[body] = {clock.time(now), motion, table.relies_on_middle(body, time_step)};
     if (!is_valid(motion)) {
       set_due(body, now + 1);
       continue;
@@ -131,13 +131,13 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
 
 bool HalfSpaces::promise_kept(BodyIndex body, double time, const Motion& now) const noexcept {
   if (alive_ == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
-  const Promise& promise = promises_[body];
-  return keeps_promise(promise.motion, promise.time, time, now.position, nullptr, slack_) &&
-         now.radius <= promise.motion.radius;
+  const MotionBound& bound = bounds_[body];
+  return keeps_motion_bound(bound.motion, bound.time, time, now.position, nullptr, slack_) &&
+         now.radius <= bound.motion.radius;
 }
 
 std::size_t HalfSpaces::memory_bytes() const noexcept {
-  return bytes_of(planes_) + bytes_of(due_) + bytes_of(promises_) + bytes_of(moving_) + bytes_of(moving_places_);
+  return bytes_of(planes_) + bytes_of(due_) + bytes_of(bounds_) + bytes_of(moving_) + bytes_of(moving_places_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -38,7 +38,7 @@ class HalfSpaces {
   // Whether the promise that the body's next update relies on is kept by where it is now.
   bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   // Whether that is about the body's middle: see BodyTable::relies_on_middle().
-  bool relies_on_middle(BodyIndex body) const noexcept { return body < promises_.size() && promises_[body].by_middle; }
+  bool relies_on_middle(BodyIndex body) const noexcept { return body < bounds_.size() && bounds_[body].by_middle; }
   std::size_t memory_bytes() const noexcept;
 
  private:
@@ -47,7 +47,7 @@ class HalfSpaces {
     Body body;
     bool alive = false;
   };
-  struct Promise {
+  struct MotionBound {
     double time = 0;
     Motion motion;
     bool by_middle = false;
@@ -58,7 +58,7 @@ class HalfSpaces {
   std::vector<Step> due_;                     // by body
   std::vector<BodyIndex> moving_;             // bodies that are due at some step,
   std::vector<std::uint32_t> moving_places_;  // and by body where in there, or kNoIndex
-  std::vector<Promise> promises_;             // by body
+  std::vector<MotionBound> bounds_;           // by body
   std::size_t alive_ = 0;
   double slack_ = 0;
   Step next_ = kNeverStep;

@@ -37,10 +37,10 @@ MotionMonitor::Track& MotionMonitor::track(BodyIndex body) {
   return tracks_[body];
 }
 
-void MotionMonitor::promised(BodyIndex body, double time, const Motion& motion) {
+void MotionMonitor::note_bound(BodyIndex body, double time, const Motion& motion) {
   Track& t = track(body);
-  t.promise = true;
-  t.promise_time = time;
+  t.bounded = true;
+  t.bound_time = time;
   t.motion = motion;
 }
 
@@ -54,7 +54,7 @@ bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position) {
 
 void MotionMonitor::count_broken(BodyIndex body) {
   Track& t = track(body);
-  t.promise = false;
+  t.bounded = false;
   t.horizon = std::max(t.horizon / 2, options_.min_horizon);
   t.kept_since = t.time;
   ++t.broken, ++broken_;
@@ -63,11 +63,11 @@ void MotionMonitor::count_broken(BodyIndex body) {
 bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, const Vec3* velocity) {
   Track& t = track(body);
   learn(t, time, position, velocity);
-  if (t.promise && time - t.kept_since >= t.horizon) {  // a whole one without a broken promise
+  if (t.bounded && time - t.kept_since >= t.horizon) {  // a whole one without a broken promise
     t.horizon = std::min(t.horizon * kFasterHorizon, options_.longest_horizon);
     t.kept_since = time;
   }
-  if (!t.promise || keeps_promise(t.motion, t.promise_time, time, position, velocity, options_.position_slack))
+  if (!t.bounded || keeps_motion_bound(t.motion, t.bound_time, time, position, velocity, options_.position_slack))
     return true;
   count_broken(body);
   return false;
@@ -134,7 +134,7 @@ Motion MotionMonitor::suggest(BodyIndex body, double time, double radius) const 
   return motion;
 }
 
-void MotionMonitor::cancelled(BodyIndex body) { track(body).promise = false; }
+void MotionMonitor::cancelled(BodyIndex body) { track(body).bounded = false; }
 
 void MotionMonitor::begin(BodyIndex body) { track(body) = Track{}; }
 

@@ -31,10 +31,10 @@ void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> as
     Body& body = world_.bodies[asked[i]];
     body.told_radius = motions[i].radius;
     body.told_by_middle = world_.bodies.relies_on_middle(asked[i], clock.time_step);
-    monitor_.promised(asked[i], time, motions[i]);
+    monitor_.note_bound(asked[i], time, motions[i]);
   }
-  if (!world_.options.promised) return;
-  for (std::size_t i = 0; i < asked.size(); ++i) world_.options.promised(time, asked[i], motions[i]);
+  if (!world_.options.bound_given) return;
+  for (std::size_t i = 0; i < asked.size(); ++i) world_.options.bound_given(time, asked[i], motions[i]);
 }
 
 // Nearly every body is asked about at this step anyway.
@@ -42,7 +42,7 @@ void StateSampler::sample_all(Step step) {
   constexpr std::size_t kMinBodies = 256;
   sampled_all_ = false;
   const bool many = paired_.size() >= kMinBodies && 2 * paired_.size() >= world_.bodies.slots();
-  if (!many || watches_ || world_.options.promised) return;
+  if (!many || watches_ || world_.options.bound_given) return;
   world_.bodies.ask_everyone(step, world_.clock.time(step), world_.options.executor);
   sampled_all_ = true;
   all_sampled_at_ = step;
@@ -86,7 +86,7 @@ void StateSampler::watch(Step step) {
     Body& body = world_.bodies[i];
     if (!is_valid(bodies.motion_of(i, world_.clock.time_step))) {  // it is refused, and its promise holds no longer
       if (body.told_radius >= 0) cancel(body);
-    } else if (!keeps_promise(i, step)) {
+    } else if (!keeps_motion_bound(i, step)) {
       broken_.push_back(i);
       cancel(body);
     }
@@ -94,7 +94,7 @@ void StateSampler::watch(Step step) {
 }
 
 // Of what the promise was about, whatever this state promises.
-bool StateSampler::keeps_promise(BodyIndex index, Step step) {
+bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
   const Body& body = world_.bodies[index];
   const double time = world_.clock.time(step);
   const Motion motion =

@@ -41,7 +41,7 @@ class StateSampler {
     to.insert(to.end(), bodies.begin(), bodies.end());
   }
   void sample(Step step, double time, std::span<const BodyIndex> bodies);
-  bool keeps_promise(BodyIndex index, Step step);
+  bool keeps_motion_bound(BodyIndex index, Step step);
   bool keeps_more(const Body& body, Step step, const Motion& motion) const noexcept;
 
   World& world_;

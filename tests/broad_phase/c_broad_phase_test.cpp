@@ -165,15 +165,15 @@ int count_and_refuse(void* context, orchard_body a, orchard_body b) {
   ++*static_cast<int*>(context);
   return 0;
 }
-void note(void* context, const orchard_broken_promise* broken) {
-  static_cast<std::vector<orchard_broken_promise>*>(context)->push_back(*broken);
+void note(void* context, const orchard_motion_bound_violation* broken) {
+  static_cast<std::vector<orchard_motion_bound_violation>*>(context)->push_back(*broken);
 }
 
 TEST(CBroadPhase, TakesChangesAndTellsOfBrokenPromises) {
   std::vector<orchard_motion> values(3, orchard_default_motion());
   EXPECT_EQ(values[0].expiry, std::numeric_limits<double>::infinity());
   for (orchard_motion& motion : values) motion.radius = 1;
-  std::vector<orchard_broken_promise> broken;
+  std::vector<orchard_motion_bound_violation> broken;
   orchard_broad_phase_options options = orchard_default_broad_phase();
   options.validate = 1;
   options.broken = note, options.broken_context = &broken;
@@ -205,7 +205,7 @@ TEST(CBroadPhase, TakesChangesAndTellsOfBrokenPromises) {
   EXPECT_EQ(broken[0].body.index, b.index);
   EXPECT_NEAR(broken[0].position, 0.25, 1e-9);
   EXPECT_EQ(broken[0].given.position[0], 0.25);
-  EXPECT_EQ(orchard_broad_phase_promises_broken(w), 1u);
+  EXPECT_EQ(orchard_broad_phase_motion_bound_violations(w), 1u);
   values[1].radius = NAN;
   EXPECT_EQ(orchard_broad_phase_cancel(w, b), 1);
   now = orchard_broad_phase_advance(w, 4 * kStep, nullptr);

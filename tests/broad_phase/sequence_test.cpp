@@ -225,7 +225,7 @@ class Sequence {
     if (mode_ == 3) budget.time = std::chrono::nanoseconds(0);
     if (mode_ == 4) budget.work = 1'000'000;
     const Advance now = mode_ == 0 ? world_.advance(now_) : world_.advance(now_, budget);
-    ASSERT_EQ(world_.promises_broken(), 0u);
+    ASSERT_EQ(world_.motion_bound_violations(), 0u);
     const std::vector<BodyIndex> refused(now.refused.begin(), now.refused.end());
     const bool complete = now.incomplete_from == kNoClass;
     ASSERT_EQ(complete, now.left_over == 0);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStep = 0.01;
 
-TEST(PromiseExcess, SaysWhichBoundIsBrokenByHowMuch) {
+TEST(MotionBoundExcess, SaysWhichBoundIsBrokenByHowMuch) {
   const Motion promise{.position = {1, 2, 3},
                        .velocity = {4, 0, 0},
                        .radius = 2,
@@ -26,16 +26,18 @@ TEST(PromiseExcess, SaysWhichBoundIsBrokenByHowMuch) {
   constexpr double kSeconds = 0.5;
   const double position = 0.5 * kSeconds + 5 * kSeconds * kSeconds, velocity = 0.75 + 10 * kSeconds;
   const auto moved = [&](const Vec3& by, const Vec3& faster) {
-    Motion given = promise;
-    given.position = promise.position + kSeconds * promise.velocity + by;
-    given.velocity = promise.velocity + faster;
+    Motion given = bound;
+    given.position = bound.position + kSeconds * bound.velocity + by;
+    given.velocity = bound.velocity + faster;
     given.drift = 0.25;
     return given;
   };
-  const auto excess = [&](const Motion& given, double time = 1.5) { return promise_excess(promise, 1, given, time); };
+  const auto excess = [&](const Motion& given, double time = 1.5) {
+    return motion_bound_excess(bound, 1, given, time);
+  };
   EXPECT_TRUE(excess(moved({}, {})).none());
   EXPECT_TRUE(excess(moved({0, position, 0}, {0, -velocity, 0})).none());
-  PromiseExcess by = excess(moved({0, position + 1e-3, 0}, {0, 0, -velocity - 1e-2}));
+  MotionBoundExcess by = excess(moved({0, position + 1e-3, 0}, {0, 0, -velocity - 1e-2}));
   EXPECT_NEAR(by.position, 1e-3, 1e-9);
   EXPECT_NEAR(by.velocity, 1e-2, 1e-6);
   EXPECT_EQ(by.side + by.turn + by.radius, 0);
@@ -52,10 +54,10 @@ TEST(PromiseExcess, SaysWhichBoundIsBrokenByHowMuch) {
   EXPECT_FALSE(excess(wild).none());
   EXPECT_TRUE(excess(wild, 2.01).none());  // it has expired
   EXPECT_TRUE(excess(wild, 0.99).none());  // before
-  const PromiseExcess at_expiry = excess(wild, 2);
+  const MotionBoundExcess at_expiry = excess(wild, 2);
   EXPECT_GT(at_expiry.position, 0);
   EXPECT_EQ(at_expiry.velocity, 0);  // it may jump there
-  EXPECT_TRUE(promise_excess(promise, 1, moved({0, position + 1e-3, 0}, {}), 1 + kSeconds, 1e-3).none());
+  EXPECT_TRUE(motion_bound_excess(bound, 1, moved({0, position + 1e-3, 0}, {}), 1 + kSeconds, 1e-3).none());
 }
 
 std::vector<BodyPair> pairs_of(const Advance& now) { return {now.pairs.begin(), now.pairs.end()}; }
@@ -81,7 +83,9 @@ TEST_P(Validation, FindsNothingWherePromisesAreKept) {
     if (!events && shape.bodies > 25) continue;
     BroadPhase plain = test::make_broad_phase(bodies.source(), options);
     options.common.validate = true;
-    options.common.broken = [&](const BrokenPromise& broken) { FAIL() << broken.body.index << " at " << broken.time; };
+    options.common.broken = [&](const MotionBoundViolation& broken) {
+      FAIL() << broken.body.index << " at " << broken.time;
+    };
     BroadPhase checked = test::make_broad_phase(bodies.source(), options);
     for (std::size_t i = 0; i < bodies.size(); ++i) plain.add(), checked.add();
     const double frame = draw.uniform(0.003, 0.03);
@@ -94,7 +98,7 @@ TEST_P(Validation, FindsNothingWherePromisesAreKept) {
         if (now.pairs.empty()) break;
       }
     }
-    EXPECT_EQ(checked.promises_broken(), 0u);
+    EXPECT_EQ(checked.motion_bound_violations(), 0u);
     EXPECT_GE(checked.motions_asked(), plain.motions_asked());
   }
 }
@@ -110,10 +114,10 @@ TEST(Validation, FindsValuesThatAreOfTheFrameAndNotOfTheStep) {
     std::uint64_t heard = 0;
     double worst = 0;
     BroadPhaseOptions options{.time_step = kStep, .validate = true};
-    options.broken = [&](const BrokenPromise& broken) {
+    options.broken = [&](const MotionBoundViolation& broken) {
       ++heard;
       EXPECT_FALSE(broken.by.none());
-      EXPECT_GE(broken.time, broken.promise_time);
+      EXPECT_GE(broken.time, broken.bound_time);
       worst = std::max(worst, broken.by.position);
     };
     BroadPhase world(values_of(values), options);
@@ -137,7 +141,7 @@ TEST(Validation, FindsValuesThatAreOfTheFrameAndNotOfTheStep) {
         wrong += found[step].size() - both.size();
       }
     }
-    EXPECT_EQ(heard, world.promises_broken());
+    EXPECT_EQ(heard, world.motion_bound_violations());
     EXPECT_GT(heard, 100u) << seed;
     EXPECT_GT(worst, 0.01);
   }
@@ -158,7 +162,7 @@ TEST(Validation, FindsADriftThatIsMissing) {
       values[0].velocity[2] += kStep * kMax;
       values[0].position = values[0].position + kStep * values[0].velocity;
     }
-    EXPECT_EQ(world.promises_broken() > 0, !given);
+    EXPECT_EQ(world.motion_bound_violations() > 0, !given);
   }
 }
 
@@ -167,15 +171,15 @@ TEST_P(Validation, NamesTheBodyTheTimeAndTheAmount) {
   enum class Crime { position, velocity, side, turn, radius };
   for (const Crime crime : {Crime::position, Crime::velocity, Crime::side, Crime::turn, Crime::radius}) {
     std::vector<Motion> values(5);
-    std::vector<PromiseExcess> heard;
+    std::vector<MotionBoundExcess> heard;
     BodyId guilty;
     test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep, .validate = true}};
-    options.common.broken = [&](const BrokenPromise& broken) {
+    options.common.broken = [&](const MotionBoundViolation& broken) {
       heard.push_back(broken.by);
       EXPECT_EQ(broken.body, guilty);
       EXPECT_NEAR(broken.time, 20 * kStep, 1e-9);
-      EXPECT_NEAR(broken.promise_time, 19 * kStep, 1e-9);  // the step before
-      EXPECT_EQ(broken.promise.acceleration, 1);
+      EXPECT_NEAR(broken.bound_time, 19 * kStep, 1e-9);  // the step before
+      EXPECT_EQ(broken.bound.acceleration, 1);
       EXPECT_EQ(broken.given.radius, values[3].radius);
     };
     BroadPhase world = test::make_broad_phase(values_of(values), options);
@@ -200,7 +204,7 @@ TEST_P(Validation, NamesTheBodyTheTimeAndTheAmount) {
       world.advance(step * kStep);
     }
     ASSERT_EQ(heard.size(), 1u) << static_cast<int>(crime);
-    const PromiseExcess& by = heard[0];
+    const MotionBoundExcess& by = heard[0];
     EXPECT_NEAR(by.position, crime == Crime::position ? 0.25 - kStep * kStep / 2 : 0, 1e-6);
     EXPECT_NEAR(by.velocity, crime == Crime::velocity ? 0.25 - kStep : 0, 1e-6);
     EXPECT_NEAR(by.side, crime == Crime::side ? 1e-5 : 0, 1e-8);
@@ -238,12 +242,12 @@ TEST_P(Validation, ForgivesWhatIsCancelled) {
       values[body] = good;
     }
     world.advance(step * kStep);
-    ASSERT_EQ(world.promises_broken(), 0u) << step;
+    ASSERT_EQ(world.motion_bound_violations(), 0u) << step;
   }
   for (Motion& m : values) m.position = m.position + kStep * m.velocity;
   values[0].position[0] += length(values[0].velocity) + 1;
   world.advance(1);
-  EXPECT_EQ(world.promises_broken(), 1u);
+  EXPECT_EQ(world.motion_bound_violations(), 1u);
 }
 
 // A looser promise does not take back a stricter one that is still in force.
@@ -257,10 +261,10 @@ TEST(Validation, HoldsOnToTheStricterPromise) {
   values[0].acceleration = 1000;  // that it will need after 0.5 s
   values[0].expiry = 2;
   world.advance(kStep);
-  EXPECT_EQ(world.promises_broken(), 0u);
+  EXPECT_EQ(world.motion_bound_violations(), 0u);
   values[0].velocity = {5, 0, 0};  // allowed by the second, not by the first
   world.advance(2 * kStep);
-  EXPECT_EQ(world.promises_broken(), 1u);
+  EXPECT_EQ(world.motion_bound_violations(), 1u);
 }
 
 }  // namespace

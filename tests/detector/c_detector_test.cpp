@@ -121,7 +121,7 @@ TEST(CDetector, HasTheOtherCallsToo) {
   const orchard_frame frame = orchard_detector_step(w.detector, 0.03, kNoLimit);
   ASSERT_EQ(frame.broken, 1u);
   EXPECT_EQ(orchard_detector_broken(w.detector, 0), b.index);
-  EXPECT_EQ(orchard_detector_promises_broken(w.detector), 1u);
+  EXPECT_EQ(orchard_detector_motion_bound_violations(w.detector), 1u);
   EXPECT_EQ(frame.events, 1u);
   w.states[a.index].pose.scale = -1;
   const orchard_frame next = orchard_detector_step(w.detector, 0.04, kNoLimit);
@@ -171,11 +171,11 @@ TEST(CDetector, KeepsStatesWhereThereIsNoSource) {
   EXPECT_EQ(orchard_detector_step(detector, 0.11, kNoLimit).events, 2u);  // stays, and ends
   EXPECT_EQ(orchard_detector_state(detector, a).velocity[1], 100);
   EXPECT_NEAR(orchard_detector_state(detector, b).pose.translation[0], -1, 1e-12);
-  EXPECT_EQ(orchard_default_state().turns_promised, 0);
-  state.turns_promised = 1;
+  EXPECT_EQ(orchard_default_state().turns_bounded, 0);
+  state.turns_bounded = 1;
   state.angular_speed = 2;
   EXPECT_EQ(orchard_detector_set_state(detector, a, &state), 1);
-  EXPECT_EQ(orchard_detector_state(detector, a).turns_promised, 1);
+  EXPECT_EQ(orchard_detector_state(detector, a).turns_bounded, 1);
   EXPECT_EQ(orchard_detector_state(detector, a).angular_speed, 2);
   state.angular_speed = -2;
   EXPECT_EQ(orchard_detector_set_state(detector, a, &state), 0);

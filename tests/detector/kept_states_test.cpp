@@ -68,7 +68,7 @@ void play(std::uint64_t seed, bool watch) {
     }
   }
   EXPECT_GT(touches, 0u);
-  EXPECT_EQ(world.promises_broken() > 0, watch);
+  EXPECT_EQ(world.motion_bound_violations() > 0, watch);
 }
 
 TEST(KeptStates, AreWhatBodiesMoveBy) {

@@ -26,7 +26,7 @@ TEST(MotionMonitor, TellsPromisesThatAreKeptFromThoseThatAreBroken) {
   const Vec3 v = {1, 2, 3}, a = {0, 0, -10};
   for (const double factor : {0.999, 1.001}) {
     MotionMonitor monitor;
-    monitor.promised(0, 0, promise({}, v, 10 / factor));
+    monitor.note_bound(0, 0, promise({}, v, 10 / factor));
     bool kept = true;
     for (int i = 1; i < 20; ++i) {
       const double t = i * kStep;
@@ -38,15 +38,15 @@ TEST(MotionMonitor, TellsPromisesThatAreKeptFromThoseThatAreBroken) {
   }
   for (const double side : {1.0, -1.0}) {
     MotionMonitor monitor;
-    monitor.promised(5, 1, promise({}, v, 20, {0, 0, side}));
+    monitor.note_bound(5, 1, promise({}, v, 20, {0, 0, side}));
     EXPECT_EQ(monitor.observe(5, 1.5, 0.5 * v + 0.125 * a), side > 0);
   }
   MotionMonitor monitor;
   Motion short_one = promise({}, v, 0);
   short_one.expiry = 1;
-  monitor.promised(0, 0, short_one);
+  monitor.note_bound(0, 0, short_one);
   EXPECT_TRUE(monitor.observe(0, 1.5, {99, 99, 99}));  // nothing is promised at this moment
-  monitor.promised(0, 2, promise({}, v, 1));
+  monitor.note_bound(0, 2, promise({}, v, 1));
   EXPECT_FALSE(monitor.observe(0, 2.1, 0.1 * v, {2, 2, 3}));  // the place is right, the velocity is not
 }
 
@@ -75,7 +75,7 @@ TEST(MotionMonitor, SuggestsWhatIsKept) {
         EXPECT_LE(motion.acceleration, 1.6 * truth);
         EXPECT_GT(motion.expiry, t);
         half_space = half_space || dot(motion.half_space, motion.half_space) > 0;
-        if (i % 7 == 0) monitor.promised(1, t, motion);
+        if (i % 7 == 0) monitor.note_bound(1, t, motion);
       }
       EXPECT_EQ(monitor.broken(), 0u) << with_velocity << circle;
       EXPECT_TRUE(half_space);
@@ -96,7 +96,7 @@ TEST(MotionMonitor, ShortensTheHorizonOfWhoBreaksPromises) {
     const Motion motion = monitor.suggest(0, t, 1);
     if (i == 999) calm = motion.expiry - t;
     if (i == 1999) wild = motion.expiry - t;
-    monitor.promised(0, t, motion);
+    monitor.note_bound(0, t, motion);
   }
   EXPECT_GT(calm, 0.9);
   EXPECT_LT(wild, 0.3);
@@ -126,8 +126,8 @@ TEST(MotionMonitor, KeepsADetectorFromMissingAContactThatABrokenPromiseHides) {
     }
     EXPECT_EQ(found, watch);
     EXPECT_EQ(named > 0, watch);
-    EXPECT_EQ(detector.promises_broken(b), named);
-    EXPECT_EQ(detector.promises_broken(a), 0u);
+    EXPECT_EQ(detector.motion_bound_violations(b), named);
+    EXPECT_EQ(detector.motion_bound_violations(a), 0u);
   }
 }
 

@@ -276,10 +276,10 @@ TEST(OddBodies, InReusedSlotsHaveBrokenNothing) {
   const ShapeId ball = world.add_sphere(1);
   const BodyId first = world.add_body({{ball}});
   for (int k = 0; k < 6; ++k) states[0].pose = at(k), world.step(when(k));
-  EXPECT_GT(world.promises_broken(first), 0u);
+  EXPECT_GT(world.motion_bound_violations(first), 0u);
   world.remove(first);
-  EXPECT_EQ(world.promises_broken(world.add_body({{ball}})), 0u);
-  EXPECT_GT(world.promises_broken(), 0u);
+  EXPECT_EQ(world.motion_bound_violations(world.add_body({{ball}})), 0u);
+  EXPECT_GT(world.motion_bound_violations(), 0u);
 }
 
 TEST(OddBodies, OfManyPartsStayWithinABudget) {

@@ -255,7 +255,7 @@ TEST(CallsFromWithinAStep, AreRefusedAndChangeNothing) {
     DetectorOptions options;
     options.watch = i % 2 == 0;
     DetectorOptions meddling = options;
-    meddling.promised = [&](double, BodyIndex, const Motion&) { meddler.meddle(); };
+    meddling.bound_given = [&](double, BodyIndex, const Motion&) { meddler.meddle(); };
     Detector world(
         [&](double time, std::span<const BodyIndex> bodies, std::span<BodyState> answers) {
           meddler.meddle();

@@ -11,7 +11,7 @@ std::uint64_t key(BodyId id) { return std::uint64_t{id.generation} << 32 | id.in
 }  // namespace
 
 SceneRun::SceneRun(const Scene& scene, DetectorOptions options, Promises promises, int horizon)
-    : scene_(&scene), promises_(promises), horizon_(horizon), ids_(scene.bodies.size()) {
+    : scene_(&scene), bounds_(promises), horizon_(horizon), ids_(scene.bodies.size()) {
   options.time_step = scene.dt;
   options.watch = promises != Promises::known;
   const auto source = [this](double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
@@ -19,7 +19,7 @@ SceneRun::SceneRun(const Scene& scene, DetectorOptions options, Promises promise
     const bool forth = at == step;  // what is played back cannot be foretold by looking forward
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const std::size_t body = bodies_[bodies[i]];
-      if (promises_ == Promises::suggested) {
+      if (bounds_ == Promises::suggested) {
         states[i] = BodyState{};
         states[i].pose = scene_->poses[static_cast<std::size_t>(step)][body];
       } else {
@@ -60,7 +60,7 @@ void SceneRun::add(std::size_t body) {
     parts.push_back({shapes_[with.parts[k]], scene_->local(step_, body, k)});
   }
   BodyOptions options = with.options;
-  options.suggest = promises_ == Promises::suggested;
+  options.suggest = bounds_ == Promises::suggested;
   const Pose& pose = scene_->poses[static_cast<std::size_t>(step_)][body];
   const BodyId id = with.is_static ? detector_->add_static(parts, pose, options) : detector_->add_body(parts, options);
   ids_[body] = id;

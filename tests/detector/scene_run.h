@@ -34,7 +34,7 @@ class SceneRun {
   std::size_t number(BodyId id) const;
 
   const Scene* scene_;
-  Promises promises_;
+  Promises bounds_;
   int horizon_;
   int step_ = -1;
   std::unique_ptr<Detector> detector_;

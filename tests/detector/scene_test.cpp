@@ -94,7 +94,7 @@ TEST_P(EveryPromise, TellsExactlyWhoTouchesAtEachStep) {
       ASSERT_FALSE(frame.out_of_memory);
     }
     if (GetParam() != Promises::suggested) {
-      EXPECT_EQ(run.detector().promises_broken(), 0u) << c.scene->name;
+      EXPECT_EQ(run.detector().motion_bound_violations(), 0u) << c.scene->name;
     }
   }
 }

@@ -192,7 +192,7 @@ BodyState Scene::state_backwards(int step, double time, std::size_t body, int ho
 }
 
 // Steps go by `way` up to `end`.
-BodyState Scene::promised(int step, int way, int end, std::size_t body, int horizon) const {
+BodyState Scene::note_bound(int step, int way, int end, std::size_t body, int horizon) const {
   const auto rotation = [&](int k) { return poses[static_cast<std::size_t>(k)][body].rotation; };
   const auto place = [&](int k) { return Vec3(poses[static_cast<std::size_t>(k)][body].translation); };
   BodyState state;

@@ -33,7 +33,7 @@ struct Hammer {
   explicit Hammer(bool watch = false)
       : world(states_of(states), {.time_step = kStep,
                                   .watch = watch,
-                                  .promised =
+                                  .bound_given =
                                       [this](double, BodyIndex body, const Motion& motion) {
                                         if (body == 0) told.push_back(motion);
                                       }}),
@@ -67,8 +67,8 @@ TEST(Turning, IsPromisedSoThatTheSphereIsNoLargerThanTheBody) {
 
 TEST(Turning, IsKnownOfStatesThatTheDetectorKeeps) {
   std::vector<Motion> told;
-  Detector world(DetectorOptions{.time_step = kStep,
-                                 .promised = [&](double, BodyIndex, const Motion& motion) { told.push_back(motion); }});
+  Detector world(DetectorOptions{
+      .time_step = kStep, .bound_given = [&](double, BodyIndex, const Motion& motion) { told.push_back(motion); }});
   const ShapeId head = world.add_sphere(1, {3, 0, 0});
   const BodyId id = world.add_body(head, BodyState{});
   world.step(0);
@@ -113,7 +113,7 @@ TEST(Turning, FasterThanPromisedIsTold) {
     touching += !frame.events.empty();
   }
   EXPECT_GE(broken, 1u);
-  EXPECT_EQ(hammer.world.promises_broken(id), broken);
+  EXPECT_EQ(hammer.world.motion_bound_violations(id), broken);
   EXPECT_GE(touching, 10u);
 }
 

@@ -84,15 +84,15 @@ struct MotionArrays {
   std::span<const double> expiry{};
 };
 
-// A body that has not kept its bounds: `promise`, given at promise_time, does not allow what was given at `time`.
-struct BrokenPromise {
+// A body that has not kept its bounds: `promise`, given at bound_time, does not allow what was given at `time`.
+struct MotionBoundViolation {
   BodyId body;
-  double promise_time, time;
-  const Motion &promise, &given;
-  PromiseExcess by;
+  double bound_time, time;
+  const Motion &bound, &given;
+  MotionBoundExcess by;
 };
 // Called from within advance(), and within a query of BodyQueries; it calls nothing of the broad phase's.
-using BrokenPromiseListener = std::function<void(const BrokenPromise&)>;
+using MotionBoundViolationListener = std::function<void(const MotionBoundViolation&)>;
 
 struct BroadPhaseOptions {
   double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
@@ -108,7 +108,7 @@ struct BroadPhaseOptions {
   // a step. Pairs are the same as without; it costs what asking for all bodies costs, and 250 bytes for each. `broken`
   // hears of each broken promise, once: what was given instead counts from then on. Without it they are counted.
   bool validate = false;
-  BrokenPromiseListener broken{};
+  MotionBoundViolationListener broken{};
   // Updates of all windows of many bodies are cut into jobs of it. The same reports with any, or none; but the source
   // is called by several jobs at once then, each about its own bodies, and throws nothing. Steps within a budget, and
   // `validate`, take no part.
@@ -254,7 +254,7 @@ class BroadPhase {
   std::size_t size() const noexcept;                        // bodies
   std::size_t memory_bytes() const noexcept;                // held on the heap
   std::uint64_t motions_asked() const noexcept;             // of the source, so far
-  std::uint64_t promises_broken() const noexcept;           // found by BroadPhaseOptions::validate, so far
+  std::uint64_t motion_bound_violations() const noexcept;   // found by BroadPhaseOptions::validate, so far
 
  private:
   struct State;

@@ -94,7 +94,7 @@ struct BodyOptions {
 
 // An observer, for debugging and visualisation: what the broad phase relies on from `time` on, until it asks for the
 // body again. The motion is of the body's origin, or where BodyState::angular_speed allows it, of its middle.
-using PromiseListener = std::function<void(double time, BodyIndex body, const Motion& promise)>;
+using MotionBoundListener = std::function<void(double time, BodyIndex body, const Motion& bound)>;
 
 struct DetectorOptions {
   double time_step = 0.01;    // dt_d, see BroadPhaseOptions; > 0. Usually a frame
@@ -120,7 +120,7 @@ struct DetectorOptions {
   // Sources and filters are called in the thread that calls step(), all the same.
   Executor executor{};
   // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
-  PromiseListener promised{};
+  MotionBoundListener bound_given{};
 };
 
 // How far a step got that a budget in time cut short.
@@ -342,9 +342,9 @@ class Detector {
   // after it. At most 254 are filled; returns how many.
   std::size_t predict_load(std::span<StepLoad> loads) const noexcept;
 
-  std::uint64_t promises_broken() const noexcept;             // found so far (watch)
-  std::uint64_t promises_broken(BodyId body) const noexcept;  // of one body
-  std::size_t memory_bytes() const noexcept;                  // held on the heap, shapes' trees not included
+  std::uint64_t motion_bound_violations() const noexcept;             // found so far (watch)
+  std::uint64_t motion_bound_violations(BodyId body) const noexcept;  // of one body
+  std::size_t memory_bytes() const noexcept;                          // held on the heap, shapes' trees not included
 
  private:
   struct State;

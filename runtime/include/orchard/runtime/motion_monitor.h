@@ -19,7 +19,7 @@ struct MonitorOptions {
 // promised, from what was seen. A promise that is broken silently is the one way in which a broad phase misses a
 // contact. (BroadPhaseOptions::validate finds such ones while a program is being written.) Use it where the simulation
 // moves its bodies:
-//   monitor.promised(body, time, motion);                                     // in the source, as it answers
+//   monitor.note_bound(body, time, motion);                                     // in the source, as it answers
 //   if (!monitor.observe(body, time, position, velocity)) world.cancel(id);   // at every step, before advance()
 // A Detector with DetectorOptions::watch does so itself.
 //
@@ -29,7 +29,7 @@ class MotionMonitor {
   explicit MotionMonitor(const MonitorOptions& options = {}) : options_(options) {}
 
   // The promise of `motion`, made at `time`, replaces the body's earlier one.
-  void promised(BodyIndex body, double time, const Motion& motion);
+  void note_bound(BodyIndex body, double time, const Motion& motion);
 
   // Where the body is at `time`, and its velocity. False if Lemma 4.1 or 4.2 does not hold for the last promise, or the
   // velocity has left its bound: the promise is broken, counted once, and void from then on. True where nothing was
@@ -67,8 +67,8 @@ class MotionMonitor {
   };
   struct Track {
     // The promise.
-    bool promise = false;
-    double promise_time = 0;
+    bool bounded = false;
+    double bound_time = 0;
     Motion motion;
     // What was seen last.
     std::uint32_t seen = 0;  // observations, at most 3

@@ -48,22 +48,22 @@ typedef void (*orchard_motion_source)(void* context, double time, const uint32_t
 /* 0: the two are no pair. a.index < b.index. */
 typedef int (*orchard_pair_filter)(void* context, orchard_body a, orchard_body b);
 
-/* A promise, given at promise_time, that what was given at `time` does not keep: by how much each bound is exceeded,
+/* A promise, given at bound_time, that what was given at `time` does not keep: by how much each bound is exceeded,
  * two lengths, two speeds, a length; 0: it holds. See motion.h. */
-typedef struct orchard_broken_promise {
+typedef struct orchard_motion_bound_violation {
   orchard_body body;
-  double promise_time, time;
-  orchard_motion promise, given;
+  double bound_time, time;
+  orchard_motion bound, given;
   double position, side, velocity, turn, radius;
-} orchard_broken_promise;
-typedef void (*orchard_promise_listener)(void* context, const orchard_broken_promise* broken);
+} orchard_motion_bound_violation;
+typedef void (*orchard_motion_bound_listener)(void* context, const orchard_motion_bound_violation* broken);
 
 typedef struct orchard_broad_phase_options {
   double time_step, start;
   uint32_t window; /* 0: as it chooses */
   double position_slack;
-  int validate;                    /* debugging: compare every motion with what was promised before */
-  orchard_promise_listener broken; /* null: broken promises are only counted */
+  int validate;                         /* debugging: compare every motion with what was promised before */
+  orchard_motion_bound_listener broken; /* null: broken promises are only counted */
   void* broken_context;
   /* Updates of all windows of many bodies as jobs: run(run_context, count, job, data) calls job(data, i) for each i <
    * count, on any threads, and returns when all have returned. The source is called by several at once then. Null: none
@@ -135,8 +135,8 @@ size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double
                                         size_t* meetings, size_t* overlaps);
 
 uint64_t orchard_broad_phase_motions_asked(const orchard_broad_phase* world);
-uint64_t orchard_broad_phase_promises_broken(const orchard_broad_phase* world); /* found by `validate` */
-size_t orchard_broad_phase_memory_bytes(const orchard_broad_phase* world);      /* held on the heap */
+uint64_t orchard_broad_phase_motion_bound_violations(const orchard_broad_phase* world); /* found by `validate` */
+size_t orchard_broad_phase_memory_bytes(const orchard_broad_phase* world);              /* held on the heap */
 
 /* Queries: about the bodies' spheres where the source says they are at query_time(), that of the last step reported.
  * Of those whose category has a bit of `mask` and whose mask has one of `category`; null: all ones. */

@@ -26,7 +26,7 @@ typedef struct orchard_body_state {
   double drift;
   double half_space[3]; /* d; zero: none */
   double expiry;        /* may be INFINITY */
-  int turns_promised;   /* 0: nothing is promised of how fast it turns; else at most */
+  int turns_bounded;    /* 0: nothing is promised of how fast it turns; else at most */
   double angular_speed; /* this, in radians per second */
 } orchard_body_state;
 
@@ -167,7 +167,7 @@ size_t orchard_detector_touching_sphere(orchard_detector* detector, const double
                                         const orchard_query_filter* filter, orchard_body* bodies, size_t room);
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index);
 uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index);
-uint64_t orchard_detector_promises_broken(const orchard_detector* detector);
+uint64_t orchard_detector_motion_bound_violations(const orchard_detector* detector);
 /* What the next `count` steps will cost: fills the arrays (each may be null), and returns how many are known. */
 size_t orchard_detector_predict_load(const orchard_detector* detector, size_t count, double* pairs, double* work);
 

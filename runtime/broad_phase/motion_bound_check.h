@@ -5,9 +5,9 @@ namespace orchard::runtime::detail {
 
 // Compares each motion that is given with what was promised for the same body before: in the motion given last, and in
 // the strictest one that is still in force, as a looser one does not take that back.
-class PromiseCheck {
+class MotionBoundCheck {
  public:
-  PromiseCheck(BrokenPromiseListener listener, double position_slack)
+  MotionBoundCheck(MotionBoundViolationListener listener, double position_slack)
       : listener_(std::move(listener)), position_slack_(position_slack) {}
 
   void given(BodyId body, const Motion& motion, double time);
@@ -16,18 +16,18 @@ class PromiseCheck {
   std::size_t memory_bytes() const noexcept { return tracks_.capacity() * sizeof(Track); }
 
  private:
-  struct Promise {
+  struct MotionBound {
     bool made = false;
     double time = 0;
     Motion motion;
   };
   struct Track {
-    Promise last, strictest;
+    MotionBound last, strictest;
     bool same = true;  // the two
   };
-  bool kept(BodyId body, const Promise& promise, const Motion& motion, double time);
+  bool kept(BodyId body, const MotionBound& bound, const Motion& motion, double time);
 
-  BrokenPromiseListener listener_;
+  MotionBoundViolationListener listener_;
   double position_slack_;
   std::vector<Track> tracks_;  // by body
   std::uint64_t broken_ = 0;

@@ -1,4 +1,4 @@
-#include "broad_phase/promise_check.h"
+#include "broad_phase/motion_bound_check.h"
 
 #include "broad_phase/body_pool.h"
 
@@ -14,16 +14,16 @@ bool implies(const Motion& newer, const Motion& older) noexcept {
 
 }  // namespace
 
-bool PromiseCheck::kept(BodyId body, const Promise& promise, const Motion& motion, double time) {
-  if (!promise.made) return true;
-  const PromiseExcess excess = promise_excess(promise.motion, promise.time, motion, time, position_slack_);
+bool MotionBoundCheck::kept(BodyId body, const MotionBound& bound, const Motion& motion, double time) {
+  if (!bound.made) return true;
+  const MotionBoundExcess excess = motion_bound_excess(bound.motion, bound.time, motion, time, position_slack_);
   if (excess.none()) return true;
   ++broken_;
-  if (listener_) listener_({body, promise.time, time, promise.motion, motion, excess});
+  if (listener_) listener_({body, bound.time, time, bound.motion, motion, excess});
   return false;
 }
 
-void PromiseCheck::given(BodyId body, const Motion& motion, double time) {
+void MotionBoundCheck::given(BodyId body, const Motion& motion, double time) {
   grow(tracks_, std::size_t{body.index} + 1);
   Track& track = tracks_[body.index];
   if (!is_valid(motion)) {  // refused: nothing relies on it, nor on what was given before
@@ -31,14 +31,14 @@ void PromiseCheck::given(BodyId body, const Motion& motion, double time) {
     return;
   }
   const bool all = kept(body, track.last, motion, time) && (track.same || kept(body, track.strictest, motion, time));
-  const Promise& strictest = track.strictest;
+  const MotionBound& strictest = track.strictest;
   const bool over = !all || !strictest.made || time > strictest.motion.expiry;
   track.last = {true, time, motion};
   track.same = over || implies(motion, strictest.motion);
   if (track.same) track.strictest = track.last;
 }
 
-void PromiseCheck::forget(BodyIndex body) noexcept {
+void MotionBoundCheck::forget(BodyIndex body) noexcept {
   if (body < tracks_.size()) tracks_[body] = {};
 }
 

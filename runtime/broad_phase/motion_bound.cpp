@@ -1,0 +1,49 @@
+#include "orchard/runtime/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::runtime {
+namespace {
+
+constexpr double kOwnRounding = 1e-9;      // of velocities and radii: the application's own arithmetic
+constexpr double kTimeRounding = 0x1p-50;  // of times
+
+double above(double value, double bound) noexcept { return value > bound ? value - bound : 0; }
+
+}  // namespace
+
+MotionBoundExcess motion_bound_excess(const Motion& bound, double bound_time, const Motion& given, double time,
+                                      double position_slack) noexcept {
+  MotionBoundExcess excess;
+  const double seconds = time - bound_time;
+  if (!(seconds >= 0) || time > bound.expiry) return excess;
+  const double reach = bound.drift * seconds + bound.acceleration * seconds * seconds / 2;
+  const Vec3 foreseen = bound.position + seconds * bound.velocity, off = given.position - foreseen;
+  // Of all that has been added up: a body on its way through the world's origin is not more exact there.
+  const double coordinates = length(given.position) + length(bound.position) + seconds * length(bound.velocity) + reach;
+  const double slack = kMotionSlack * coordinates + 2 * position_slack;
+  const double size = length(bound.half_space);
+  const Vec3 side = size > 0 ? (1 / size) * bound.half_space : Vec3{};
+  excess.position = above(length(off), reach + slack);
+  excess.side = above(dot(off, side), bound.drift * seconds + slack);
+  excess.radius = above(std::fabs(given.radius - bound.radius), kOwnRounding * std::max(given.radius, bound.radius));
+  if (!(time < bound.expiry - kTimeRounding * (std::fabs(time) + std::fabs(bound_time)))) return excess;
+  const Vec3 change = given.velocity - bound.velocity;
+  const double drifts = bound.drift + given.drift, largest = drifts + bound.acceleration * seconds;
+  const double rounding = kOwnRounding * (length(given.velocity) + length(bound.velocity) + largest);
+  excess.velocity = above(length(change), largest + rounding);
+  excess.turn = above(dot(change, side), drifts + rounding);
+  return excess;
+}
+
+bool keeps_motion_bound(const Motion& bound, double bound_time, double now, const Vec3& position, const Vec3* velocity,
+                        double position_slack) noexcept {
+  if (!(now > bound_time)) return true;
+  Motion given = bound;
+  given.position = position;
+  if (velocity != nullptr) given.velocity = *velocity;
+  return motion_bound_excess(bound, bound_time, given, now, position_slack).none();
+}
+
+}  // namespace orchard::runtime
