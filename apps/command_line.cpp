@@ -44,7 +44,7 @@ void add_figure(CLI::App& command, ViewCommand& view) {
       .add_option("--layout", view.layout, "Files over each other, or each beside the others with the meshes around it")
       ->capture_default_str()
       ->check(CLI::IsMember({"over", "beside"}));
-  command.add_flag("!--no-captions", view.captions, "No words below the pictures");
+  command.add_flag("--captions", view.captions, "Names and figures below the pictures");
   command.add_flag("--transparent", view.transparent, "No white ground");
   command.add_option("--turn", view.turn, "So many pictures from all around: PICTURE-001.png ..")
       ->check(CLI::Range(2, 3600));

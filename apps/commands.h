@@ -230,7 +230,7 @@ struct ViewCommand {
   std::string look_at, clip;    // "x,y,z"; "a,b,c,d"
   std::optional<double> width;  // of what is seen around look_at, in mesh units
   std::string layout = "over";  // or beside
-  bool edges = false, balls = false, captions = true, transparent = false;
+  bool edges = false, balls = false, captions = false, transparent = false;
   Index turn = 0;  // frames of a turntable; 0: one picture
   bool window = false, quiet = false;
   Invocation run;  // which the picture says
