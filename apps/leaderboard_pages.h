@@ -21,7 +21,7 @@ std::string to_markdown(const std::vector<LeaderboardRow>& rows, const std::vect
                         const std::vector<std::pair<std::string, std::string>>& plots);
 // A row for each axis, a column for each measure; not defined: empty.
 std::string to_csv(const std::vector<LeaderboardRow>& rows);
-// As docs/leaderboard.schema.json says.
+// As docs/reference/leaderboard.schema.json says.
 nlohmann::json to_json(const std::vector<LeaderboardRow>& rows, const std::vector<std::string>& skipped);
 // Largest and mean distance against the number of balls, a line for each system.
 std::string to_svg(const std::vector<LeaderboardRow>& rows, const std::string& model);

@@ -92,7 +92,7 @@ std::string manual_page(const CLI::App& app, const std::string& version) {
   text += ".SH EXIT STATUS\n";
   for (const ExitCodeRow& row : exit_codes())
     text += fmt::format(".TP\n.B {}\n{}.\n", int{row.code}, roff(row.meaning));
-  return text + ".SH FILES\nThe formats are described in FORMATS.md of the documentation.\n";
+  return text + ".SH FILES\nThe formats are described in reference/formats.md of the documentation.\n";
 }
 
 }  // namespace orchard::apps

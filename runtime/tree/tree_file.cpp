@@ -24,7 +24,7 @@ constexpr std::size_t kSections = 7;
 constexpr std::size_t kHeaderSize = 320;
 constexpr std::size_t kPreambleSize = 32;  // magic to file size: enough to tell how long the file must be
 
-// Where the fields are: docs/FORMATS.md.
+// Where the fields are: docs/reference/formats.md.
 enum Field : std::size_t {
   kVersionAt = 8,
   kHeaderSizeAt = 12,

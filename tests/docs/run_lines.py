@@ -33,16 +33,16 @@ NOT_RUN = {
         "tools/follow PAGE ..": BY_CI + " with the pages that are followed from first to last",
         ".ci/run ..": "is what every change must pass",
     },
-    "docs/quick-start.md": {
+    "docs/guide/quick-start.md": {
         "tools/demo": BY_CI,
         "cmake ..": "builds for a minute; tools/follow does it in .ci/run",
         "out/example/approach ..": "is what the lines before it build",
     },
-    "docs/cli.md": {
+    "docs/reference/command-line.md": {
         "orchard view out/lamp/lamp.orchard --window": "needs a screen; viz.Window.DoesWhatItIsTold is at it",
         "orchard completion zsh ..": "writes outside of the folder; Completion.* of the tests of apps read what it says",
     },
-    "docs/voronoi.md": {"paraview ..": "needs a screen"},
+    "docs/design/voronoi.md": {"paraview ..": "needs a screen"},
 }
 
 SET_UP = """

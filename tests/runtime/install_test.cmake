@@ -115,7 +115,7 @@ elseif(STEP STREQUAL "pages")  # each block of CMake in a page, in a project of 
   set(all "${SCRATCH}/all")
   file(REMOVE_RECURSE "${all}" "${SCRATCH}/pages")
   must_run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${all}" --component runtime)
-  foreach(page IN ITEMS README docs/runtime)
+  foreach(page IN ITEMS README docs/guide/runtime)
     file(READ "${SOURCE}/${page}.md" text)
     string(FIND "${text}" "```cmake\n" begin)
     if(begin EQUAL -1)

@@ -27,7 +27,7 @@ void put(std::vector<std::byte>& file, std::size_t at, T value) {
   std::memcpy(file.data() + at, &value, sizeof value);
 }
 
-// Written from docs/FORMATS.md, not from the implementation.
+// Written from docs/reference/formats.md, not from the implementation.
 inline void seal(std::vector<std::byte>& file) {
   std::uint64_t h = 0x6f72636861726421;
   for (std::size_t at = 0; at + 8 <= file.size(); at += 8) {

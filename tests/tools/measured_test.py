@@ -65,7 +65,7 @@ def main():
     source = pathlib.Path(sys.argv[1])
     fails_while_drawing(source, "medial-axes", ["EVALUATOR", "--pictures", "PICTURES"], "results/medial-axes.json", "results/medial-axes.md",
                         "| lamp | 12 | 4321 |")
-    fails_while_drawing(source, "few-balls", [], "few-balls.json", "medial-quality.md", "1.500 / 0.500, found 0.250, proven 0.260")
+    fails_while_drawing(source, "few-balls", [], "results/few-balls.json", "results/medial-quality.md", "1.500 / 0.500, found 0.250, proven 0.260")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """A ParaView plugin that opens orchard's own files: sphere-trees (.orchard, .sph), medial meshes (.ma) and Voronoi
-diagrams (.vor). Formats: docs/FORMATS.md. Needs numpy, which ParaView brings.
+diagrams (.vor). Formats: docs/reference/formats.md. Needs numpy, which ParaView brings.
 
 Load it with "paraview --script=orchard_reader.py", or in the Python shell and in scripts of pvbatch with
 runpy.run_path("orchard_reader.py", run_name="__main__"). Tools > Manage Plugins > Load New and LoadPlugin() work as well,

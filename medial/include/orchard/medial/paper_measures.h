@@ -14,7 +14,7 @@ struct PaperOptions {
 };
 
 // What papers on medial axes print, by their own definitions, so that their numbers can be recomputed. Sampled: what
-// they find is no bound, and grows or falls with the samples; medial_quality() has bounds. docs/medial-measures.md has
+// they find is no bound, and grows or falls with the samples; medial_quality() has bounds. docs/reference/medial-measures.md has
 // the sources. NaN where there is nothing to measure.
 struct PaperMeasures {
   // Point2Skeleton (Lin et al. 2021): of samples of the surface and of the reconstruction's boundary, each to its

@@ -12,7 +12,7 @@
 
 namespace orchard {
 
-// How good a medial mesh is for a solid, whichever system made it. docs/medial-quality.md defines each metric and says
+// How good a medial mesh is for a solid, whichever system made it. docs/reference/medial-measures.md defines each metric and says
 // what is perfect. The reconstruction is the union of the balls, cones and slabs of its vertices, edges and triangles.
 
 struct QualityOptions {

@@ -9,7 +9,7 @@
 
 namespace orchard {
 
-// A medial axis as the files of some system hold it (docs/FORMATS.md lists the kinds).
+// A medial axis as the files of some system hold it (docs/reference/formats.md lists the kinds).
 struct ForeignAxis {
   MedialMesh mesh;                                // complete and valid; radii are 0 where has_radii is false
   bool has_radii = true;                          // otherwise the file has none, and place_axis() finds them

@@ -7,7 +7,7 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/surface.h"
 
-// The local thickness of a solid. docs/thickness.md explains the definitions with pictures.
+// The local thickness of a solid. docs/guide/thickness.md explains the definitions with pictures.
 namespace orchard {
 
 enum class ThicknessDefinition : std::uint8_t {

@@ -6,7 +6,7 @@
 
 #include "orchard/runtime/packed_tree.h"
 
-// The native file of a packed sphere-tree, `.orchard`: byte by byte in docs/FORMATS.md.
+// The native file of a packed sphere-tree, `.orchard`: byte by byte in docs/reference/formats.md.
 namespace orchard::runtime {
 
 enum class LoadStatus : std::uint8_t {

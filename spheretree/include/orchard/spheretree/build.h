@@ -98,7 +98,7 @@ struct SphereTreeBuild {
 // threads. A mesh that is scaled or moved gets the same tree but for the last digits, unless it is merged or a corner
 // is as near to the border between two lattice points (spheretree/canonical_frame.h) as its digits reach; scaled by a
 // power of two, the same but for the scale. Throws InputError if the surface or an option does not allow it, and Error
-// if the packed tree fails its certificate. Three levels take some seconds; see docs/benchmarks.md.
+// if the packed tree fails its certificate. Three levels take some seconds; see docs/results/benchmarks.md.
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options = {},
                                   const Progress& progress = {}, MedialBuildInput input = {});
 

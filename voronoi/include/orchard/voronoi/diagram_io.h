@@ -8,7 +8,7 @@ namespace orchard {
 
 // The .vor text of a diagram: "voronoi points vertices", a line "p x y z" for each point, then for each vertex "v x y
 // z", its forming points and its neighbours, as in VoronoiVertex; -1 stands for the point at infinity
-// (docs/FORMATS.md). Numbers are the shortest that read back the same.
+// (docs/reference/formats.md). Numbers are the shortest that read back the same.
 std::string to_vor(const VoronoiDiagram& diagram);
 
 // Any system's diagram. Radii are the mean distances to the forming points. Throws InputError, which names file and
