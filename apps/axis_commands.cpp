@@ -76,16 +76,16 @@ void add_sweep(CLI::App& command, MedialCommand& medial) {
 }
 
 void add_other_axis(CLI::App& command, MedialCommand& medial) {
-  CLI::Option* axis = command.add_option(
-      "--axis", medial.axis,
-      "Build nothing; measure this axis of any system: .ma, .obj, .ply, .off, .sph, .swc or text (docs/reference/formats.md)");
+  CLI::Option* axis = command.add_option("--axis", medial.axis,
+                                         "Build nothing; measure this axis of any system: .ma, .obj, .ply, .off, .sph, "
+                                         ".swc or text (docs/reference/formats.md)");
   command
       .add_flag("--connect", medial.connect,
                 "With --axis: connect balls without cells by their power diagram within the solid")
       ->needs(axis);
-  add_list(command, "--export", medial.exports, "With --axis: write it in these formats as well: AXIS-converted.ma, ..",
-           axis_export_kinds())
-      ->needs(axis);
+  add_list(command, "--export", medial.exports,
+           "Write the axis in these formats as well: MODEL-axis.npz, ..; with --axis AXIS-converted.npz, ..",
+           axis_export_kinds());
 }
 
 void add_features(CLI::App& command, MedialCommand& medial) {
@@ -250,7 +250,8 @@ void add_medial(CLI::App& app, Request& request) {
   add_mesh_options(command, medial.reading);
   add_side(command, medial);
   add_features(command, medial);
-  command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/reference/medial-measures.md)");
+  command.add_flag("--report", medial.report,
+                   "Measure the quality of what was built (docs/reference/medial-measures.md)");
   command
       .add_option("--beside", medial.beside,
                   "The axis of any system to measure with the same instrument, beside this axis; again for another one")

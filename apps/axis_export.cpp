@@ -13,17 +13,24 @@
 namespace orchard::apps {
 namespace {
 
-std::string file_name(const MedialCommand& command, const std::string& kind) {
-  return named(command.axis, "-converted." + kind);
+// The name of a file with this ending: that of an axis that was built, or of one that was read.
+std::string file_name(const MedialCommand& command, const std::string& ending) {
+  return command.axis.empty() ? named(command.mesh, "-axis" + ending) : named(command.axis, "-converted" + ending);
+}
+
+std::vector<std::string> endings_of(const std::string& kind) {
+  return kind == "csv" ? axis_table_endings() : std::vector<std::string>{"." + kind};
 }
 
 }  // namespace
 
-std::vector<std::string> axis_export_kinds() { return {"ma", "ply", "obj", "graphml", "vtp"}; }
+std::vector<std::string> axis_export_kinds() { return {"ma", "ply", "obj", "graphml", "vtp", "npz", "csv"}; }
 
 std::vector<std::string> axis_export_names(const MedialCommand& command) {
   std::vector<std::string> names;
-  for (const std::string& kind : command.exports) names.push_back(file_name(command, kind));
+  for (const std::string& kind : command.exports) {
+    for (const std::string& ending : endings_of(kind)) names.push_back(file_name(command, ending));
+  }
   return names;
 }
 
@@ -36,9 +43,16 @@ void check_axis_exports(const MedialCommand& command) {
 #endif
 }
 
-void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, Outputs& outputs) {
+void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, const AxisContacts& contacts,
+                        Outputs& outputs) {
   for (const std::string& kind : command.exports) {
-    const std::filesystem::path file = outputs.add(file_name(command, kind), "the axis as " + kind);
+    if (kind == "csv") {
+      for (const auto& [ending, text] : axis_tables(mesh, contacts))
+        write_file(outputs.add(file_name(command, ending), "a table of the axis"), text);
+      continue;
+    }
+    const std::filesystem::path file = outputs.add(file_name(command, "." + kind), "the axis as " + kind);
+    if (kind == "npz") write_file(file, to_npz(axis_arrays(mesh, contacts)));
     if (kind == "ma") write_file(file, to_ma(mesh) + to_structure_section(medial_structure(mesh)));
     if (kind == "ply") write_file(file, to_ply(mesh));
     if (kind == "obj") write_file(file, to_obj(mesh));

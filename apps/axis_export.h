@@ -2,11 +2,12 @@
 #include <string>
 #include <vector>
 
+#include "axis_arrays.h"
 #include "commands.h"
 #include "orchard/medial/medial_mesh.h"
 #include "outputs.h"
 
-// The axis of a file in other formats.
+// An axis in other formats.
 namespace orchard::apps {
 
 // The kinds that --export takes.
@@ -15,6 +16,7 @@ std::vector<std::string> axis_export_kinds();
 std::vector<std::string> axis_export_names(const MedialCommand& command);
 // Throws InputError if a kind needs what the program was built without.
 void check_axis_exports(const MedialCommand& command);
-void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, Outputs& outputs);
+void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, const AxisContacts& contacts,
+                        Outputs& outputs);
 
 }  // namespace orchard::apps

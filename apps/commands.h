@@ -130,7 +130,7 @@ struct MedialCommand {
   std::filesystem::path features;             // .obj: the edges that sheets reach to; empty: found by their loss
   std::filesystem::path axis;                 // not empty: the axis of a file to judge; nothing is built
   bool connect = false;                       // balls of files without cells, by their power diagram
-  std::vector<std::string> exports;           // of that axis: ma, ply, obj, graphml, vtp
+  std::vector<std::string> exports;           // of the axis: ma, ply, obj, graphml, vtp, npz, csv
   bool report = false;                        // judge what was built
   std::vector<std::filesystem::path> beside;  // axes of files to judge by the same measures, in the same table
   bool picture = false;                       // of where the judged axis is worst

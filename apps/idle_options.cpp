@@ -117,6 +117,7 @@ void refuse_idle_options(const MedialCommand& command) {
     throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
   if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
     throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
+  if (!command.exports.empty() && sweeps) throw InputError("--export has no effect with --sweep, which writes no axis");
   if (among("best", command.given) && !sweeps) throw InputError("--best has no effect without --sweep");
   if (command.picture && (sweeps || (!command.report && !judges)))
     throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");

@@ -45,10 +45,10 @@ SegmentOptions segment_options(const MedialCommand& command, const Surface& surf
 std::vector<std::string> names_of(const MedialCommand& command) {
   if (!command.sweep.empty()) return sweep_names(command);
   std::vector<std::string> names = few_balls_names(command);
+  const std::vector<std::string> exports = axis_export_names(command);
+  names.insert(names.end(), exports.begin(), exports.end());
   if (!command.axis.empty()) {
     names.push_back(named(command.axis, "-quality.png"));
-    const std::vector<std::string> exports = axis_export_names(command);
-    names.insert(names.end(), exports.begin(), exports.end());
     return names;
   }
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
@@ -198,7 +198,7 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
   report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
-  write_axis_exports(command, mesh, outputs);
+  write_axis_exports(command, mesh, contacts_of(solid.surface, mesh), outputs);
   write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
                 named(command.axis, "-quality.png"), outputs);
   finish(command, report, outputs);
@@ -287,6 +287,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
+  write_axis_exports(command, mesh, contacts_of(build.axis), outputs);
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,
               {.surface = surface,

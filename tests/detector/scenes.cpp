@@ -180,19 +180,19 @@ void add_bodies(Scene& scene, std::size_t count) {
 // Forward differences: then the position n steps later is off by at most M (n dt)^2 / 2, with M the largest second
 // difference over dt^2 on the way.
 BodyState Scene::state(int step, std::size_t body, int horizon) const {
-  BodyState state = promised(step, 1, steps - 1, body, horizon);
+  BodyState state = bounded(step, 1, steps - 1, body, horizon);
   if (!bodies[body].is_static) state.expiry = std::min(steps - 1, step + horizon) * dt;
   return state;
 }
 
 BodyState Scene::state_backwards(int step, double time, std::size_t body, int horizon) const {
-  BodyState state = promised(step, -1, 0, body, horizon);
+  BodyState state = bounded(step, -1, 0, body, horizon);
   if (!bodies[body].is_static) state.expiry = time + std::min(step, horizon) * dt;
   return state;
 }
 
 // Steps go by `way` up to `end`.
-BodyState Scene::note_bound(int step, int way, int end, std::size_t body, int horizon) const {
+BodyState Scene::bounded(int step, int way, int end, std::size_t body, int horizon) const {
   const auto rotation = [&](int k) { return poses[static_cast<std::size_t>(k)][body].rotation; };
   const auto place = [&](int k) { return Vec3(poses[static_cast<std::size_t>(k)][body].translation); };
   BodyState state;

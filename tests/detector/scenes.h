@@ -52,7 +52,7 @@ struct Scene {
   BodyState state_backwards(int step, double time, std::size_t body, int horizon) const;
 
  private:
-  BodyState promised(int step, int way, int end, std::size_t body, int horizon) const;
+  BodyState bounded(int step, int way, int end, std::size_t body, int horizon) const;
 };
 
 // Each with about that many bodies, all deterministic.
