@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <map>
 #include <set>
 #include <tuple>
 
 #include "input_file.h"
+#include "number_text.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/text_lines.h"
 #include "orchard/medial/read_axis.h"
@@ -44,13 +44,6 @@ std::string stem_of(const fs::path& file) {
     if (stem.ends_with(ending)) return stem.substr(0, stem.size() - ending.size());
   }
   return stem;
-}
-
-std::optional<Index> whole_number(const std::string& text) {
-  Index value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
-  return value;
 }
 
 // "SYSTEM-N" or "SYSTEM".

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "finite_number.h"
+#include "number_text.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "reading_report.h"

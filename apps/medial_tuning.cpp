@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "finite_number.h"
+#include "number_text.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard::apps {

@@ -5,7 +5,7 @@
 #include <cctype>
 
 #include "commands.h"
-#include "finite_number.h"
+#include "number_text.h"
 #include "input_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"

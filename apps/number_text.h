@@ -5,7 +5,17 @@
 #include <string_view>
 #include <system_error>
 
+#include "orchard/geometry/mesh.h"
+
 namespace orchard::apps {
+
+// The whole number, not below 0, that a text is, if it is one and nothing else.
+inline std::optional<Index> whole_number(std::string_view text) {
+  Index value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
 
 // The number that a text is, if it is one and nothing else.
 inline std::optional<double> finite_number(std::string_view text) {
