@@ -14,13 +14,20 @@ namespace orchard::apps {
 namespace {
 
 void add_inspect(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
+  CLI::App& command = *app.add_subcommand(
+      "inspect", "Say what a mesh, tree, axis, sphere set or point file holds and what is wrong with it");
   InspectCommand& inspect = request.inspect;
-  command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
+  command
+      .add_option("file", inspect.file,
+                  "A mesh (.obj, .ply, .stl, .off), a tree (.orchard, .sph), an axis (.ma, ..), spheres (.txt, .csv, "
+                  ".json, ..) or points")
+      ->required();
   add_join(command, inspect.join);
   command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
+  command.add_option("--unit", inspect.unit,
+                     "The name of the file's unit, such as mm, for what is printed and written");
   add_output_flags(command, inspect.output);
-  command.footer("Example:\n  orchard inspect data/lamp.obj");
+  command.footer("Example:\n  orchard inspect data/lamp.obj --unit cm");
   command.callback([&request, &command] {
     request.inspect.output.run = invocation_of(command, request.typed);
     request.run = [&request] { orchard::apps::inspect(request.inspect); };

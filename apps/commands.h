@@ -215,6 +215,7 @@ struct InspectCommand {
   std::filesystem::path file;
   std::optional<double> join;
   bool full = false;  // count self-intersections of large meshes too
+  std::string unit;   // of the file, for what is printed and written; empty: none is named
   Output output;
 };
 void inspect(const InspectCommand& command);

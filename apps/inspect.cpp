@@ -4,9 +4,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 
 #include "commands.h"
 #include "input_file.h"
+#include "inspect_other.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
@@ -164,16 +167,45 @@ void print_levels(const json& levels) {
   }
 }
 
-void print(const std::filesystem::path& file, const json& report) {
+// The unit of a value in a report: of a length, an area or a volume; empty for other values.
+std::string unit_of(const std::string& key, const std::string& unit) {
+  if (unit.empty()) return {};
+  for (const char* length :
+       {"diagonal", "border_length", "radii", "bounds", "bounding_ball", "bounding_radius", "buffer"})
+    if (key == length) return " " + unit;
+  if (key == "area") return fmt::format(" {}^2", unit);
+  if (key == "volume" || key == "sum_of_volumes") return fmt::format(" {}^3", unit);
+  return {};
+}
+
+void print(const std::filesystem::path& file, const std::string& unit, const json& report) {
   fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
   if (report.contains("reading"))
     for (const json& line : report["reading"]["lines"]) fmt::print("{}: {}\n", file.string(), line.get<std::string>());
   for (const auto& [key, value] : report.items()) {
     if (key == "kind" || key == "levels" || key == "faults" || key == "repair" || key == "reading") continue;
-    fmt::print("  {:24} {}\n", key, value.dump());
+    fmt::print("  {:24} {}{}\n", key, value.dump(), unit_of(key, unit));
   }
   if (report.contains("levels")) print_levels(report["levels"]);
   if (report.contains("faults")) print_verdict(report);
+}
+
+bool is_among(const std::string& extension, std::initializer_list<const char*> names) {
+  return std::any_of(names.begin(), names.end(), [&](const char* name) { return extension == name; });
+}
+
+// By the ending of the file; those that several kinds of files have are told apart by what is in them.
+json inspect_file(const InspectCommand& command) {
+  const std::string extension = lower_extension(command.file);
+  if (extension == ".orchard") return inspect_packed(command.file);
+  if (extension == ".sph") return inspect_sph(command.file);
+  if (is_among(extension, {".ma", ".ma_dup", ".ma_struct", ".swc", ".cg", ".cgal"})) return inspect_axis(command.file);
+  if (is_among(extension, {".txt", ".csv", ".json", ".yml", ".yaml", ".xrdf", ".urdf"}))
+    return inspect_spheres(command.file);
+  if (is_among(extension, {".xyz", ".obj", ".ply"})) {
+    if (std::optional<json> points = inspect_points(command.file)) return *std::move(points);
+  }
+  return inspect_mesh(command);
 }
 
 }  // namespace
@@ -181,19 +213,16 @@ void print(const std::filesystem::path& file, const json& report) {
 void inspect(const InspectCommand& command) {
   check_input(command.file);
   const Provenance provenance = provenance_of(command.output.run, std::array{command.file});
-  const std::string extension = lower_extension(command.file);
-  if (command.full && (extension == ".orchard" || extension == ".sph"))
-    throw InputError("--full has no effect on a tree; it is for meshes");
-  if (command.join && (extension == ".orchard" || extension == ".sph"))
-    throw InputError("--join has no effect on a tree; it is for meshes");
-  json report = extension == ".orchard" ? inspect_packed(command.file)
-                : extension == ".sph"   ? inspect_sph(command.file)
-                                        : inspect_mesh(command);
+  json report = inspect_file(command);
+  if (!command.unit.empty()) report["unit"] = command.unit;
+  if (report["kind"] != "mesh" && (command.full || command.join))
+    throw InputError(fmt::format("{} has no effect on {}; it is for meshes", command.full ? "--full" : "--join",
+                                 command.file.string()));
   if (command.output.json) {
     report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(command.file, report);
+    print(command.file, command.unit, report);
   }
   if (report.contains("repair") && report["repair"]["warning"].is_string())
     print_warning(command.file, report["repair"]["warning"]);

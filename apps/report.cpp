@@ -153,6 +153,7 @@ json mesh_json(const Surface& surface) {
           {"misoriented_edges", report.misoriented_edges},
           {"degenerate_triangles", report.degenerate_triangles},
           {"clusters", surface.clusters().count()},
+          {"diagonal", surface.bounding_box().diagonal().norm()},
           {"area", report.area},
           {"volume", report.volume},
           {"solid", report.solid()},

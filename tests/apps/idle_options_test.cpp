@@ -130,8 +130,8 @@ TEST(IdleOptions, AFlagForOtherKindsOfFilesIsRefused) {
   const Workplace here;
   const std::string ball = here.add("ball.obj", test::icosphere(1)), trees = (here / "trees").string();
   ASSERT_EQ(here.run(test::quick_build(ball, trees)).exit_code, 0);
-  expect_refused(here, {"inspect", trees + "/ball.orchard"}, {{{"--full"}, "--full has no effect on a tree"}});
-  expect_refused(here, {"inspect", trees + "/ball.sph"}, {{{"--full"}, "--full has no effect on a tree"}});
+  expect_refused(here, {"inspect", trees + "/ball.orchard"}, {{{"--full"}, "--full has no effect on "}});
+  expect_refused(here, {"inspect", trees + "/ball.sph"}, {{{"--full"}, "--full has no effect on "}});
   expect_refused(here, {"verify", trees + "/ball.orchard", ball}, {{{"--bbox-centre"}, "it is for .sph files"}});
   expect_refused(here, {"compare", ball, trees + "/ball.sph"}, {{{"--wrap-alpha", "0.02"}, "requires --wrap"}});
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -45,6 +46,41 @@ TEST(Inspect, ReportsWhatAMeshIs) {
          {"non_manifold_edges", "non_manifold_vertices", "degenerate_triangles", "duplicate_triangles"})
       EXPECT_EQ(report[key], 0) << name << key;
   }
+}
+
+TEST(Inspect, ReportsWhatAnAxisASphereSetAndPointsAre) {
+  const Workplace here;
+  const std::string axis =
+      here.add("plate.ma", "3 3 1\nv 0 0 0 1\nv 4 0 0 1\nv 0 3 0 2\ne 0 1\ne 0 2\ne 1 2\nf 0 1 2\n");
+  const json of_axis = json::parse(here.run({"inspect", axis, "--json"}).out);
+  EXPECT_EQ(of_axis["kind"], "medial axis");
+  EXPECT_EQ(of_axis["balls"], 3);
+  EXPECT_EQ(of_axis["parts"]["sheet"], 1);
+  EXPECT_NEAR(of_axis["area"].get<double>(), 6, 1e-12);
+  EXPECT_NEAR(of_axis["border_length"].get<double>(), 12, 1e-12);
+  EXPECT_EQ(of_axis["radii"], json({1.0, 2.0}));
+  EXPECT_NEAR(of_axis["diagonal"].get<double>(), std::sqrt(7.0 * 7 + 6.0 * 6 + 4.0 * 4), 1e-12);
+
+  const json of_set =
+      json::parse(here.run({"inspect", here.add("set.txt", "0 0 0 1\n2 0 0 -1\n5 0 0 2\n"), "--json"}).out);
+  EXPECT_EQ(of_set["kind"], "sphere set");
+  EXPECT_EQ(of_set["spheres"], 2);
+  EXPECT_EQ(of_set["switched_off"], 1);
+  EXPECT_EQ(of_set["radii"], json({1.0, 2.0}));
+
+  const json of_points = json::parse(here.run({"inspect", here.add("points.xyz", "0 0 0\n3 4 0\n"), "--json"}).out);
+  EXPECT_EQ(of_points["kind"], "points");
+  EXPECT_EQ(of_points["points"], 2);
+  EXPECT_NEAR(of_points["diagonal"].get<double>(), 5, 1e-12);
+}
+
+TEST(Inspect, NamesTheUnitOfLengthsAreasAndVolumes) {
+  const Workplace here;
+  const Finished run =
+      here.run({"inspect", here.add("box.obj", test::box(Point(0, 0, 0), Point(3, 4, 12))), "--unit", "mm"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("13.0 mm\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("144.0 mm^3\n"), std::string::npos) << run.out;
 }
 
 TEST(Inspect, GivesTheSmallestBoundingBallAndTheVolume) {
