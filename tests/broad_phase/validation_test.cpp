@@ -16,13 +16,13 @@ namespace {
 constexpr double kStep = 0.01;
 
 TEST(MotionBoundExcess, SaysWhichBoundIsBrokenByHowMuch) {
-  const Motion promise{.position = {1, 2, 3},
-                       .velocity = {4, 0, 0},
-                       .radius = 2,
-                       .acceleration = 10,
-                       .drift = 0.5,
-                       .half_space = {0, 0, 7},
-                       .expiry = 2};
+  const Motion bound{.position = {1, 2, 3},
+                     .velocity = {4, 0, 0},
+                     .radius = 2,
+                     .acceleration = 10,
+                     .drift = 0.5,
+                     .half_space = {0, 0, 7},
+                     .expiry = 2};
   constexpr double kSeconds = 0.5;
   const double position = 0.5 * kSeconds + 5 * kSeconds * kSeconds, velocity = 0.75 + 10 * kSeconds;
   const auto moved = [&](const Vec3& by, const Vec3& faster) {

@@ -60,7 +60,7 @@ TEST(DetectorShapes, AreRefusedWhereTheyMakeNoSense) {
 TEST(DetectorBodies, TellWhatTheBroadPhaseReliesOn) {
   std::vector<std::pair<double, Motion>> told;
   DetectorOptions options;
-  options.bound_given = [&](double time, BodyIndex, const Motion& bound) { told.push_back({time, promise}); };
+  options.bound_given = [&](double time, BodyIndex, const Motion& bound) { told.push_back({time, bound}); };
   World w(options);
   const BodyId body = w.detector.add_body({{w.detector.add_sphere(2)}});
   w.states[body.index].acceleration = 3;

@@ -13,7 +13,7 @@ namespace {
 using Duration = FramePacer::Duration;
 constexpr double kStep = 0.01;
 
-Motion promise(const Vec3& place, const Vec3& velocity, double acceleration, const Vec3& half_space = {},
+Motion bounded(const Vec3& place, const Vec3& velocity, double acceleration, const Vec3& half_space = {},
                double drift = 0) {
   Motion motion;
   motion.position = place, motion.velocity = velocity;
@@ -26,7 +26,7 @@ TEST(MotionMonitor, TellsPromisesThatAreKeptFromThoseThatAreBroken) {
   const Vec3 v = {1, 2, 3}, a = {0, 0, -10};
   for (const double factor : {0.999, 1.001}) {
     MotionMonitor monitor;
-    monitor.note_bound(0, 0, promise({}, v, 10 / factor));
+    monitor.note_bound(0, 0, bounded({}, v, 10 / factor));
     bool kept = true;
     for (int i = 1; i < 20; ++i) {
       const double t = i * kStep;
@@ -38,15 +38,15 @@ TEST(MotionMonitor, TellsPromisesThatAreKeptFromThoseThatAreBroken) {
   }
   for (const double side : {1.0, -1.0}) {
     MotionMonitor monitor;
-    monitor.note_bound(5, 1, promise({}, v, 20, {0, 0, side}));
+    monitor.note_bound(5, 1, bounded({}, v, 20, {0, 0, side}));
     EXPECT_EQ(monitor.observe(5, 1.5, 0.5 * v + 0.125 * a), side > 0);
   }
   MotionMonitor monitor;
-  Motion short_one = promise({}, v, 0);
+  Motion short_one = bounded({}, v, 0);
   short_one.expiry = 1;
   monitor.note_bound(0, 0, short_one);
   EXPECT_TRUE(monitor.observe(0, 1.5, {99, 99, 99}));  // nothing is promised at this moment
-  monitor.note_bound(0, 2, promise({}, v, 1));
+  monitor.note_bound(0, 2, bounded({}, v, 1));
   EXPECT_FALSE(monitor.observe(0, 2.1, 0.1 * v, {2, 2, 3}));  // the place is right, the velocity is not
 }
 
