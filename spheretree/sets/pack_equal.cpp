@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "filling.h"
+#include "moment_moves.h"
 #include "moments.h"
 #include "overlap.h"
 #include "packing.h"
@@ -14,13 +16,15 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kRounds = 60;      // of growing
-constexpr int kPushes = 120;     // in each, at most
+constexpr int kPushes = 80;      // in each, at most
 constexpr int kPairsAge = 8;     // pushes after which near pairs are looked for again
 constexpr double kNear = 1.25;   // pairs up to this many contact distances apart
 constexpr double kApart = 5e-4;  // of the radius: pushes end where nothing is nearer than that
 constexpr double kFirstGrowth = 0.06, kLeastGrowth = 1e-3;
 constexpr double kShrinking = 0.93, kLeastShrunk = 0.35;  // of the radius, while the moments are looked for
-constexpr double kTowards = 0.3;                          // the moments, at each push
+constexpr double kWorthMoving = 1.02;                     // of the room before
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr double kTowards = 0.3;   // the moments, at each push
 constexpr double kWithin = 0.7;    // of the errors allowed: moments that are nearer are left alone
 constexpr double kUnmoved = 1e-9;  // of the size: the least spread of centres that a map can stretch
 
@@ -44,19 +48,11 @@ class EqualBalls {
     place(places, count);
     if (centers_.empty()) return {};
     radius_ = room(centers_);
-    if (moments_ != nullptr) find_moments();
-    double growth = kFirstGrowth;
-    for (int round = 0; round < rounds_ && growth > kLeastGrowth; ++round) {
-      report_progress(progress, "packing", static_cast<double>(round) / rounds_);
-      std::vector<Point> pushed = centers_;
-      push(pushed, radius_ * (1 + growth));
-      const double grown = room(pushed);
-      if (grown > radius_ * (1 + growth / 8) && excess(pushed, grown) <= std::max(1.0, excess(centers_, radius_))) {
-        centers_ = std::move(pushed);
-        radius_ = grown;
-      } else {
-        growth /= 2;
-      }
+    // First as large as can be, then with the moments, which cost some of that.
+    grow(places, false, progress);
+    if (moments_ != nullptr && excess(centers_, radius_) > 1) {
+      find_moments(places);
+      grow(places, true, progress);
     }
     std::vector<Sphere> balls;
     for (const Point& center : centers_) balls.push_back({center, radius_});
@@ -78,45 +74,88 @@ class EqualBalls {
     }
   }
 
-  // The radius that all balls may have.
-  double room(const std::vector<Point>& centers) const {
+  // The radius that each ball may have where the others have the same, and that all may have.
+  std::vector<double> rooms_of(const std::vector<Point>& centers) const {
     std::vector<double> own(centers.size());
     tbb::parallel_for(std::size_t{0}, centers.size(), [&](std::size_t i) {
       own[i] = inscribed_ball(surface_, centers[i]).radius;
-      for (std::size_t k = 0; k < i; ++k) own[i] = std::min(own[i], (centers[k] - centers[i]).norm() / contact_);
+      for (std::size_t k = 0; k < centers.size(); ++k)
+        if (k != i) own[i] = std::min(own[i], (centers[k] - centers[i]).norm() / contact_);
     });
+    return own;
+  }
+  double room(const std::vector<Point>& centers) const {
+    const std::vector<double> own = rooms_of(centers);
     return *std::min_element(own.begin(), own.end());
   }
 
   double excess(const std::vector<Point>& centers, double radius) const {
-    if (moments_ == nullptr) return 0;
-    std::vector<Sphere> balls;
-    for (const Point& center : centers) balls.push_back({center, radius});
-    const MassProperties body = body_of(balls, std::vector<double>(balls.size(), 1));
-    return std::max((body.center - moments_->body.center).norm() / moments_->center_error,
-                    inertia_difference(body, moments_->body, true) / moments_->inertia_error);
+    return moments_ == nullptr ? 0 : moment_excess(centers, radius, *moments_);
   }
 
-  // The smaller the balls, the more room to have the moments.
-  void find_moments() {
-    double least = excess(centers_, radius_);
-    std::vector<Point> pushed = centers_;
-    for (double wanted = radius_; least > 1 && wanted > kLeastShrunk * radius_; wanted *= kShrinking) {
-      push(pushed, wanted);
-      const double own = std::min(wanted, room(pushed)), now = excess(pushed, own);
-      if (!(own > 0) || now >= least) continue;
-      least = now;
-      found_ = {pushed, own};
+  void grow(const std::vector<Sphere>& places, bool keep_moments, const Progress& progress) {
+    const auto allowed = [&] { return keep_moments ? std::max(1.0, excess(centers_, radius_)) : kAny; };
+    double growth = kFirstGrowth;
+    for (int round = 0; round < rounds_ && growth > kLeastGrowth; ++round) {
+      report_progress(progress, "packing", static_cast<double>(round) / rounds_);
+      std::vector<Point> pushed = centers_;
+      push(pushed, radius_ * (1 + growth), keep_moments);
+      const double grown = room(pushed);
+      if (grown > radius_ * (1 + growth / 8) && excess(pushed, grown) <= allowed()) {
+        centers_ = std::move(pushed);
+        radius_ = grown;
+      } else if (keep_moments || !free_narrowest(places)) {
+        growth /= 2;
+      }
     }
-    if (found_.second > 0) centers_ = found_.first, radius_ = found_.second;
   }
 
-  void push(std::vector<Point>& centers, double radius) const {
+  // The ball that keeps the others from growing goes to the place with most room, if that has more. Where the solid is
+  // thin, it could not get out by itself.
+  bool free_narrowest(const std::vector<Sphere>& places) {
+    const std::vector<double> rooms = rooms_of(centers_);
+    const auto narrowest = static_cast<std::size_t>(std::min_element(rooms.begin(), rooms.end()) - rooms.begin());
+    std::vector<double> own(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+      own[i] = places[i].radius;
+      for (std::size_t b = 0; b < centers_.size(); ++b)
+        if (b != narrowest) own[i] = std::min(own[i], (places[i].center - centers_[b]).norm() / contact_);
+    });
+    const auto widest = static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
+    if (!(own[widest] > kWorthMoving * rooms[narrowest])) return false;
+    centers_[narrowest] = places[widest].center;
+    radius_ = room(centers_);
+    return true;
+  }
+
+  // The smaller the balls, the more places they have room at, and the nearer they come to the moments.
+  void find_moments(const std::vector<Sphere>& places) {
+    double least = excess(centers_, radius_);
+    std::vector<Point> best = centers_;
+    for (double wanted = radius_; least > 1 && wanted > kLeastShrunk * radius_; wanted *= kShrinking) {
+      std::vector<Point> moved = centers_;
+      const double now = move_to_moments(places, contact_, wanted, kWithin, *moments_, moved);
+      if (now >= least) continue;
+      least = now;
+      best = std::move(moved);
+    }
+    centers_ = std::move(best);
+    radius_ = room(centers_);
+  }
+
+  // Where a ball was when its depth was found: that changes by no more than the ball moves.
+  struct Asked {
+    Point at;
+    double depth = -kAny;
+  };
+
+  void push(std::vector<Point>& centers, double radius, bool to_moments) const {
     std::vector<std::pair<Index, Index>> pairs;
+    std::vector<Asked> asked(centers.size(), Asked{Point::Zero(), -kAny});
     for (int i = 0; i < kPushes; ++i) {
       if (i % kPairsAge == 0) find_pairs(centers, radius, pairs);
-      if (moments_ != nullptr && excess(centers, radius) > kWithin) approach_moments(centers, radius);
-      const double overlap = part(centers, radius, pairs), out = pull_in(centers, radius);
+      if (to_moments && excess(centers, radius) > kWithin) approach_moments(centers, radius);
+      const double overlap = part(centers, radius, pairs), out = pull_in(centers, radius, asked);
       if (std::max(overlap, out) < kApart * radius) break;
     }
   }
@@ -145,11 +184,13 @@ class EqualBalls {
   }
 
   // Away from the surface, where a ball crosses it; returns the largest such distance.
-  double pull_in(std::vector<Point>& centers, double radius) const {
+  double pull_in(std::vector<Point>& centers, double radius, std::vector<Asked>& asked) const {
     std::vector<double> moved(centers.size(), 0);
     tbb::parallel_for(std::size_t{0}, centers.size(), [&](std::size_t i) {
+      if (asked[i].depth - (centers[i] - asked[i].at).norm() >= radius) return;
       ClosestPoint nearest;
       const double depth = -surface_.signed_distance(centers[i], nearest);
+      asked[i] = {centers[i], depth};
       if (depth >= radius || nearest.distance == 0) return;
       moved[i] = radius - depth;
       const Vector inward = (centers[i] - nearest.position) / (depth > 0 ? nearest.distance : -nearest.distance);
@@ -181,7 +222,6 @@ class EqualBalls {
   const int rounds_;
   std::vector<Point> centers_;
   double radius_ = 0;
-  std::pair<std::vector<Point>, double> found_;
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -20,8 +19,10 @@ using detail::ParticleSet;
 
 // Balls are made smaller by this part, so that what rounding may do to distances is far from what is allowed.
 constexpr double kMargin = 1e-11;
-// The largest radius of a set, over that of the largest ball in the solid: tried in this order until the moments fit.
-constexpr double kCaps[] = {1, 0.8, 0.65, 0.5, 0.4};
+// The largest radius of a set, over that of the largest ball in the solid: all are tried for few balls, and in this
+// order until the moments fit for more.
+constexpr double kCaps[] = {1, 0.8, 0.65, 0.5, 0.35, 0.22, 0.13, 0.07};
+constexpr Index kThorough = 300;  // balls
 // Radii that are made smaller for the moments keep this part of their volume.
 constexpr double kLeastVolume = 0.02;
 constexpr int kFits = 4;  // since a smaller ball has a smaller moment of its own
@@ -57,7 +58,7 @@ class ParticleSearch {
       const auto widest = std::max_element(places_.begin(), places_.end(),
                                            [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
       for (const double cap : kCaps) {
-        if (widest == places_.end() || is_enough()) break;
+        if (widest == places_.end() || (is_enough() && options_.spheres > kThorough)) break;
         try_largest(cap * widest->radius);
       }
     }
@@ -107,12 +108,15 @@ class ParticleSearch {
     for (double& mass : masses) mass *= scale;
     if (!wanted.own_masses) return masses;
     const double sum = sum_of(masses);
-    const std::vector<double> none(masses.size(), 0), all(masses.size(), sum);
-    std::vector<double> own = detail::weights_with_moments(balls, {masses, none, all}, solid_, true);
-    const double own_sum = sum_of(own);
-    if (!(own_sum > 0)) return masses;
-    for (double& mass : own) mass *= sum / own_sum;
-    return own;
+    detail::WeightBounds bounds;
+    bounds.lower.assign(masses.size(), 0);
+    bounds.upper.assign(masses.size(), sum);
+    bounds.wanted = std::move(masses);
+    masses = detail::weights_with_moments(balls, bounds, solid_, true);
+    const double found = sum_of(masses);
+    if (!(found > 0)) return bounds.wanted;
+    for (double& mass : masses) mass *= sum / found;
+    return masses;
   }
 
   void consider(std::vector<Sphere> balls) {
@@ -122,9 +126,13 @@ class ParticleSearch {
     ParticleSet set;
     set.figures = particle_figures(balls, masses_of(balls), solid_, options_.particles);
     set.balls = std::move(balls);
-    const double own = particle_excess(set, options_, diagonal_);
-    if (best_ && own >= excess_) return;
-    excess_ = own;
+    // Sets that miss nothing are compared by how much they fill; others by what they miss, but balls that fill next to
+    // nothing are of no use, however right they are.
+    const double excess = particle_excess(set, options_, diagonal_), filled = set.figures.filled;
+    const double score = excess <= 1 ? filled : -excess / std::sqrt(filled);
+    if (best_ && score <= score_) return;
+    excess_ = excess;
+    score_ = score;
     best_ = std::move(set);
   }
 
@@ -137,7 +145,7 @@ class ParticleSearch {
   const detail::PackingOptions packing_;
   const std::vector<Sphere> places_;
   std::optional<ParticleSet> best_;
-  double excess_ = std::numeric_limits<double>::infinity();
+  double excess_ = 0, score_ = 0;  // of the best
 };
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(PackBalls, AnswersAsAllPairsOfBallsDo) {
     narrow.start({}, *runtime::pose_from_quaternion({1, 0, 0, 0}, {shift.x(), shift.y(), shift.z()}));
     while (!narrow.finished()) narrow.refine();
     EXPECT_EQ(narrow.answer(), gap > 0 ? runtime::Answer::no : runtime::Answer::maybe) << shift.transpose();
-    if (gap > 0) EXPECT_LE(narrow.lower_bound(), gap + 1e-5);
+    EXPECT_LE(narrow.lower_bound(), std::max(0.0, gap) + 1e-5);
     gap > 0 ? ++apart : ++touching;
   }
   EXPECT_GT(apart, 50);

@@ -17,8 +17,8 @@ struct WeightRegion {
 // that is nearer to its vertex than to others. The search sees this on a grid of 48 cells along each side of the
 // solid's bounding box.
 struct SetWeights {
-  std::vector<WeightRegion> regions;
-  std::vector<double> of_vertices;  // one for each vertex of the mesh, above 0; or none
+  std::vector<WeightRegion> regions{};
+  std::vector<double> of_vertices{};  // one for each vertex of the mesh, above 0; or none
   bool empty() const { return regions.empty() && of_vertices.empty(); }
 };
 

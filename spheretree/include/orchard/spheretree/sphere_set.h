@@ -35,11 +35,11 @@ struct SphereSetOptions {
   // The same for the volume, as a fraction of the solid's: cover: what lies outside; inside and particles: what is left
   // out. balanced: of no use, since the volume is that of the solid anyhow.
   double volume_error = 0;
-  bool solid = false;         // cover: the whole solid, not the surface alone
-  double padding = 0;         // cover: every point no farther than this from the surface is held, too; mesh units
-  double min_radius = 0;      // no sphere is smaller; mesh units
-  SetWeights weights;         // where looseness counts more; of no use to particles
-  ParticleOptions particles;  // of use to that fit alone
+  bool solid = false;           // cover: the whole solid, not the surface alone
+  double padding = 0;           // cover: every point no farther than this from the surface is held, too; mesh units
+  double min_radius = 0;        // no sphere is smaller; mesh units
+  SetWeights weights{};         // where looseness counts more; of no use to particles
+  ParticleOptions particles{};  // of use to that fit alone
   Effort effort = Effort::standard;  // cover: as for trees; otherwise: how many steps
   // Where something that was asked for is missed, look for a number of spheres that would do: up to four more sets are
   // made.
