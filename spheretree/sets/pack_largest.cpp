@@ -22,6 +22,21 @@ constexpr double kFirstStep = 0.3, kLeastStep = 1e-3, kShorter = 0.8;  // of the
 
 double fraction(double x) { return x - std::floor(x); }
 
+// Where overlaps are allowed, a ball that was made smaller for one may be too small beside an earlier one.
+bool keeps_apart(const Sphere& ball, Index own, double overlap, const std::vector<Sphere>& balls) {
+  for (Index b = 0; overlap > 0 && b < balls.size(); ++b)
+    if (b != own && overlap_share(ball, balls[b]) > overlap) return false;
+  return true;
+}
+
+// A place where another ball is too near for any ball has a radius of 0 from then on.
+void limit(Sphere& place, const Sphere& ball, double overlap) {
+  if (!(place.radius > 0)) return;
+  const double distance = (place.center - ball.center).norm();
+  if (distance < place.radius + ball.radius)
+    place.radius = allowed_radius(distance, ball.radius, overlap, place.radius);
+}
+
 class LargestFirst {
  public:
   LargestFirst(const Surface& surface, const std::vector<Sphere>& places, double cap, const PackingOptions& options,
@@ -50,16 +65,9 @@ class LargestFirst {
     Sphere ball = *largest;
     climb(ball, kNone, kFirstTrials, Random(options_.seed, kStage, balls_.size()));
     balls_.push_back(ball);
-    tbb::parallel_for(std::size_t{0}, places_.size(), [&](std::size_t i) { limit(places_[i], ball); });
+    tbb::parallel_for(std::size_t{0}, places_.size(),
+                      [&](std::size_t i) { limit(places_[i], ball, options_.overlap); });
     return true;
-  }
-
-  // A place where another ball is too near for any ball has a radius of 0 from then on.
-  void limit(Sphere& place, const Sphere& ball) const {
-    if (!(place.radius > 0)) return;
-    const double distance = (place.center - ball.center).norm();
-    if (distance < place.radius + ball.radius)
-      place.radius = allowed_radius(distance, ball.radius, options_.overlap, place.radius);
   }
 
   // Moves a ball to where it may be larger; `own`: its number, if it is in the set.
@@ -70,20 +78,12 @@ class LargestFirst {
       Sphere to = inscribed_ball(surface_, ball.center + step * ball.radius * by);
       to.radius = std::min(to.radius, cap_);
       for (Index b = 0; b < balls_.size() && to.radius > ball.radius; ++b)
-        if (b != own) limit(to, balls_[b]);
-      if (to.radius > ball.radius && keeps_apart(to, own))
+        if (b != own) limit(to, balls_[b], options_.overlap);
+      if (to.radius > ball.radius && keeps_apart(to, own, options_.overlap, balls_))
         ball = to;
       else
         step = std::max(kLeastStep, kShorter * step);
     }
-  }
-
-  // Where overlaps are allowed, a ball that was made smaller for one may be too small beside an earlier one.
-  bool keeps_apart(const Sphere& ball, Index own) const {
-    if (!(options_.overlap > 0)) return true;
-    for (Index b = 0; b < balls_.size(); ++b)
-      if (b != own && overlap_share(ball, balls_[b]) > options_.overlap) return false;
-    return true;
   }
 
   const Surface& surface_;
@@ -119,6 +119,15 @@ std::vector<Sphere> places_in(const Surface& surface, const PackingOptions& opti
 std::vector<Sphere> pack_largest(const Surface& surface, const std::vector<Sphere>& places, double cap,
                                  const PackingOptions& options, const Progress& progress) {
   return LargestFirst(surface, places, cap, options, progress).run();
+}
+
+void grow_in_place(const Surface& surface, const PackingOptions& options, std::vector<Sphere>& balls) {
+  for (Index own = 0; own < balls.size(); ++own) {
+    Sphere grown = inscribed_ball(surface, balls[own].center);
+    for (Index b = 0; b < balls.size() && grown.radius > balls[own].radius; ++b)
+      if (b != own) limit(grown, balls[b], options.overlap);
+    if (grown.radius > balls[own].radius && keeps_apart(grown, own, options.overlap, balls)) balls[own] = grown;
+  }
 }
 
 }  // namespace orchard::detail

@@ -25,6 +25,9 @@ std::vector<Sphere> places_in(const Surface& surface, const PackingOptions& opti
 std::vector<Sphere> pack_largest(const Surface& surface, const std::vector<Sphere>& places, double cap,
                                  const PackingOptions& options, const Progress& progress);
 
+// Makes each ball as large as it may be beside the others, one after the other; none moves.
+void grow_in_place(const Surface& surface, const PackingOptions& options, std::vector<Sphere>& balls);
+
 // What moments a packing of equal balls is to have; nullptr: any.
 struct PackingMoments {
   MassProperties body;

@@ -62,10 +62,8 @@ class ParticleSearch {
         try_largest(cap * widest->radius);
       }
     }
-    for (const bool with_moments : {false, true}) {
-      if (is_enough()) break;
-      try_equal(with_moments);
-    }
+    for (const bool with_moments : {false, true})
+      if (!is_enough() || (with_moments && options_.spheres <= kThorough)) try_equal(with_moments);
     if (!best_) throw InputError("no ball finds room in the solid; is it thinner than its coordinates tell?");
     return std::move(*best_);
   }
@@ -76,7 +74,11 @@ class ParticleSearch {
   void try_largest(double cap) {
     std::vector<Sphere> balls = pack_largest(surface_, places_, std::max(cap, least_radius_), packing_, progress_);
     if (balls.size() < options_.spheres) return;
-    if (!options_.particles.own_masses) fit_volumes(balls);
+    if (!options_.particles.own_masses) {
+      std::vector<double> least = volumes_of(balls);
+      for (double& volume : least) volume = std::min(volume, std::max(kLeastVolume * volume, volume_of(least_radius_)));
+      fit_volumes(balls, std::move(least));
+    }
     consider(std::move(balls));
   }
 
@@ -84,19 +86,24 @@ class ParticleSearch {
     const detail::PackingMoments moments{.body = solid_,
                                          .center_error = options_.particles.center_error * diagonal_,
                                          .inertia_error = options_.particles.inertia_error};
-    consider(pack_equal(surface_, places_, with_moments ? &moments : nullptr, packing_, progress_));
+    std::vector<Sphere> balls = pack_equal(surface_, places_, with_moments ? &moments : nullptr, packing_, progress_);
+    if (!options_.particles.equal_radii) {
+      std::vector<Sphere> grown = balls;
+      grow_in_place(surface_, packing_, grown);
+      if (!options_.particles.own_masses) fit_volumes(grown, volumes_of(balls));
+      consider(std::move(grown));
+    }
+    consider(std::move(balls));
   }
 
   // Smaller balls keep apart and stay in the solid, so that the moments are free to choose volumes.
-  void fit_volumes(std::vector<Sphere>& balls) const {
+  void fit_volumes(std::vector<Sphere>& balls, std::vector<double> least) const {
     detail::WeightBounds bounds;
     bounds.wanted = bounds.upper = volumes_of(balls);
-    for (const double volume : bounds.upper)
-      bounds.lower.push_back(std::min(volume, std::max(kLeastVolume * volume, volume_of(least_radius_))));
+    bounds.lower = std::move(least);
     for (int fit = 0; fit < kFits; ++fit) {
       const std::vector<double> volumes = detail::weights_with_moments(balls, bounds, solid_, false);
-      for (std::size_t b = 0; b < balls.size(); ++b)
-        balls[b].radius = std::max(least_radius_, std::cbrt(volumes[b] / volume_of(1)));
+      for (std::size_t b = 0; b < balls.size(); ++b) balls[b].radius = std::cbrt(volumes[b] / volume_of(1));
     }
   }
 
