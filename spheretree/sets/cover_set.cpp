@@ -30,26 +30,27 @@ struct Search {
 };
 
 constexpr Index kFew = 32;  // spheres
-// Points of the surface with low effort.
-constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;
+// Points of the surface: more are of no more use.
+constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;  // with low effort
+constexpr Index kSomeSamples = 2400, kSomeSamplesPerBall = 120;
 
+// Several short searches for different ends find better sets of few spheres than a long one, and take less time.
 std::vector<Search> searches_for(Index spheres, Effort effort) {
   if (effort == Effort::low || (effort == Effort::standard && spheres > kFew)) return {{Objective::balanced, effort}};
-  std::vector<Search> searches{{Objective::balanced, Effort::standard}};
-  for (const Objective objective : {Objective::volume, Objective::mean}) searches.push_back({objective, Effort::low});
+  constexpr Objective kAll[] = {Objective::balanced, Objective::volume, Objective::mean, Objective::maximum};
+  std::vector<Search> searches;
+  for (const Objective objective : kAll) searches.push_back({objective, Effort::low});
+  searches.push_back({Objective::volume, Effort::low, 1});
   if (effort == Effort::standard) return searches;
   for (const std::uint64_t seed : {0, 1})
-    for (const Objective objective : {Objective::balanced, Objective::maximum, Objective::volume, Objective::mean})
-      searches.push_back({objective, Effort::standard, seed});
-  searches.erase(searches.begin());
+    for (const Objective objective : kAll) searches.push_back({objective, Effort::standard, seed});
   return searches;
 }
 
 Index samples_for_cover(const SphereSetOptions& options) {
-  const Index needed = samples_needed({.spheres = {options.spheres}});
-  return options.effort == Effort::low
-             ? std::min(needed, std::max(kFewestSamples, kFewSamplesPerBall * options.spheres))
-             : needed;
+  const bool few = options.effort == Effort::low;
+  const Index least = few ? kFewestSamples : kSomeSamples, per_ball = few ? kFewSamplesPerBall : kSomeSamplesPerBall;
+  return std::min(samples_needed({.spheres = {options.spheres}}), std::max(least, per_ball * options.spheres));
 }
 
 std::vector<Sphere> leaves_of(const SphereTree& tree) {
@@ -78,7 +79,8 @@ std::vector<Sphere> searched(const Surface& surface, const FramedSurface& framed
   return balls;
 }
 
-// The largest distance outside times the mean one times the volume: neither is bought with much of another.
+// The largest distance outside, squared, times the mean one times the volume: neither is bought with much of another,
+// and the largest, which varies most between searches, least of all.
 double looseness(const Surface& surface, const WeightField& weights, const std::vector<Sphere>& balls) {
   double max = 0;
   for (const Sphere& ball : balls)
@@ -87,7 +89,7 @@ double looseness(const Surface& surface, const WeightField& weights, const std::
   double sum = 0;
   for (const UnionBoundary::Sample& sample : boundary.samples())
     sum += sample.area * weights.at(sample.at) * std::max(0.0, surface.signed_distance(sample.at));
-  return max * sum / boundary.area() * outside_volume(surface, balls, kJudgingRays);
+  return max * max * sum / boundary.area() * outside_volume(surface, balls, kJudgingRays);
 }
 
 }  // namespace
