@@ -12,9 +12,9 @@ using nlohmann::json;
 using test::Finished;
 using test::Workplace;
 
-std::vector<std::string> quick(const std::string& mesh, const std::string& folder,
-                               const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"spheres", mesh, "-o", folder, "--effort", "low", "--no-views", "-n", "6"};
+std::vector<std::string> quick(const std::string& mesh, const std::string& folder, const std::vector<std::string>& more,
+                               const std::string& spheres = "6") {
+  std::vector<std::string> arguments{"spheres", mesh, "-o", folder, "--effort", "low", "--no-views", "-n", spheres};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -73,9 +73,8 @@ TEST(Spheres, RefuseNumbersOutOfRangeOpenMeshesAndWhatIsOfNoUse) {
 TEST(Spheres, AsParticlesHaveMassesInEveryFormatThatHasAPlaceForThem) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), folder = (here / "out").string();
-  const Finished run = here.run(
-      quick(mesh, folder,
-            {"-n", "20", "--fit", "particles", "--equal", "--density", "2", "--export", "json,csv,urdf", "--json"}));
+  const Finished run = here.run(quick(
+      mesh, folder, {"--fit", "particles", "--equal", "--density", "2", "--export", "json,csv,urdf", "--json"}, "20"));
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const json report = json::parse(run.out)["particles"];
   EXPECT_NEAR(report["mass"].get<double>(), 6, 1e-9);
@@ -96,7 +95,7 @@ TEST(Spheres, AsParticlesThatMissTheInertiaSayHowManyWouldDo) {
   const Workplace here;
   const std::string mesh = here.add("rod.obj", test::box(Point(0, 0, 0), Point(10, 1, 1)));
   const std::string folder = (here / "out").string();
-  const Finished run = here.run(quick(mesh, folder, {"-n", "1", "--fit", "particles", "--json"}));
+  const Finished run = here.run(quick(mesh, folder, {"--fit", "particles", "--json"}, "1"));
   EXPECT_EQ(run.exit_code, 5);
   const json report = json::parse(run.out);
   EXPECT_FALSE(report["promise"]["kept"].get<bool>());
