@@ -13,6 +13,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "outputs.h"
+#include "particle_report.h"
 #include "picture.h"
 #include "reading_report.h"
 #include "sphere_files.h"
@@ -30,11 +31,12 @@ struct Audited {
   std::vector<Sphere> spheres;
   Index switched_off = 0;
   SphereAudit audit;
+  std::optional<ParticleFigures> particles;  // where the file has masses, without a buffer
 };
 
 // A radius that a negative buffer takes away is one that is switched off.
 Audited with_buffer(const SphereGroup& group, double buffer) {
-  Audited set{.buffer = buffer, .spheres = {}, .switched_off = group.switched_off, .audit = {}};
+  Audited set{.buffer = buffer, .spheres = {}, .switched_off = group.switched_off, .audit = {}, .particles = {}};
   for (Sphere sphere : group.spheres) {
     sphere.radius += buffer;
     if (sphere.radius > 0)
@@ -43,6 +45,12 @@ Audited with_buffer(const SphereGroup& group, double buffer) {
       ++set.switched_off;
   }
   return set;
+}
+
+void measure_masses(const SphereGroup& group, Audited& set) {
+  if (group.masses.empty() || !set.audit.beside_solid) return;
+  if (std::all_of(group.masses.begin(), group.masses.end(), [](double mass) { return mass == 0; })) return;
+  set.particles = particle_figures(set.spheres, group.masses, set.audit.beside_solid->volume.of_solid, {});
 }
 
 // What there is to write to the folder.
@@ -78,6 +86,11 @@ json to_json(const Audited& set, const Surface& surface) {
   json report = apps::to_json(set.audit, surface);
   report["buffer"] = set.buffer;
   report["switched_off"] = set.switched_off;
+  if (set.particles) {
+    json body = apps::to_json(*set.particles, surface.bounding_box().diagonal().norm());
+    for (const char* promised : {"wanted_mass", "overlap_proven"}) body.erase(promised);
+    report["particles"] = std::move(body);
+  }
   return report;
 }
 
@@ -87,6 +100,7 @@ void print_set(const Audited& set, const Surface& surface) {
     fmt::print("  {} sphere{} switched off: radius zero or below\n", set.switched_off,
                set.switched_off == 1 ? " is" : "s are");
   print_audit(set.audit, surface);
+  if (set.particles) print_bodies(*set.particles, surface.bounding_box().diagonal().norm());
   fmt::print("{}\n", verdict(set.audit, surface));
   if (const std::string frame = suggested_frame(surface, set.spheres); !frame.empty()) fmt::print("{}\n", frame);
 }
@@ -119,6 +133,7 @@ ExitCode audit(const AuditCommand& command) {
   RepairedMesh read = read_repaired(command.mesh, command.join);
   const Surface surface(std::move(read.mesh));
   for (Audited& set : sets) set.audit = audit_spheres(surface, set.spheres, {}, bar.callback());
+  measure_masses(group, sets.front());
   bar.clear();
   print_hole_warning(command.mesh, read.repair, read.distance, surface.bounding_radius());
   json report{{"format", file.format}, {"link", group.name}, {"sets", json::array()}, {"solid", surface.solid()}};

@@ -77,10 +77,14 @@ struct SpheresCommand {
   MeshOptions reading;
   SphereSetOptions options;
   double error = 0, volume_error = 0;  // percent
-  std::vector<Index> curve;            // numbers of spheres to try as well
-  std::vector<std::string> exports;    // json, csv, urdf, yaml; x y z r as text always
-  std::string link;                    // the name in robots' files; empty: the mesh's
-  bool tree = false;                   // an .orchard file over the spheres
+  double overlap = 0, center_error = 100 * ParticleOptions{}.center_error,
+         inertia_error = 100 * ParticleOptions{}.inertia_error;  // of particles, percent
+  std::vector<double> clip;              // normal and offset of the half-space that is kept; empty: all
+  std::filesystem::path vertex_weights;  // a number for each vertex; empty: none
+  std::vector<Index> curve;              // numbers of spheres to try as well
+  std::vector<std::string> exports;      // json, csv, urdf, yaml; x y z r as text always
+  std::string link;                      // the name in robots' files; empty: the mesh's
+  bool tree = false;                     // an .orchard file over the spheres; of a file of spheres, too
   bool views = true, picture = false;
   std::string up = "z";
   std::vector<std::string> given;  // as of BuildCommand

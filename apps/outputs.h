@@ -14,6 +14,7 @@ namespace orchard::apps {
 
 inline constexpr const char* kWrapEnding = "-wrap.obj";          // of the wrap that a tree was built on
 inline constexpr const char* kRepairedEnding = "-repaired.obj";  // of the mesh that repair made and it was built on
+inline constexpr const char* kClippedEnding = "-clipped.obj";    // of the part of the mesh that a plane leaves
 
 // NAME-OF-MODEL + ending.
 std::string named(const std::filesystem::path& model, const std::string& ending);

@@ -75,12 +75,13 @@ SphereFile read_by_ending(const fs::path& file) {
   const std::string ending = lower_extension(file);
   if (ending == ".json") return read_json_spheres(file);
   if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return read_yaml_spheres(file);
+  if (ending == ".urdf") return read_urdf_spheres(file);
   if (ending == ".ply") return read_ply(file);
   if (ending == ".sph" || ending == ".orchard") return read_tree(file);
   if (ending == ".txt" || ending == ".csv" || ending == ".xyz") return read_text(file);
-  throw InputError(
-      file.string() +
-      ": spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .ply, .sph and .orchard; name it so");
+  throw InputError(file.string() +
+                   ": spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .urdf, .ply, .sph and "
+                   ".orchard; name it so");
 }
 
 }  // namespace

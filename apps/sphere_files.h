@@ -14,6 +14,7 @@ struct SphereGroup {
   std::vector<Sphere> spheres;  // radii above 0
   Index switched_off = 0;       // spheres whose radius is zero or below, which means that they do not count
   double buffer = 0;            // that the file adds to the link's radii, in its unit of length
+  std::vector<double> masses;   // of `spheres`, where the file has them
 };
 
 struct SphereFile {
@@ -25,8 +26,9 @@ struct SphereFile {
 //   - .txt .csv .xyz: x y z r a line, parted by blanks, commas or semicolons; a header and further columns are left
 //   out;
 //   - .json: lists of [x, y, z, r] or of objects with origin (or center) and radius, levels of such lists, of which the
-//     deepest counts, {centers, radii}, or one of these for each link by name;
+//     deepest counts, {centers, radii} and masses if there are any, or one of these for each link by name;
 //   - .yml .yaml .xrdf: robots of cuRobo and of Isaac, with their buffers;
+//   - .urdf: the spheres among a link's collision geometry, in the link's frame;
 //   - .ply: vertices with a radius;
 //   - .sph .orchard: the leaves of a tree.
 // A radius of zero or below switches its sphere off. Throws InputError naming file, line (of JSON and PLY: link or row)
@@ -42,5 +44,6 @@ void add_sphere(SphereGroup& group, const Point& center, double radius, const st
 
 SphereFile read_json_spheres(const std::filesystem::path& file);  // as read_sphere_file(), which calls them
 SphereFile read_yaml_spheres(const std::filesystem::path& file);
+SphereFile read_urdf_spheres(const std::filesystem::path& file);
 
 }  // namespace orchard::apps

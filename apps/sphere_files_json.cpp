@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "input_file.h"
@@ -42,8 +43,17 @@ void add_columns(SphereGroup& group, const json& columns, const std::string& whe
   const json &centers = columns.at("centers"), &radii = columns.at("radii");
   if (!centers.is_array() || !radii.is_array() || centers.size() != radii.size())
     throw InputError(where + ": there must be as many radii as centers");
-  for (std::size_t i = 0; i < centers.size(); ++i)
+  const json masses = columns.value("masses", json::array());
+  if (!masses.is_array() || (!masses.empty() && masses.size() != radii.size()))
+    throw InputError(where + ": there must be as many masses as radii, or none");
+  for (std::size_t i = 0; i < centers.size(); ++i) {
+    const std::size_t before = group.spheres.size();
     add_sphere(group, point_of(centers[i], where), radii[i].get<double>(), where);
+    if (masses.empty() || group.spheres.size() == before) continue;
+    group.masses.push_back(masses[i].get<double>());
+    if (!(group.masses.back() >= 0) || !std::isfinite(group.masses.back()))
+      throw InputError(fmt::format("{}: the mass of sphere {} is no finite number of 0 or more", where, i));
+  }
 }
 
 // What may stand for one object or one link. Of levels, the deepest that holds a sphere counts.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "orchard/spheretree/ball_tree.h"
 #include "orchard/spheretree/sphere_set.h"
 #include "picture.h"
 
@@ -71,7 +72,8 @@ void write_sphere_views(const std::filesystem::path& mesh, const std::string& pr
   for (const Point& point : points.points) gaps.values.push_back(gap_from(spheres, point));
   write_mesh(outputs.add(name("-mesh.vtp")), surface);
   write_points(outputs.add(name("-points.vtp")), points, {gaps});
-  write_tree_level(outputs.add(name("-spheres.vtp")), tree_over(spheres, surface.bounding_ball()), 1);
+  write_tree_level(outputs.add(name("-spheres.vtp")),
+                   ball_tree(spheres, static_cast<Index>(std::max<std::size_t>(2, spheres.size()))), 1);
   const std::vector<NamedFile> files{
       {"mesh", name("-mesh.vtp")}, {"surface points", name("-points.vtp")}, {"spheres", name("-spheres.vtp")}};
   write_multiblock(

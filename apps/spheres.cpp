@@ -9,16 +9,18 @@
 #include "input_file.h"
 #include "load_solid.h"
 #include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/clip.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
-#include "orchard/runtime/tree_file.h"
-#include "orchard/spheretree/measure.h"
-#include "orchard/spheretree/proven.h"
+#include "orchard/spheretree/ball_tree.h"
 #include "outputs.h"
+#include "particle_report.h"
 #include "picture.h"
 #include "reading_report.h"
+#include "set_files.h"
 #include "sphere_views.h"
 #include "spheres_output.h"
+#include "weight_option.h"
 
 namespace orchard::apps {
 namespace {
@@ -36,20 +38,23 @@ SphereSetOptions options_of(const SpheresCommand& command) {
   SphereSetOptions options = command.options;
   options.error = kPercent * command.error;
   options.volume_error = kPercent * command.volume_error;
+  options.particles.overlap = kPercent * command.overlap;
+  options.particles.center_error = kPercent * command.center_error;
+  options.particles.inertia_error = kPercent * command.inertia_error;
   if ((options.error > 0 || options.volume_error > 0) && !among("spheres", command.given))
     options.spheres = kMaxSetSpheres;
   return options;
 }
 
-std::vector<std::string> names_of(const SpheresCommand& command) {
-  std::vector<std::string> endings = sphere_view_endings("-set");
-  for (const char* ending : {"-set.txt", "-set.csv", "-set-spheres.json", "-set.yml", "-set.urdf", "-set.orchard",
-                             "-set.png", "-set-curve.csv", "-set-curve.svg"})
-    endings.emplace_back(ending);
-  endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
-  std::vector<std::string> names;
-  for (const std::string& ending : endings) names.push_back(named(command.mesh, ending));
-  return names;
+// The part on one side of the plane takes the solid's place.
+void clip(const SpheresCommand& command, SolidMesh& solid) {
+  if (command.clip.empty()) return;
+  const HalfSpace kept{Vector(command.clip[0], command.clip[1], command.clip[2]), command.clip[3]};
+  try {
+    solid.surface = Surface(clip_solid(solid.surface.mesh(), kept), command.reading.ball);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: --clip: {}", command.mesh.string(), error.what()));
+  }
 }
 
 // What can be refused before anything is built; then where the files go.
@@ -57,63 +62,39 @@ Destination check(const SpheresCommand& command) {
   check_input(command.mesh);
   const SphereSetOptions options = options_of(command);
   require_usable(options);
-  if (command.tree && options.fit != SphereFit::cover)
-    throw InputError("--tree needs --fit cover: a tree answers for a surface that its spheres hold");
-  if (command.tree && options.spheres > kMaxBranching)
-    throw InputError(fmt::format("--tree takes at most {} spheres: give -n", kMaxBranching));
+  for (const char* option : {"overlap", "equal", "density", "density-of", "masses", "center-error", "inertia-error"})
+    if (options.fit != SphereFit::particles && among(option, command.given))
+      throw InputError(fmt::format("--{} belongs to --fit particles", option));
+  if (!command.vertex_weights.empty() && !command.clip.empty())
+    throw InputError("--vertex-weights has no effect with --clip, which changes the vertices: give --weight");
   const bool by_error = options.error > 0 || options.volume_error > 0;
   if (by_error && !command.curve.empty())
     throw InputError("--curve has no effect with --error or --volume-error, which choose the number of spheres");
-  const std::vector<fs::path> inputs{command.mesh};
+  std::vector<fs::path> inputs{command.mesh};
+  if (!command.vertex_weights.empty()) {
+    check_input(command.vertex_weights);
+    inputs.push_back(command.vertex_weights);
+  }
   Destination destination{.folder = command.folder,
                           .report = named(command.mesh, "-set.json"),
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
-  check_outputs(destination, names_of(command), inputs);
+  check_outputs(destination, set_file_names(command), inputs);
   return destination;
-}
-
-std::string link_of(const SpheresCommand& command) {
-  return command.link.empty() ? command.mesh.stem().string() : command.link;
-}
-
-void write_spheres(const SpheresCommand& command, const SphereSetOptions& options, const Provenance& provenance,
-                   const SphereSetBuild& set, Outputs& outputs) {
-  const auto write = [&](const char* ending, std::string_view bytes, const char* what) {
-    write_file(outputs.add(named(command.mesh, ending), what), bytes);
-  };
-  write("-set.txt",
-        to_text(set.spheres, {fmt::format("x y z r of {} spheres; {}: {}", set.spheres.size(), name(set.fit),
-                                          set.kept ? promise_in_words(options, set) : "NOT PROVEN"),
-                              line_of(provenance)}),
-        "the spheres as text, x y z r");
-  for (const std::string& format : command.exports) {
-    if (format == "csv") write("-set.csv", to_csv(set.spheres), "the same as a table");
-    if (format == "yaml") write("-set.yml", to_yaml(set.spheres, link_of(command)), "the same as cuRobo reads it");
-    if (format == "urdf")
-      write("-set.urdf", set_as_urdf(set.spheres, link_of(command)), "the same as a link's collision geometry");
-    if (format != "json") continue;
-    json spheres = to_json(set.spheres);
-    spheres["provenance"] = decisive_json(provenance);
-    write("-set-spheres.json", spheres.dump(1) + "\n", "the same as lists of centres and radii");
-  }
 }
 
 void write_tree(const SpheresCommand& command, const Surface& surface, const SphereSetBuild& set, Outputs& outputs) {
   if (!command.tree) return;
-  SphereTree tree = tree_over(set.spheres, surface.bounding_ball());
-  measure(tree, surface);
-  const ProvenTree proven = pack_proven(tree, surface);
-  if (!proven.proof.ok()) throw Error("the tree over the spheres is not proven to hold the surface");
-  const auto bytes = runtime::serialize(proven.packed);
-  write_file(outputs.add(named(command.mesh, "-set.orchard"), "a tree of two levels over them, for the run-time"),
-             std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  if (set.fit == SphereFit::cover && set.audit.covered)
+    write_cover_tree(command, surface, set.spheres, outputs);
+  else
+    write_union_tree(command, set.spheres, outputs);
 }
 
 #ifdef ORCHARD_HAS_VIZ
 void draw(const SpheresCommand& command, const Surface& surface, const SphereSetBuild& set, Outputs& outputs) {
   if (!command.picture) return;
-  const SphereTree tree = tree_over(set.spheres, surface.bounding_ball());
+  const SphereTree tree = ball_tree(set.spheres, kMaxSetSpheres);
   PipelinePicture picture;
   picture.values.surface = &surface;
   picture.values.tree = &tree;
@@ -152,6 +133,7 @@ std::vector<SphereSetBuild> build_sets(const SpheresCommand& command, const Surf
     if (number == options.spheres) chosen = sets.size();
     SphereSetOptions own = options;
     own.spheres = number;
+    own.find_enough = options.find_enough && number == options.spheres;
     sets.push_back(build_sphere_set(surface, own, progress));
   }
   return sets;
@@ -164,9 +146,12 @@ json report_of(const SpheresCommand& command, const SolidMesh& solid, const Sphe
   report["spheres"] = set.spheres.size();
   report["padding"] = options.padding;
   report["promise"] = {{"text", promise_in_words(options, set)}, {"kept", broken.none()}, {"broken", broken.what}};
+  report["enough_spheres"] = broken.none() ? json(set.spheres.size()) : set.enough ? json(*set.enough) : json();
+  if (set.particles) report["particles"] = to_json(*set.particles, solid.surface.bounding_box().diagonal().norm());
   for (const auto& [stage, seconds] : set.seconds) report["seconds"][stage] = seconds;
   add_solid_json(solid, report);
-  report["certified_mesh"] = solid.wrap               ? json(named(command.mesh, kWrapEnding))
+  report["certified_mesh"] = !command.clip.empty()    ? json(named(command.mesh, kClippedEnding))
+                             : solid.wrap             ? json(named(command.mesh, kWrapEnding))
                              : solid.repair.changed() ? json(named(command.mesh, kRepairedEnding))
                                                       : json();
   return report;
@@ -175,11 +160,14 @@ json report_of(const SpheresCommand& command, const SolidMesh& solid, const Sphe
 }  // namespace
 
 ExitCode spheres(const SpheresCommand& command) {
+  if (names_spheres(command.mesh)) return spheres_of_file(command);
   const Destination destination = check(command);
-  const SphereSetOptions options = options_of(command);
+  SphereSetOptions options = options_of(command);
   const bool talk = !command.output.quiet && !command.output.json;
   ProgressBar bar(talk);
-  const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  clip(command, solid);
+  if (!command.vertex_weights.empty()) options.weights.of_vertices = read_vertex_weights(command.vertex_weights);
   const Surface& surface = solid.surface;
   bar.clear();
   if (talk) print_solid(command.mesh, solid);
@@ -188,11 +176,19 @@ ExitCode spheres(const SpheresCommand& command) {
   const std::vector<SphereSetBuild> sets = build_sets(command, surface, options, bar.callback(), chosen);
   bar.clear();
   const SphereSetBuild& set = sets[chosen];
-  const Broken broken = apps::broken(options, set);
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  const Broken broken = apps::broken(options, set, diagonal);
   json report = report_of(command, solid, options, set, broken);
 
   Outputs outputs(destination);
-  write_spheres(command, options, destination.provenance, set, outputs);
+  const std::string promise = broken.none()
+                                  ? promise_in_words(options, set)
+                                  : fmt::format("THE BEST FOUND, NOT AS ASKED FOR: {}", fmt::join(broken.what, "; "));
+  write_set(command, destination.provenance,
+            {.spheres = set.spheres,
+             .title = fmt::format("{}: {}", name(set.fit), promise),
+             .particles = set.particles ? &*set.particles : nullptr},
+            outputs);
   write_tree(command, surface, set, outputs);
   write_curve(command, surface, sets, outputs);
   if (command.views) write_sphere_views(command.mesh, "-set", surface, set.spheres, outputs);
@@ -207,6 +203,7 @@ ExitCode spheres(const SpheresCommand& command) {
     fmt::print("{}: {} spheres, fit {}, {:.2f} s\n", command.mesh.string(), set.spheres.size(), name(set.fit),
                set.seconds.front().second);
     print_audit(set.audit, surface);
+    if (set.particles) print_particles(*set.particles, diagonal);
     outputs.print();
     if (set.kept)
       fmt::print("PROMISED: {}; {}\n", promise_in_words(options, set),

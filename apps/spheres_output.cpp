@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "particle_report.h"
 #include "sphere_lists.h"
 
 namespace orchard::apps {
@@ -34,59 +35,82 @@ const char* name(SphereFit fit) {
       return "inside";
     case SphereFit::balanced:
       return "balanced";
+    case SphereFit::particles:
+      return "particles";
   }
   return "";
 }
 
 std::string promise_in_words(const SphereSetOptions& options, const SphereSetBuild& build) {
+  const std::string least =
+      options.min_radius > 0 ? fmt::format("; no radius is below {:g}", options.min_radius) : std::string();
   switch (build.fit) {
     case SphereFit::cover: {
       const std::string padding =
           options.padding > 0 ? fmt::format(", with everything up to {:g} from it,", options.padding) : "";
-      return fmt::format("every point of the {}{} lies in a sphere", options.solid ? "solid" : "surface", padding);
+      return fmt::format("every point of the {}{} lies in a sphere{}", options.solid ? "solid" : "surface", padding,
+                         least);
     }
     case SphereFit::inside:
-      return "every sphere lies in the solid";
+      return "every sphere lies in the solid" + least;
+    case SphereFit::particles:
+      return particle_promise(options) + least;
     case SphereFit::balanced:
       break;
   }
   const UnionVolume& volume = build.audit.beside_solid->volume;
-  return fmt::format("the union has the volume of the solid within {:g} % (measured: {:+.2f} %, +- {:.2f})",
+  return fmt::format("the union has the volume of the solid within {:g} % (measured: {:+.2f} %, +- {:.2f}){}",
                      100 * kBalancedVolume, 100 * (volume.balls.value / volume.solid - 1),
-                     200 * volume.balls.error / volume.solid);
+                     200 * volume.balls.error / volume.solid, least);
 }
 
-Broken broken(const SphereSetOptions& options, const SphereSetBuild& build) {
+Broken broken(const SphereSetOptions& options, const SphereSetBuild& build, double diagonal) {
   Broken broken;
-  if (!build.kept) broken.what.push_back("it is not proven that " + promise_in_words(options, build));
+  if (build.particles) broken.what = missed_by_particles(options, *build.particles, diagonal);
+  const double least = build.spheres.back().radius - options.padding;
+  if (least < options.min_radius)
+    broken.what.push_back(
+        fmt::format("the smallest radius is {:.4g}, where {:g} was asked for", least, options.min_radius));
+  if (!build.kept && broken.none()) broken.what.push_back("it is not proven that " + promise_in_words(options, build));
   if (!build.error_reached)
     broken.what.push_back(fmt::format("{} spheres do not reach the error that was asked for", build.spheres.size()));
-  if (!broken.none()) broken.remedy = "allow more spheres (-n)";
+  if (broken.none()) return broken;
+  broken.remedy = build.enough ? fmt::format("{} spheres would do: -n {}", *build.enough, *build.enough)
+                               : fmt::format("no number of spheres up to {} was found that would do", kMaxSetSpheres);
   return broken;
 }
 
-std::string to_text(std::span<const Sphere> spheres, const std::vector<std::string>& head) {
+std::string to_text(std::span<const Sphere> spheres, std::span<const double> masses,
+                    const std::vector<std::string>& head) {
   std::string text;
   for (const std::string& line : head) text += "# " + line + "\n";
-  for (const Sphere& s : spheres)
-    text += fmt::format("{} {} {} {}\n", s.center.x(), s.center.y(), s.center.z(), s.radius);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Sphere& s = spheres[i];
+    text += fmt::format("{} {} {} {}", s.center.x(), s.center.y(), s.center.z(), s.radius);
+    text += masses.empty() ? "\n" : fmt::format(" {}\n", masses[i]);
+  }
   return text;
 }
 
-std::string to_csv(std::span<const Sphere> spheres) {
-  std::string text = "x,y,z,r\n";
-  for (const Sphere& s : spheres)
-    text += fmt::format("{},{},{},{}\n", s.center.x(), s.center.y(), s.center.z(), s.radius);
+std::string to_csv(std::span<const Sphere> spheres, std::span<const double> masses) {
+  std::string text = masses.empty() ? "x,y,z,r\n" : "x,y,z,r,mass\n";
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Sphere& s = spheres[i];
+    text += fmt::format("{},{},{},{}", s.center.x(), s.center.y(), s.center.z(), s.radius);
+    text += masses.empty() ? "\n" : fmt::format(",{}\n", masses[i]);
+  }
   return text;
 }
 
-json to_json(std::span<const Sphere> spheres) {
+json to_json(std::span<const Sphere> spheres, std::span<const double> masses) {
   json centers = json::array(), radii = json::array();
   for (const Sphere& s : spheres) {
     centers.push_back({s.center.x(), s.center.y(), s.center.z()});
     radii.push_back(s.radius);
   }
-  return {{"centers", std::move(centers)}, {"radii", std::move(radii)}};
+  json lists{{"centers", std::move(centers)}, {"radii", std::move(radii)}};
+  if (!masses.empty()) lists["masses"] = masses;
+  return lists;
 }
 
 std::string to_yaml(std::span<const Sphere> spheres, const std::string& link) {
@@ -97,11 +121,20 @@ std::string to_yaml(std::span<const Sphere> spheres, const std::string& link) {
   return text;
 }
 
-std::string set_as_urdf(std::span<const Sphere> spheres, const std::string& link) {
+std::string set_as_urdf(std::span<const Sphere> spheres, const std::string& link, const ParticleFigures* figures) {
   SphereLists lists;
   lists.levels.emplace_back(spheres.begin(), spheres.end());
   lists.carried.resize(1);
-  return to_urdf(lists, 0, link);
+  std::string text = to_urdf(lists, 0, link);
+  if (figures == nullptr) return text;
+  const MassProperties& body = figures->body;
+  const Eigen::Matrix3d& i = body.inertia;
+  const std::string inertial = fmt::format(
+      "    <inertial>\n      <origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/>\n      <mass value=\"{}\"/>\n      <inertia "
+      "ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    </inertial>\n",
+      body.center.x(), body.center.y(), body.center.z(), body.volume, i(0, 0), i(0, 1), i(0, 2), i(1, 1), i(1, 2),
+      i(2, 2));
+  return text.insert(text.find("    <collision>"), inertial);
 }
 
 std::string curve_csv(std::span<const SphereSetBuild> sets, double diagonal) {

@@ -26,21 +26,24 @@ double slack(double size) { return 0x1p-48 * size; }
 
 class Packer {
  public:
-  Packer(const SphereTree& tree, const Surface& surface) : tree_(tree), surface_(surface) {
+  // surface: nullptr: the balls are all there is.
+  Packer(const SphereTree& tree, const Surface* surface) : tree_(tree), surface_(surface) {
     if (tree.nodes.empty()) throw Error("pack: the tree has no root");
-    origin_ = surface.bounding_ball().center;
+    origin_ = bounds().center;
   }
 
   runtime::PackedSphereTree run() {
     for (int axis = 0; axis < 3; ++axis) packed_.origin[static_cast<std::size_t>(axis)] = origin_[axis];
-    packed_.bounding_radius = surface_.bounding_radius();
+    packed_.bounding_radius = bounds().radius;
     packed_.branching = tree_.branching;
     packed_.depth = tree_.depth();
     packed_.node_count = static_cast<std::uint32_t>(tree_.nodes.size());
     pack_nodes();
-    pack_mesh();
-    list_triangles();
-    runtime::index_triangles(packed_);
+    if (surface_ != nullptr) {
+      pack_mesh();
+      list_triangles();
+      runtime::index_triangles(packed_);
+    }
     return std::move(packed_);
   }
 
@@ -48,6 +51,8 @@ class Packer {
   struct Place {
     std::uint32_t block, lane;
   };
+
+  const Sphere& bounds() const { return surface_ != nullptr ? surface_->bounding_ball() : tree_.nodes.front().sphere; }
 
   // Nodes are in breadth-first order, so blocks come out in that order too.
   void pack_nodes() {
@@ -58,6 +63,7 @@ class Packer {
     for (std::size_t i = 0; i < tree_.nodes.size(); ++i) {
       const SphereNode& node = tree_.nodes[i];
       pack_node(node, places_[i]);
+      set_link(places_[i], runtime::kEmptyLeaf);
       if (node.child_count == 0) continue;
       const auto block = static_cast<std::uint32_t>(packed_.blocks.size());
       if (block > runtime::last_linked_block(tree_.branching)) throw Error("pack: the tree is too large to be packed");
@@ -91,7 +97,7 @@ class Packer {
   void set_link(Place at, std::uint32_t link) { packed_.blocks[at.block].link[at.lane] = link; }
 
   void pack_mesh() {
-    const TriangleMesh& mesh = surface_.mesh();
+    const TriangleMesh& mesh = surface_->mesh();
     double farthest = 0;
     for (const Point& vertex : mesh.vertices) {
       const Vector exact = vertex - origin_;
@@ -109,7 +115,7 @@ class Packer {
     std::vector<Index> near;
     for (std::size_t i = 0; i < tree_.nodes.size(); ++i) {
       const SphereNode& node = tree_.nodes[i];
-      surface_.triangles_near(packed_ball(places_[i]), near);
+      surface_->triangles_near(packed_ball(places_[i]), near);
       if (i == 0) {
         touching[0] = near;
       } else {
@@ -134,7 +140,7 @@ class Packer {
   }
 
   const SphereTree& tree_;
-  const Surface& surface_;
+  const Surface* surface_;
   Point origin_;
   std::vector<Place> places_;
   runtime::PackedSphereTree packed_;
@@ -142,6 +148,8 @@ class Packer {
 
 }  // namespace
 
-runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface) { return Packer(tree, surface).run(); }
+runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface) { return Packer(tree, &surface).run(); }
+
+runtime::PackedSphereTree pack(const SphereTree& tree) { return Packer(tree, nullptr).run(); }
 
 }  // namespace orchard

@@ -13,6 +13,7 @@
 #include "orchard/spheretree/outside_volume.h"
 #include "sampled_distances.h"
 #include "tightened/tightened_in_frame.h"
+#include "weight_field.h"
 
 namespace orchard::detail {
 namespace {
@@ -29,26 +30,27 @@ struct Search {
 };
 
 constexpr Index kFew = 32;  // spheres
-// Points of the surface with low effort.
-constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;
+// Points of the surface: more are of no more use.
+constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;  // with low effort
+constexpr Index kSomeSamples = 2400, kSomeSamplesPerBall = 120;
 
+// Several short searches for different ends find better sets of few spheres than a long one, and take less time.
 std::vector<Search> searches_for(Index spheres, Effort effort) {
   if (effort == Effort::low || (effort == Effort::standard && spheres > kFew)) return {{Objective::balanced, effort}};
-  std::vector<Search> searches{{Objective::balanced, Effort::standard}};
-  for (const Objective objective : {Objective::volume, Objective::mean}) searches.push_back({objective, Effort::low});
+  constexpr Objective kAll[] = {Objective::balanced, Objective::volume, Objective::mean, Objective::maximum};
+  std::vector<Search> searches;
+  for (const Objective objective : kAll) searches.push_back({objective, Effort::low});
+  searches.push_back({Objective::volume, Effort::low, 1});
   if (effort == Effort::standard) return searches;
   for (const std::uint64_t seed : {0, 1})
-    for (const Objective objective : {Objective::balanced, Objective::maximum, Objective::volume, Objective::mean})
-      searches.push_back({objective, Effort::standard, seed});
-  searches.erase(searches.begin());
+    for (const Objective objective : kAll) searches.push_back({objective, Effort::standard, seed});
   return searches;
 }
 
 Index samples_for_cover(const SphereSetOptions& options) {
-  const Index needed = samples_needed({.spheres = {options.spheres}});
-  return options.effort == Effort::low
-             ? std::min(needed, std::max(kFewestSamples, kFewSamplesPerBall * options.spheres))
-             : needed;
+  const bool few = options.effort == Effort::low;
+  const Index least = few ? kFewestSamples : kSomeSamples, per_ball = few ? kFewSamplesPerBall : kSomeSamplesPerBall;
+  return std::min(samples_needed({.spheres = {options.spheres}}), std::max(least, per_ball * options.spheres));
 }
 
 std::vector<Sphere> leaves_of(const SphereTree& tree) {
@@ -65,8 +67,9 @@ bool is_covered(const Surface& surface, const std::vector<Sphere>& balls) {
 
 // The spheres of one search, which hold the surface by themselves, without the tree's root.
 std::vector<Sphere> searched(const Surface& surface, const FramedSurface& framed, const SurfaceSampling& sampling,
-                             const TightenOptions& options, const Progress& progress) {
-  TightenBuild build = tightened_in_frame(framed.surface(), sampling, options, progress);
+                             const WeightField& weights, const TightenOptions& options, const Progress& progress) {
+  TightenBuild build =
+      tightened_in_frame(framed.surface(), sampling, options, progress, weights.in(framed.surface().bounding_box()));
   framed.take_out(build.tree);
   std::vector<Sphere> balls = leaves_of(build.tree);
   if (!is_covered(surface, balls)) {
@@ -76,15 +79,17 @@ std::vector<Sphere> searched(const Surface& surface, const FramedSurface& framed
   return balls;
 }
 
-// The largest distance outside times the mean one times the volume: neither is bought with much of another.
-double looseness(const Surface& surface, const std::vector<Sphere>& balls) {
+// The largest distance outside, squared, times the mean one times the volume: neither is bought with much of another,
+// and the largest, which varies most between searches, least of all.
+double looseness(const Surface& surface, const WeightField& weights, const std::vector<Sphere>& balls) {
   double max = 0;
-  for (const Sphere& ball : balls) max = std::max(max, inaccuracy(surface, ball, {1e-3, 1e-2}).upper);
+  for (const Sphere& ball : balls)
+    max = std::max(max, weights.at(ball.center) * inaccuracy(surface, ball, {1e-3, 1e-2}).upper);
   const UnionBoundary boundary(balls, kJudgingSamples);
   double sum = 0;
   for (const UnionBoundary::Sample& sample : boundary.samples())
-    sum += sample.area * std::max(0.0, surface.signed_distance(sample.at));
-  return max * sum / boundary.area() * outside_volume(surface, balls, kJudgingRays);
+    sum += sample.area * weights.at(sample.at) * std::max(0.0, surface.signed_distance(sample.at));
+  return max * max * sum / boundary.area() * outside_volume(surface, balls, kJudgingRays);
 }
 
 }  // namespace
@@ -100,6 +105,7 @@ std::vector<Sphere> cover_set(const Surface& surface, const SphereSetOptions& op
   sampling_options.seed = options.seed;
   const SurfaceSampling sampling = sample_surface(framed.surface(), sampling_options, progress);
   const std::vector<Search> searches = searches_for(options.spheres, options.effort);
+  const WeightField weights(surface, options.weights);
   std::vector<Sphere> best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < searches.size(); ++i) {
@@ -111,8 +117,8 @@ std::vector<Sphere> cover_set(const Surface& surface, const SphereSetOptions& op
     const Progress share = [&](std::string_view stage, double fraction) {
       return !progress || progress(stage, (static_cast<double>(i) + fraction) / static_cast<double>(searches.size()));
     };
-    std::vector<Sphere> balls = searched(surface, framed, sampling, own, share);
-    const double own_looseness = searches.size() > 1 ? looseness(surface, balls) : 0;
+    std::vector<Sphere> balls = searched(surface, framed, sampling, weights, own, share);
+    const double own_looseness = searches.size() > 1 ? looseness(surface, weights, balls) : 0;
     if (!(own_looseness < least) && !best.empty()) continue;
     least = own_looseness;
     best = std::move(balls);

@@ -48,9 +48,14 @@ class Filling {
         options_(options),
         progress_(progress),
         inside_(options.fit == SphereFit::inside),
-        points_(surface, points_for(options), inside_ ? 0 : kMargin),
+        points_(surface, points_for(options), inside_ ? 0 : kMargin, WeightField(surface, options.weights)),
         candidates_(
-            inscribed_balls(surface, std::max(kLeastCandidates, kCandidatesPerBall * options.spheres), options.seed)) {}
+            inscribed_balls(surface, std::max(kLeastCandidates, kCandidatesPerBall * options.spheres), options.seed)) {
+    if (inside_)
+      std::erase_if(candidates_, [&](const Sphere& ball) { return ball.radius < options.min_radius; });
+    else
+      for (Sphere& ball : candidates_) ball.radius = std::max(ball.radius, options.min_radius);
+  }
 
   std::vector<Sphere> run() {
     seed();
@@ -91,7 +96,7 @@ class Filling {
       points_.add(candidates_[top]);
     }
     const std::size_t before = balls_.size();
-    add_inner_balls(surface_, options_.spheres, 0, balls_);
+    for (const double least : {options_.min_radius, 0.0}) add_inner_balls(surface_, options_.spheres, least, balls_);
     for (std::size_t b = before; b < balls_.size(); ++b) points_.add(balls_[b]);
   }
 
@@ -118,7 +123,7 @@ class Filling {
   }
 
   bool is_allowed(const Sphere& ball) const {
-    if (!(ball.radius > 0)) return false;
+    if (!(ball.radius > 0) || ball.radius < options_.min_radius) return false;
     if (inside_) return true;
     const Vector reach = Vector::Constant(ball.radius);
     return points_.box().contains(Point(ball.center - reach)) && points_.box().contains(Point(ball.center + reach));
@@ -132,6 +137,7 @@ class Filling {
 
   // The ball that is missed least goes where another one adds more.
   void relocate() {
+    if (candidates_.empty()) return;
     const Index moves = 1 + options_.spheres / 8;
     std::vector<double> losses(balls_.size());
     tbb::parallel_for(std::size_t{0}, balls_.size(), [&](std::size_t b) { losses[b] = points_.loss_of(balls_[b]); });
@@ -178,7 +184,7 @@ class Filling {
 
   std::vector<Sphere> grown(double by) const {
     std::vector<Sphere> balls = balls_;
-    for (Sphere& ball : balls) ball.radius = std::max(1e-3 * ball.radius, ball.radius + by);
+    for (Sphere& ball : balls) ball.radius = std::max({1e-3 * ball.radius, options_.min_radius, ball.radius + by});
     return balls;
   }
 

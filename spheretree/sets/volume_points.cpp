@@ -20,7 +20,8 @@ double squared(double x) { return x * x; }
 
 }  // namespace
 
-VolumePoints::VolumePoints(const Surface& surface, std::size_t inside, double margin) : box_(surface.bounding_box()) {
+VolumePoints::VolumePoints(const Surface& surface, std::size_t inside, double margin, const WeightField& weights)
+    : box_(surface.bounding_box()) {
   const double room = margin * box_.sizes().maxCoeff();
   box_.min() -= Vector::Constant(room);
   box_.max() += Vector::Constant(room);
@@ -37,12 +38,14 @@ VolumePoints::VolumePoints(const Surface& surface, std::size_t inside, double ma
   sort_into_cells(points, is_inside);
   held_.assign(count, 0);
   worth_.resize(count);
+  weights_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) weights_[i] = weights.at(Point(x_[i], y_[i], z_[i]));
   set_outside_weight(1);
   inside_count_ = static_cast<std::size_t>(std::count(inside_.begin(), inside_.end(), 1));
 }
 
 void VolumePoints::set_outside_weight(double weight) {
-  for (std::size_t i = 0; i < worth_.size(); ++i) worth_[i] = inside_[i] != 0 ? 1 : -weight;
+  for (std::size_t i = 0; i < worth_.size(); ++i) worth_[i] = weights_[i] * (inside_[i] != 0 ? 1 : -weight);
 }
 
 void VolumePoints::sort_into_cells(const std::vector<Point>& points, const std::vector<char>& inside) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "orchard/geometry/surface.h"
+#include "weight_field.h"
 
 namespace orchard::detail {
 
@@ -12,7 +13,8 @@ namespace orchard::detail {
 class VolumePoints {
  public:
   // About `inside` points in the solid, and as many around it as its box has, enlarged by `margin` of its longest side.
-  VolumePoints(const Surface& surface, std::size_t inside, double margin);
+  // `weights`: what a point counts more.
+  VolumePoints(const Surface& surface, std::size_t inside, double margin, const WeightField& weights = {});
 
   std::size_t inside_count() const { return inside_count_; }
   const Box& box() const { return box_; }
@@ -45,7 +47,7 @@ class VolumePoints {
   std::vector<Index> begin_;  // of each cell's points, and one more
   std::vector<double> x_, y_, z_;
   std::vector<char> inside_;
-  std::vector<double> worth_;
+  std::vector<double> weights_, worth_;
   std::vector<std::uint16_t> held_;
   std::size_t inside_count_ = 0, inside_held_ = 0, outside_held_ = 0;
 };

@@ -14,12 +14,16 @@ LevelObjective::LevelObjective(const LevelCost& by, std::span<const LevelBall> s
     : by_(by), bounding_radius_(bounding_radius) {
   if (by_.unit > 0) return;
   by_.unit = 0;
-  for (const LevelBall& ball : start) by_.unit += ball.looseness() / static_cast<double>(start.size());
+  for (const LevelBall& ball : start) by_.unit += weighted_looseness(ball) / static_cast<double>(start.size());
   if (!(by_.unit > 0)) by_.unit = bounding_radius;
 }
 
+double LevelObjective::weighted_looseness(const FittedBall& ball) const {
+  return by_.weights == nullptr ? ball.looseness() : ball.looseness() * by_.weights->at(ball.center);
+}
+
 double LevelObjective::cost(const FittedBall& ball) const {
-  const double t = std::max(0.0, ball.looseness()) / by_.unit;
+  const double t = std::max(0.0, weighted_looseness(ball)) / by_.unit;
   double cost = std::pow(t, by_.power);
   if (by_.cap > 0) cost *= 1 + std::pow(t / by_.cap, by_.cap_power);
   if (by_.limit > 0 && ball.looseness() > by_.limit) cost *= kBeyondLimit;

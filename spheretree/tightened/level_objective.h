@@ -2,6 +2,7 @@
 #include <span>
 
 #include "level_balls.h"
+#include "sets/weight_field.h"
 
 namespace orchard::detail {
 
@@ -11,8 +12,9 @@ struct LevelCost {
   double power = 4;
   double cap = 0, cap_power = 8;  // cap 0: none
   double size_power = 0;
-  double limit = 0;  // mesh units; balls that are looser cost a thousand times as much; 0: none
-  double unit = 0;   // mesh units; 0: the mean looseness of the balls that the level starts with
+  double limit = 0;                      // mesh units; balls that are looser cost a thousand times as much; 0: none
+  double unit = 0;                       // mesh units; 0: the mean looseness of the balls that the level starts with
+  const WeightField* weights = nullptr;  // where looseness counts more; nullptr: alike everywhere
 };
 
 // What a level's search is to keep low. It does not change once its unit is known.
@@ -27,6 +29,8 @@ class LevelObjective {
   double unit() const { return by_.unit; }              // of the looseness, mesh units
 
  private:
+  double weighted_looseness(const FittedBall& ball) const;
+
   LevelCost by_;
   double bounding_radius_;
 };

@@ -69,12 +69,13 @@ TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampl
 }
 
 TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSampling& sampling,
-                                        const TightenOptions& options, const Progress& progress) {
+                                        const TightenOptions& options, const Progress& progress,
+                                        const WeightField& weights) {
   const Samples samples = surface_samples(surface, sampling);
   if (samples.size() == 0) throw InputError("a tightened tree needs surface points");
   TightenOptions own = options;
   if (options.effort != Effort::high)
-    return Tightener(surface, samples, surface.bounding_ball(), own, work_for(options.effort), progress).run();
+    return Tightener(surface, samples, surface.bounding_ball(), own, work_for(options.effort), weights, progress).run();
   // The later runs say how far they are in what is left, and never go back.
   double reported = 0;
   const auto share = [&](double from, double to) -> Progress {
@@ -85,7 +86,7 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   };
   const Progress first = share(0, kStandardShare), rest = share(kStandardShare, 1);
   own.effort = Effort::standard;
-  Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), first);
+  Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), weights, first);
   TightenBuild usual = standard.run();
   const SphereTree compared = octree_to_compare_with(surface, options);
   const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, compared, surface);
@@ -93,7 +94,7 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   own.effort = Effort::high;
   // Levels below may have spheres removed above: then those above are left as they are.
   for (Index same = 0; same < usual.report.levels.size();) {
-    Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), rest);
+    Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), weights, rest);
     TightenBuild best = thorough.run_beside(standard, same, allowed, compared);
     const std::vector<LevelLooseness> figures = looseness_by_level(best.tree, compared, surface);
     Index within = 0;

@@ -124,11 +124,11 @@ double mean_times_max(const std::vector<double>& values) {
 }
 
 // Of balls on few samples: their volume stands for what they hold outside.
-double looseness(const LevelSolver& solver) {
+double looseness(const LevelSolver& solver, const WeightField& weights) {
   std::vector<double> values;
   double volume = 0;
   for (const LevelBall& ball : solver.balls()) {
-    values.push_back(ball.looseness());
+    values.push_back(ball.looseness() * weights.at(ball.center));
     volume += ball.radius * ball.radius * ball.radius;
   }
   return mean_times_max(values) * volume;
@@ -148,11 +148,12 @@ std::vector<Index> spheres_by_level(const TightenOptions& options) {
 }  // namespace
 
 Tightener::Tightener(const Surface& surface, const Samples& samples, const Sphere& root, const TightenOptions& options,
-                     const Work& work, const Progress& progress)
+                     const Work& work, const WeightField& weights, const Progress& progress)
     : surface_(surface),
       samples_(samples),
       options_(options),
       work_(work),
+      weights_(weights),
       progress_(progress),
       spheres_(spheres_by_level(options)),
       root_(root),
@@ -193,11 +194,17 @@ void Tightener::restore_from(const Tightener& other, Index level) {
   differs_ = false;
 }
 
+LevelCost Tightener::cost_by(Objective objective, Index level) const {
+  LevelCost cost = cost_for(objective, level, options_.depth);
+  if (!weights_.empty()) cost.weights = &weights_;
+  return cost;
+}
+
 LevelOptions Tightener::options_for(Index level, Index balls) const {
   LevelOptions options;
   options.balls = balls;
   options.max_children = level == 1 ? balls : max_children(options_);
-  options.cost = cost_for(options_.objective, level, options_.depth);
+  options.cost = cost_by(options_.objective, level);
   options.level = level;
   options.seed = options_.seed;
   options.keep_above = *std::max_element(excesses_.begin(), excesses_.end()) > -kCloseCall;
@@ -418,7 +425,7 @@ std::vector<Tightener::Start> Tightener::usual_starts(const LevelOptions& option
   if (options.level > 1 || options_.objective != Objective::balanced) return starts;
   for (Index i = 0; i < std::min(count, kStartsForMaximum); ++i) {
     starts.push_back(starts[i]);
-    starts.back().options.cost = cost_for(Objective::maximum, options.level, options_.depth);
+    starts.back().options.cost = cost_by(Objective::maximum, options.level);
     starts.back().options.cost.limit = options.cost.limit;
     starts.back().kind = 1;
   }
@@ -433,7 +440,7 @@ std::vector<Tightener::Start> Tightener::other_starts(const LevelOptions& option
   const std::vector<LevelBall> cubes = octree_.start(regions, options.balls, options.max_children);
   LevelOptions usual = options, by_maximum = options;
   usual.keep_above = by_maximum.keep_above = true;
-  by_maximum.cost = cost_for(Objective::maximum, options.level, options_.depth);
+  by_maximum.cost = cost_by(Objective::maximum, options.level);
   LevelOptions by_radius = options, by_max_radius = by_maximum;
   by_radius.measure = by_max_radius.measure = BallMeasure::radius;
   std::vector<Start> starts{{usual, cubes, 0}, {by_maximum, {}, 1}, {by_radius, cubes, 2}, {by_max_radius, cubes, 3}};
@@ -471,7 +478,7 @@ std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions opt
     LevelSolver solver(surface_, few, partial.paths(), own);
     solver.search(kExploringTrials * own.balls);
     solver.tighten();
-    starts[i] = {solver.balls(), looseness(solver)};
+    starts[i] = {solver.balls(), looseness(solver, weights_)};
   });
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Tried& a, const Tried& b) { return a.looseness < b.looseness; });

@@ -32,7 +32,7 @@ class Tightener {
  public:
   // Keeps references to all but the root. Samples as surface_samples() gives them.
   Tightener(const Surface& surface, const Samples& samples, const Sphere& root, const TightenOptions& options,
-            const Work& work, const Progress& progress);
+            const Work& work, const WeightField& weights, const Progress& progress);
   TightenBuild run();
   // The same beside another one that has run on the same surface with less work: no level gets looser than allowed,
   // which is what its tree's levels are (as looseness_by_level() has it, beside this octree). Its first levels, as many
@@ -72,6 +72,7 @@ class Tightener {
   void take_tightest(std::vector<Candidate>& all);
   std::optional<LevelOptions> next_level(Index level) const;
   LevelOptions options_for(Index level, Index balls) const;
+  LevelCost cost_by(Objective objective, Index level) const;
   void add_candidates(std::vector<Start> starts, std::vector<Candidate>& all);
   void add_other_candidates(const LevelOptions& options, std::vector<Candidate>& all);
   static Candidate& tightest(std::vector<Candidate>& all);
@@ -92,6 +93,7 @@ class Tightener {
   const Samples& samples_;
   const TightenOptions& options_;
   const Work work_;
+  const WeightField& weights_;
   const Progress& progress_;
   std::vector<Index> spheres_;  // that each level may have
   Sphere root_;

@@ -46,6 +46,12 @@ TEST(Audit, ReadsTheSameSpheresInEveryFormat) {
       {"a.xrdf",
        "geometry:\n  g:\n    spheres:\n      link:\n        - {center: [0, 0, 0], radius: 0.8666}\n        - {center: "
        "[0, 0, 1], radius: 0.25}\n"},
+      {"a.urdf",
+       "<?xml version='1.0'?>\n<robot name=\"r\"><!-- <link name='x'> -->\n<link "
+       "name=\"link\"><visual><geometry><sphere "
+       "radius='9'/></geometry></visual>\n<collision><geometry><sphere radius=\"0.8666\"/></geometry></collision>"
+       "<collision><origin rpy='0 0 1' xyz=' 0 0\t1'/><geometry><sphere radius='0.25'/></geometry></collision></link>"
+       "<link name='empty'/></robot>\n"},
       {"a.ply",
        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty "
        "float radius\nend_header\n0 0 0 0.8666\n0 0 1 0.25\n"},
@@ -112,6 +118,18 @@ TEST(Audit, NamesFileAndLineOfWhatItCannotRead) {
       {"bad.json", "[\n[0,0,0,1],\n[0,0", "bad.json, line 3"},
       {"nan.yml", "collision_spheres:\n  l:\n    - center: [0, 0, .nan]\n      radius: 1\n", "nan.yml, line 3"},
       {"bad.yml", "collision_spheres:\n  l:\n    - center: [0, 0]\n", "bad.yml, line 3"},
+      {"bad.urdf", "<robot>\n<link name='a'>\n<collision></link></robot>", "bad.urdf, line 3"},
+      {"number.urdf",
+       "<robot><link name='a'><collision>\n<origin xyz='0 0'/>\n<geometry><sphere radius='1'/></geometry></collision>"
+       "</link></robot>",
+       "number.urdf, line 2"},
+      {"infinite.urdf",
+       "<robot><link><collision><geometry>\n<sphere radius='inf'/></geometry></collision></link></robot>",
+       "infinite.urdf, line 2"},
+      {"other.urdf", "<mujoco/>", "other.urdf, line 1"},
+      {"endless.urdf", "<robot><link name='a\n", "endless.urdf, line 1"},
+      {"masses.json", R"({"centers":[[0,0,0]],"radii":[1],"masses":[1,2]})", "masses.json"},
+      {"mass.json", R"({"centers":[[0,0,0]],"radii":[1],"masses":[-1]})", "mass.json"},
       {"empty.txt", "# nothing\n", "empty.txt"},
       {"what.dat", "0 0 0 1\n", "what.dat"}};
   for (const auto& [file, text, where] : files) {
@@ -129,6 +147,21 @@ TEST(Audit, AsksForTheLinkWhereThereAreSeveral) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("arm, hand"), std::string::npos) << run.err;
   EXPECT_EQ(cube.run("two.json", two, {"--link", "arm"}).exit_code, 0);
+}
+
+TEST(Audit, JudgesMassesWhereAFileHasThem) {
+  const Cube cube;
+  // Two masses of 1 and 3 at distance 4: the centre is 1 from the heavy one, and the inertia across is 1 * 9 + 3 * 1
+  // and the balls' own.
+  const json set =
+      cube.first_set("m.json", R"({"centers":[[-3,0,0],[1,0,0],[0,0,0]],"radii":[0.5,0.5,0],"masses":[1,3,5]})");
+  const json& body = set["particles"];
+  EXPECT_EQ(body["mass"], 4);
+  EXPECT_NEAR(body["mass_center"][0].get<double>(), 0, 1e-12);
+  EXPECT_NEAR(body["inertia"][1][1].get<double>(), 12 + 0.4 * 4 * 0.25, 1e-12);
+  EXPECT_NEAR(body["inertia"][0][0].get<double>(), 0.4 * 4 * 0.25, 1e-12);
+  EXPECT_EQ(body["largest_overlap"], 0);
+  EXPECT_FALSE(cube.first_set("no.txt", "0 0 0 1\n").contains("particles"));
 }
 
 }  // namespace

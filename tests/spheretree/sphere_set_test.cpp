@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 
 #include "orchard/geometry/error.h"
 #include "support.h"
@@ -76,9 +77,67 @@ TEST(SphereSet, TakesTheFewestSpheresForAnError) {
   EXPECT_LE(enough.audit.beside_solid->volume.outside.value, 1.6 * surface.report().volume);
   EXPECT_LT(enough.spheres.size(), 6);
   options.volume_error = 1e-3;
+  options.find_enough = false;
   const SphereSetBuild best = build_sphere_set(surface, options);
   EXPECT_FALSE(best.error_reached);
+  EXPECT_FALSE(best.enough);
   EXPECT_EQ(best.spheres.size(), 6);
+}
+
+TEST(SphereSet, SaysHowManySpheresWouldDo) {
+  const Surface surface(l_shape());
+  SphereSetOptions options{.fit = SphereFit::inside, .spheres = 2, .volume_error = 0.3, .effort = Effort::low};
+  const SphereSetBuild few = build_sphere_set(surface, options);
+  EXPECT_FALSE(few.error_reached);
+  ASSERT_TRUE(few.enough);
+  options.spheres = *few.enough;
+  EXPECT_TRUE(build_sphere_set(surface, options).error_reached);
+  options.volume_error = 1e-6;
+  EXPECT_FALSE(build_sphere_set(surface, options).enough);
+}
+
+TEST(SphereSet, HasNoSphereBelowTheSmallestRadius) {
+  const Surface surface(l_shape());
+  for (const SphereFit fit : {SphereFit::cover, SphereFit::inside, SphereFit::balanced}) {
+    const SphereSetBuild set =
+        build_sphere_set(surface, {.fit = fit, .spheres = 15, .min_radius = 0.3, .effort = Effort::low});
+    EXPECT_EQ(set.spheres.size(), 15);
+    EXPECT_TRUE(set.kept);
+    EXPECT_GE(set.spheres.back().radius, 0.3);
+  }
+  // None so large lies in an arm of width 1.
+  const SphereSetBuild none = build_sphere_set(
+      surface,
+      {.fit = SphereFit::inside, .spheres = 3, .min_radius = 0.8, .effort = Effort::low, .find_enough = false});
+  EXPECT_FALSE(none.kept);
+  EXPECT_EQ(none.spheres.size(), 3);
+}
+
+// How far the set sticks out, in the mean over its spheres with a centre where x is small or large.
+std::array<double, 2> looseness_by_side(const Surface& surface, const SphereSetBuild& set, double border) {
+  std::array<double, 2> sum{0, 0}, count{0, 0};
+  for (const Sphere& ball : set.spheres) {
+    const std::size_t side = ball.center.x() < border ? 0 : 1;
+    sum[side] += surface.signed_distance(ball.center) + ball.radius;
+    ++count[side];
+  }
+  return {sum[0] / count[0], sum[1] / count[1]};
+}
+
+TEST(SphereSet, IsTighterWhereItsLoosenessCountsMore) {
+  const Surface surface(box(Point(0, 0, 0), Point(4, 1, 1)));
+  const Box right(Point(2, 0, 0), Point(4, 1, 1));
+  SphereSetOptions options{.spheres = 16, .effort = Effort::low};
+  const std::array<double, 2> usual = looseness_by_side(surface, build_sphere_set(surface, options), 2);
+  options.weights.regions = {{right, 8}};
+  const SphereSetBuild weighted = build_sphere_set(surface, options);
+  EXPECT_TRUE(weighted.kept);
+  const std::array<double, 2> by_region = looseness_by_side(surface, weighted, 2);
+  EXPECT_LT(by_region[1] / by_region[0], 0.8 * usual[1] / usual[0]);
+  options.weights.regions.clear();
+  for (const Point& vertex : surface.mesh().vertices) options.weights.of_vertices.push_back(vertex.x() > 2 ? 8 : 1);
+  const std::array<double, 2> by_vertex = looseness_by_side(surface, build_sphere_set(surface, options), 2);
+  EXPECT_LT(by_vertex[1] / by_vertex[0], 0.8 * usual[1] / usual[0]);
 }
 
 TEST(SphereSet, RefusesWhatIsOutOfRangeOrOfNoUse) {
@@ -89,6 +148,8 @@ TEST(SphereSet, RefusesWhatIsOutOfRangeOrOfNoUse) {
   EXPECT_THROW(build_sphere_set(surface, {.fit = SphereFit::inside, .padding = 1}), InputError);
   EXPECT_THROW(build_sphere_set(surface, {.fit = SphereFit::balanced, .solid = true}), InputError);
   EXPECT_THROW(build_sphere_set(Surface(open_box())), InputError);
+  EXPECT_THROW(build_sphere_set(surface, {.weights = {.regions = {{Sphere{Point::Zero(), 1}, 0}}}}), InputError);
+  EXPECT_THROW(build_sphere_set(surface, {.weights = {.of_vertices = {1, 1}}}), InputError);
 }
 
 // Balls along all edges and faces of a cube, and none in its middle.
@@ -109,15 +170,6 @@ TEST(CoversSolid, SeesAVoidThatNoPointOfTheSurfaceTellsOf) {
   EXPECT_FALSE(covers_solid(cube, balls));  // its corners are 0.0994 away
   balls.back().radius = 0.1;
   EXPECT_TRUE(covers_solid(cube, balls));
-}
-
-TEST(TreeOver, HoldsItsSpheresAndTheBoundingBall) {
-  const std::vector<Sphere> balls{{Point(2, 0, 0), 1}, {Point(0, 0, 0), 0.5}};
-  const SphereTree tree = tree_over(balls, {Point::Zero(), 1});
-  validate(tree);
-  ASSERT_EQ(tree.nodes.size(), 3);
-  EXPECT_GE(tree.nodes[0].sphere.radius, 3);
-  EXPECT_EQ(tree.depth(), 1);
 }
 
 }  // namespace

@@ -11,5 +11,7 @@ namespace orchard {
 // Error if the tree has no root, is too large, or has a ball that is out of the run-time's range, which no ball near a
 // mesh of a usable size is (mesh.h).
 runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface);
+// The same of balls alone: around the root's centre, without triangles.
+runtime::PackedSphereTree pack(const SphereTree& tree);
 
 }  // namespace orchard

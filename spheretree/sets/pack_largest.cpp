@@ -1,0 +1,133 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filling.h"
+#include "orchard/geometry/random.h"
+#include "overlap.h"
+#include "packing.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr std::uint64_t kStage = 6700;  // of the random numbers
+constexpr std::size_t kLeastPlaces = 6000, kPlacesPerBall = 25;
+constexpr std::size_t kMostTried = 40;  // points of the box for each place, however thin the solid
+// Powers of 1 / 1.2207.., as of VolumePoints.
+constexpr double kStepX = 0.8191725133961645, kStepY = 0.6710436067037893, kStepZ = 0.5497004779019703;
+constexpr int kFirstTrials = 24, kLaterTrials = 12;  // for each ball, where it is placed and in each sweep after
+constexpr int kSweeps = 6;
+constexpr double kFirstStep = 0.3, kLeastStep = 1e-3, kShorter = 0.8;  // of the radius
+
+double fraction(double x) { return x - std::floor(x); }
+
+// Where overlaps are allowed, a ball that was made smaller for one may be too small beside an earlier one.
+bool keeps_apart(const Sphere& ball, Index own, double overlap, const std::vector<Sphere>& balls) {
+  for (Index b = 0; overlap > 0 && b < balls.size(); ++b)
+    if (b != own && overlap_share(ball, balls[b]) > overlap) return false;
+  return true;
+}
+
+// A place where another ball is too near for any ball has a radius of 0 from then on.
+void limit(Sphere& place, const Sphere& ball, double overlap) {
+  if (!(place.radius > 0)) return;
+  const double distance = (place.center - ball.center).norm();
+  if (distance < place.radius + ball.radius)
+    place.radius = allowed_radius(distance, ball.radius, overlap, place.radius);
+}
+
+class LargestFirst {
+ public:
+  LargestFirst(const Surface& surface, const std::vector<Sphere>& places, double cap, const PackingOptions& options,
+               const Progress& progress)
+      : surface_(surface), cap_(cap), options_(options), progress_(progress), places_(places) {
+    for (Sphere& place : places_) place.radius = std::min(place.radius, cap);
+  }
+
+  std::vector<Sphere> run() {
+    while (balls_.size() < options_.balls && place_one())
+      report_progress(progress_, "packing", 0.5 * static_cast<double>(balls_.size()) / options_.balls);
+    const int sweeps = kSweeps * options_.rounds;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      report_progress(progress_, "packing", 0.5 + 0.5 * sweep / sweeps);
+      for (Index b = 0; b < balls_.size(); ++b)
+        climb(balls_[b], b, kLaterTrials, Random(options_.seed, kStage + 1 + static_cast<std::uint64_t>(sweep), b));
+    }
+    return balls_;
+  }
+
+ private:
+  bool place_one() {
+    const auto largest = std::max_element(places_.begin(), places_.end(),
+                                          [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+    if (largest == places_.end() || !(largest->radius > 0) || largest->radius < options_.least_radius) return false;
+    Sphere ball = *largest;
+    climb(ball, kNone, kFirstTrials, Random(options_.seed, kStage, balls_.size()));
+    balls_.push_back(ball);
+    tbb::parallel_for(std::size_t{0}, places_.size(),
+                      [&](std::size_t i) { limit(places_[i], ball, options_.overlap); });
+    return true;
+  }
+
+  // Moves a ball to where it may be larger; `own`: its number, if it is in the set.
+  void climb(Sphere& ball, Index own, int trials, Random random) const {
+    double step = kFirstStep;
+    for (int trial = 0; trial < trials && ball.radius < cap_; ++trial) {
+      const Vector by(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      Sphere to = inscribed_ball(surface_, ball.center + step * ball.radius * by);
+      to.radius = std::min(to.radius, cap_);
+      for (Index b = 0; b < balls_.size() && to.radius > ball.radius; ++b)
+        if (b != own) limit(to, balls_[b], options_.overlap);
+      if (to.radius > ball.radius && keeps_apart(to, own, options_.overlap, balls_))
+        ball = to;
+      else
+        step = std::max(kLeastStep, kShorter * step);
+    }
+  }
+
+  const Surface& surface_;
+  const double cap_;
+  const PackingOptions& options_;
+  const Progress& progress_;
+  std::vector<Sphere> places_, balls_;
+};
+
+}  // namespace
+
+std::vector<Sphere> places_in(const Surface& surface, const PackingOptions& options) {
+  const std::size_t wanted = std::max(kLeastPlaces, kPlacesPerBall * options.balls);
+  const Box& box = surface.bounding_box();
+  std::vector<Sphere> places;
+  for (std::size_t tried = 0; places.size() < wanted && tried < kMostTried * wanted;) {
+    std::vector<Sphere> some(wanted);
+    tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
+      const double n = static_cast<double>(tried + i);
+      const Vector at(fraction(0.5 + n * kStepX), fraction(0.5 + n * kStepY), fraction(0.5 + n * kStepZ));
+      const Point point = box.min() + box.sizes().cwiseProduct(at);
+      if (surface.winding_number(point) > 0) some[i] = inscribed_ball(surface, point);
+    });
+    for (const Sphere& place : some)
+      if (place.radius > 0 && places.size() < wanted) places.push_back(place);
+    tried += wanted;
+  }
+  const std::vector<Sphere> largest = inscribed_balls(surface, static_cast<Index>(wanted / 4), options.seed);
+  places.insert(places.end(), largest.begin(), largest.end());
+  return places;
+}
+
+std::vector<Sphere> pack_largest(const Surface& surface, const std::vector<Sphere>& places, double cap,
+                                 const PackingOptions& options, const Progress& progress) {
+  return LargestFirst(surface, places, cap, options, progress).run();
+}
+
+void grow_in_place(const Surface& surface, const PackingOptions& options, std::vector<Sphere>& balls) {
+  for (Index own = 0; own < balls.size(); ++own) {
+    Sphere grown = inscribed_ball(surface, balls[own].center);
+    for (Index b = 0; b < balls.size() && grown.radius > balls[own].radius; ++b)
+      if (b != own) limit(grown, balls[b], options.overlap);
+    if (grown.radius > balls[own].radius && keeps_apart(grown, own, options.overlap, balls)) balls[own] = grown;
+  }
+}
+
+}  // namespace orchard::detail
