@@ -18,7 +18,7 @@ export class Chart {
     context.scale(ratio, ratio);
     const lines = series.map(({ values, color }) => ({ color, values: means(values, mean) }));
     const style = getComputedStyle(document.documentElement);
-    const low = 0.001, high = 1, left = 44, right = width - 4, top = 8, bottom = height - 10;
+    const low = 0.001, high = 2, left = 44, right = width - 4, top = 8, bottom = height - 10;
     const y = (ms: number) => bottom - ((Math.log(Math.max(ms, low)) - Math.log(low)) / (Math.log(high) - Math.log(low))) * (bottom - top);
     context.font = "11px Inter, system-ui, sans-serif";
     context.textBaseline = "middle";

@@ -51,15 +51,22 @@ export class CollideView {
     if (this.#spheres) this.#group.remove(this.#spheres[0]);
     this.#spheres = undefined;
     this.#shownLevel = -1;
-    this.#body.position.set(0.62 * (a.reach + b.reach), 0, 0);
-    this.#body.quaternion.copy(new Quaternion().setFromAxisAngle(new Vector3(0.2, 1, 0.1).normalize(), 0.6));
+    this.#body.quaternion.setFromAxisAngle(new Vector3(0.2, 1, 0.1).normalize(), 0.6);
+    this.#body.position.copy(a.center).sub(b.center.clone().applyQuaternion(this.#body.quaternion));
+    this.#body.position.x += a.reach + b.reach;
+    for (let step = 0; step < 20; ++step) {  // near: nearer by less than the distance, again and again
+      const { lower } = this.#pair.distance(identity(), this.#pose(), 0.1);
+      this.#body.position.x -= Math.max(lower - 0.05 * a.reach, 0);
+    }
     if (this.#active) this.activate();
   }
   activate(): void {
     this.#active = true;
     this.stage.animate(undefined);
     if (this.#models) {
-      this.stage.look(1.25 * (this.#models[0].reach + 0.5 * this.#models[1].reach), new Vector3(0.25, 0.4, 1));
+      const [a, b] = this.#models, other = b.center.clone().applyQuaternion(this.#body.quaternion).add(this.#body.position);
+      const middle = a.center.clone().add(other).multiplyScalar(0.5);
+      this.stage.look(0.82 * (Math.max(a.reach, b.reach) + 0.5 * other.distanceTo(a.center)), middle, new Vector3(0.2, 0.35, 1));
       this.#ask();
     }
     this.stage.set(this.#group, true);
@@ -190,7 +197,8 @@ export class CollideView {
       mesh.instanceColor!.needsUpdate = true;
       material.transparent = true;
       material.depthWrite = false;
-      material.opacity = exact ? 0.1 : level === 0 ? 0.16 : 0.3;
+      material.opacity = level === 0 ? 0.16 : 0.3;
+      mesh.visible = !exact;
     }
   }
 

@@ -39,8 +39,8 @@ export class CrowdView {
     this.#world?.free();
     this.#group.clear();
     this.#recent.length = this.#steps = 0;
-    this.#world = new CrowdWorld(this.orchard, model.tree, model.reach);
-    this.#mesh = new InstancedMesh(model.geometry, new MeshStandardMaterial({ roughness: 0.8 }), COUNT);
+    this.#world = new CrowdWorld(this.orchard, model.tree, model.center.toArray(), model.reach);
+    this.#mesh = new InstancedMesh(model.geometry!.clone().translate(...model.center.clone().negate().toArray()), new MeshStandardMaterial({ roughness: 0.8 }), COUNT);
     const box = new EdgesGeometry(new BoxGeometry(1, 1, 1));
     this.#frame = new LineSegments(box, new LineBasicMaterial());
     this.#frame.scale.setScalar(2 * this.#world.half);
@@ -50,7 +50,7 @@ export class CrowdView {
   activate(): void {
     this.#active = true;
     if (!this.#world) return;
-    this.stage.look(1.2 * this.#world.half, new Vector3(0.8, 0.35, 1));
+    this.stage.look(1.42 * this.#world.half, new Vector3(), new Vector3(0.62, 0.3, 1));
     this.stage.animate(this.#paused ? undefined : () => this.#step());
     this.#place();
     this.stage.set(this.#group, true);

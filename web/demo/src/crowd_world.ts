@@ -1,4 +1,4 @@
-import { BroadPhase, Detector, MOTION, STATE, type Body, type Frame, type Orchard, type Tree } from "orchard-runtime";
+import { BroadPhase, Detector, MOTION, poseOf, STATE, type Body, type Frame, type Orchard, type Tree } from "orchard-runtime";
 import { NaiveHash } from "./hash.js";
 
 export const COUNT = 1000;
@@ -45,13 +45,14 @@ export class CrowdWorld {
   readonly #broadBodies: Body[] = [];
   #time = 0;
 
-  constructor(orchard: Orchard, tree: Tree, readonly radius: number) {
-    this.half = 13 * radius;
+  /** `center` and `radius`: a ball that holds the tree's body. */
+  constructor(orchard: Orchard, tree: Tree, center: readonly number[], readonly radius: number) {
+    this.half = 18 * radius;
     const draw = random(1995), signed = () => 2 * draw() - 1;
     for (let i = 0; i < COUNT; ++i) {
       for (let k = 0; k < 3; ++k) {
         this.#origins[3 * i + k] = signed() * (this.half - radius);
-        this.#velocities[3 * i + k] = signed() * 1.6 * radius;
+        this.#velocities[3 * i + k] = signed() * 2.4 * radius;
       }
       const axis = [signed(), signed(), signed()], length = Math.hypot(...axis) || 1;
       this.#axes.set(axis.map((x) => x / length), 3 * i);
@@ -64,9 +65,10 @@ export class CrowdWorld {
       for (let i = 0; i < bodies.length; ++i) this.#state(time, bodies[i]!, states, 23 * i);
     });
     const shape = this.#detector.addTree(tree);
+    const part = { shape, local: poseOf(orchard, { translation: center.map((x) => -x) }) };
     for (let i = 0; i < COUNT; ++i) {
       this.#broadBodies.push(this.#broad.add());
-      this.#bodies.push(this.#detector.addBody(shape, { reach: radius }));
+      this.#bodies.push(this.#detector.addBody([part]));
     }
     this.#move();
   }

@@ -48,7 +48,7 @@ export class LevelsView {
   }
   activate(): void {
     this.stage.animate(undefined);
-    if (this.#model) this.stage.look(this.#model.reach);
+    if (this.#model) this.stage.look(this.#model.reach, this.#model.center);
     this.stage.set(this.#group, true);
   }
   deactivate(): void {

@@ -9,8 +9,8 @@ import { Stage } from "./stage.js";
 type ViewName = "levels" | "collide" | "crowd";
 const NAMES: readonly ViewName[] = ["levels", "collide", "crowd"];
 const HINTS: Record<ViewName, string> = {
-  levels: "Drag to turn, scroll or pinch to come nearer. Keys: arrows, + and −.",
-  collide: "Drag the green body onto the other. Keys: arrows and Page Up, Page Down move it, Q E W S turn it.",
+  levels: "Drag to turn, scroll or pinch to come nearer.<span> Keys: arrows, + and −.</span>",
+  collide: "Drag the green body onto the other.<span> Keys: arrows and Page Up, Page Down move it, Q E W S turn it.</span>",
   crowd: "Red: in contact now. Drag to turn.",
 };
 
@@ -40,6 +40,7 @@ class Demo {
     if (select) this.#views.levels.show(model);
   }
   start(): void {
+    byId<HTMLSelectElement>("body-b").value = this.#models[1]!.name;
     this.#collide();
     this.go(NAMES.find((name) => `#${name}` === location.hash) ?? "levels");
     byId("loading").hidden = true;
@@ -54,7 +55,7 @@ class Demo {
       tab.tabIndex = shown ? 0 : -1;
       byId(name).hidden = !shown;
     }
-    byId("hint").textContent = HINTS[view];
+    byId("hint").innerHTML = HINTS[view];
     history.replaceState(null, "", `#${view}`);
     if (view === "crowd" && !this.#crowdStarted) {
       this.#crowdStarted = true;

@@ -1,7 +1,7 @@
 import { Tree, type Orchard } from "orchard-runtime";
 import {
-  BufferAttribute, BufferGeometry, Color, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial, SphereGeometry, DoubleSide,
+  Box3, BufferAttribute, BufferGeometry, Color, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial, SphereGeometry, Vector3, DoubleSide,
 } from "three";
 import { readMedialAxis, thicknessOf, type MedialAxis } from "./medial.js";
 import { LINES, NONE, sheetColor, viridis } from "./palette.js";
@@ -12,7 +12,8 @@ export interface Model {
   tree?: Tree;
   geometry?: BufferGeometry;
   axis?: MedialAxis;
-  /** The radius of a ball around the origin that holds all of it. */
+  /** A ball that holds all of it. */
+  center: Vector3;
   reach: number;
 }
 
@@ -36,7 +37,7 @@ export async function loadFile(orchard: Orchard, file: File): Promise<Model> {
   if (/\.ma(_dup|_struct)?$/i.test(file.name)) {
     const axis = readMedialAxis(new TextDecoder().decode(bytes));
     if (axis.radii.length === 0) throw new Error("It holds no ball.");
-    return { name: file.name, axis, reach: reachOf(axis.centers, axis.radii) };
+    return { name: file.name, axis, ...ballAround(axis.centers, axis.radii) };
   }
   if (!/\.orchard$/i.test(file.name)) {
     throw new Error("This page reads .orchard files (orchard build MESH -o DIR makes one) and .ma files (orchard medial MESH -o DIR).");
@@ -52,15 +53,18 @@ function modelOfTree(orchard: Orchard, name: string, bytes: Uint8Array): Model {
   geometry.setIndex(new BufferAttribute(triangles, 1));
   const flat = geometry.toNonIndexed();
   flat.computeVertexNormals();
-  return { name, tree, geometry: flat, reach: reachOf(vertices) };
+  return { name, tree, geometry: flat, ...ballAround(vertices) };
 }
 
-function reachOf(centers: ArrayLike<number>, radii?: ArrayLike<number>): number {
+/** Around the middle of the box. */
+function ballAround(points: ArrayLike<number>, radii?: ArrayLike<number>): { center: Vector3; reach: number } {
+  const box = new Box3(), point = new Vector3();
+  const at = (i: number) => point.set(points[3 * i]!, points[3 * i + 1]!, points[3 * i + 2]!);
+  for (let i = 0; 3 * i < points.length; ++i) box.expandByPoint(at(i));
+  const center = box.getCenter(new Vector3());
   let reach = 0;
-  for (let i = 0; 3 * i < centers.length; ++i) {
-    reach = Math.max(reach, Math.hypot(centers[3 * i]!, centers[3 * i + 1]!, centers[3 * i + 2]!) + (radii?.[i] ?? 0));
-  }
-  return reach;
+  for (let i = 0; 3 * i < points.length; ++i) reach = Math.max(reach, at(i).distanceTo(center) + (radii?.[i] ?? 0));
+  return { center, reach };
 }
 
 /** The spheres of a level, by how far each reaches beyond the solid: from dark to light up to `most`. */

@@ -47,14 +47,14 @@ export class Stage {
     this.draw();
   }
 
-  /** Looks at the ball around the origin of this radius, from a little above. */
-  look(radius: number, from = new Vector3(0.75, 0.42, 1)): void {
+  /** Looks at a ball, from a little above. */
+  look(radius: number, center = new Vector3(), from = new Vector3(0.75, 0.42, 1)): void {
     const half = Math.tan((this.camera.fov / 2) * (Math.PI / 180)) * Math.min(1, this.camera.aspect);
-    this.camera.position.copy(from).normalize().multiplyScalar((1.12 * radius) / half);
+    this.camera.position.copy(from).normalize().multiplyScalar((1.12 * radius) / half).add(center);
     this.camera.near = radius / 100;
     this.camera.far = radius * 40;
     this.camera.updateProjectionMatrix();
-    this.controls.target.set(0, 0, 0);
+    this.controls.target.copy(center);
     this.controls.update();
     this.draw();
   }
