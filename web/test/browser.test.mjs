@@ -108,7 +108,7 @@ test("arrow keys move the second body onto the first, and the answer goes down t
     assert.equal(rows.at(-1)[1], "yes");
     assert.equal(rows[0][1], "maybe");
     const pairs = rows.map((row) => Number(row[3].replace(/,/g, "")));
-    assert.deepEqual(pairs, pairs.toSorted((a, b) => a - b));
+    assert.deepEqual(pairs, [...pairs].sort((a, b) => a - b));
     await slide(page, "#budget", 0);
     assert.equal(await text(page, "#answer strong"), "Maybe");
     assert.match(await text(page, "#answer span"), /at most .* apart/);

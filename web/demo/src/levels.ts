@@ -18,7 +18,7 @@ export class LevelsView {
     stage.scene.add(this.#group);
     this.#level.addEventListener("input", () => this.#update());
     for (const id of ["show-spheres", "show-mesh", "show-axis"]) byId(id).addEventListener("change", () => this.#update());
-    document.querySelectorAll("[name=axis-color]").forEach((input) => input.addEventListener("change", () => {
+    document.querySelectorAll("[name=axis-color]").forEach((input) => input.addEventListener("click", () => {
       byId<HTMLInputElement>("show-axis").checked = true;
       if (this.#model?.tree) byId<HTMLInputElement>("show-spheres").checked = false;
       this.#update();
