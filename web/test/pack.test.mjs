@@ -31,6 +31,14 @@ const PROGRAM = `
   console.log(verdict.answer, pair.distance(identity(), poseOf(orchard, { translation: [3, 0, 0] })).upper, verdictAt(rows).answer);
 `;
 
+/** Compiles a program in the folder; throws what the compiler says of it. */
+async function check(name, program) {
+  await writeFile(join(folder, name), program);
+  await writeFile(join(folder, "tsconfig.json"), JSON.stringify({ files: [name],
+    compilerOptions: { strict: true, target: "es2022", module: "nodenext", types: [], lib: ["es2022", "dom"] } }));
+  run(folder, process.execPath, here("../node_modules/typescript/bin/tsc"));
+}
+
 test("it holds the modules, the types, the licence and a page to read, and nothing of the demo", () => {
   for (const path of ["dist/browser.js", "dist/browser.d.ts", "dist/single.js", "dist/orchard-pairs-simd.wasm",
     "dist/orchard-worlds-plain.wasm", "LICENSE", "README.md", "package.json"]) assert.ok(files.includes(path), path);
@@ -38,16 +46,13 @@ test("it holds the modules, the types, the licence and a page to read, and nothi
 });
 
 test("a program in TypeScript is checked against its types, and runs in Node", async () => {
-  await writeFile(join(folder, "program.ts"), PROGRAM);
-  run(folder, process.execPath, here("../node_modules/typescript/bin/tsc"), "--strict", "--target", "es2022", "--module",
-    "nodenext", "--types", "", "--lib", "es2022,dom", "program.ts");
+  await check("program.ts", PROGRAM);
   assert.match(run(folder, process.execPath, "program.js"), /^no 1(\.0+\d*)? yes\n$/);
 });
 
 test("a wrong program is refused by the types", async () => {
-  await writeFile(join(folder, "wrong.ts"), PROGRAM.replace("{ tests: 1000 }", "{ test: 1000 }"));
-  assert.throws(() => run(folder, process.execPath, here("../node_modules/typescript/bin/tsc"), "--noEmit", "--strict",
-    "--target", "es2022", "--module", "nodenext", "--types", "", "--lib", "es2022,dom", "wrong.ts"), (e) => /'test' does not exist/.test(e.stdout));
+  await assert.rejects(check("wrong.ts", PROGRAM.replace("{ tests: 1000 }", "{ test: 1000 }")),
+    (error) => /'test' does not exist/.test(error.stdout));
 });
 
 test("a bundle for browsers finds no Node in it, and names the .wasm files as bundlers look for them", async () => {

@@ -1,7 +1,7 @@
 import type { Orchard } from "orchard-runtime";
 import { BoxGeometry, Color, EdgesGeometry, Group, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { Chart } from "./chart.js";
-import { COUNT, CrowdWorld, type StepReport } from "./crowd_world.js";
+import { COUNT, CrowdWorld, TIME_STEP, type StepReport } from "./crowd_world.js";
 import { byId, short } from "./dom.js";
 import type { Model } from "./model.js";
 import { cssColor, type Stage } from "./stage.js";
@@ -20,6 +20,7 @@ export class CrowdView {
   #frame: LineSegments | undefined;
   #paused = false;
   #steps = 0;
+  #last = 0;
   #active = false;
 
   constructor(private readonly stage: Stage, private readonly orchard: Orchard) {
@@ -29,7 +30,7 @@ export class CrowdView {
     byId("pause").addEventListener("click", () => {
       this.#paused = !this.#paused;
       byId("pause").textContent = this.#paused ? "Go on" : "Pause";
-      if (this.#active) stage.animate(this.#paused ? undefined : () => this.#step());
+      if (this.#active) stage.animate(this.#paused ? undefined : () => this.#advance());
     });
     this.#sayBudget();
   }
@@ -40,7 +41,7 @@ export class CrowdView {
     this.#group.clear();
     this.#recent.length = this.#steps = 0;
     this.#world = new CrowdWorld(this.orchard, model.tree, model.center.toArray(), model.reach);
-    this.#mesh = new InstancedMesh(model.geometry!.clone().translate(...model.center.clone().negate().toArray()), new MeshStandardMaterial({ roughness: 0.8 }), COUNT);
+    this.#mesh = new InstancedMesh(model.geometry!.clone().translate(...model.center.clone().negate().toArray()), new MeshStandardMaterial({ roughness: 0.8, flatShading: true }), COUNT);
     const box = new EdgesGeometry(new BoxGeometry(1, 1, 1));
     this.#frame = new LineSegments(box, new LineBasicMaterial());
     this.#frame.scale.setScalar(2 * this.#world.half);
@@ -51,7 +52,7 @@ export class CrowdView {
     this.#active = true;
     if (!this.#world) return;
     this.stage.look(1.42 * this.#world.half, new Vector3(), new Vector3(0.62, 0.3, 1));
-    this.stage.animate(this.#paused ? undefined : () => this.#step());
+    this.stage.animate(this.#paused ? undefined : () => this.#advance());
     this.#place();
     this.stage.set(this.#group, true);
   }
@@ -70,12 +71,19 @@ export class CrowdView {
     byId("crowd-budget-name").textContent = budget === Infinity ? "none" : `${short(budget)} ms a step`;
   }
 
+  /** As many steps as time has passed since the last frame, but for the time that a slow frame takes. */
+  #advance(): void {
+    const now = performance.now();
+    const due = Math.min(Math.max(Math.round((now - this.#last) / (1000 * TIME_STEP)), 1), 8);
+    this.#last = now;
+    for (let i = 0; i < due; ++i) this.#step();
+    this.#place();
+  }
   #step(): void {
     const report = this.#world!.step(this.#budgetMs());
     if (++this.#steps > 2) this.#recent.push(report);  // the first steps build everything
     if (this.#recent.length > 600) this.#recent.shift();
-    this.#place();
-    if (this.#steps % 6 === 0) this.#say();
+    if (this.#steps % 12 === 0) this.#say();
   }
 
   #say(): void {

@@ -81,7 +81,10 @@ export class CrowdWorld {
     this.#bounce();
     const asked = this.#broad.motionsAsked;
     const start = performance.now();
-    const report = this.#broad.advance(this.#time);
+    let overlaps = 0;  // a report is of the first step that has pairs, up to the time, and then of the next one
+    for (let report = this.#broad.advance(this.#time); report.pairs.length > 0; report = this.#broad.advance(this.#time)) {
+      overlaps = report.pairs.length / 2;
+    }
     const bounds = performance.now();
     const hashOverlaps = this.#hash.pairs(this.positions, this.radius);
     const hash = performance.now();
@@ -90,7 +93,7 @@ export class CrowdWorld {
     this.#respond(frame);
     return {
       bounds: bounds - start, hash: hash - bounds, exact: exact - hash,
-      overlaps: report.pairs.length / 2, hashOverlaps, asked: this.#broad.motionsAsked - asked,
+      overlaps, hashOverlaps, asked: this.#broad.motionsAsked - asked,
       contacts: frame.events.filter((e) => e.verdict.answer === "yes" && e.change !== "end").length,
       possible: frame.events.filter((e) => e.change === "possible").length,
     };

@@ -30,7 +30,7 @@ export class LevelsView {
     this.#model = model;
     this.#mesh = this.#axis = this.#spheres = this.#axisColor = undefined;
     if (model.geometry) {
-      this.#mesh = new Mesh(model.geometry, new MeshStandardMaterial({ color: "#b9b6ac", roughness: 0.8, side: DoubleSide }));
+      this.#mesh = new Mesh(model.geometry, new MeshStandardMaterial({ color: "#b9b6ac", roughness: 0.8, flatShading: true, side: DoubleSide }));
       this.#group.add(this.#mesh);
     }
     if (model.tree) this.#level.max = String(model.tree.depth);

@@ -51,9 +51,7 @@ function modelOfTree(orchard: Orchard, name: string, bytes: Uint8Array): Model {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(Float32Array.from(vertices), 3));
   geometry.setIndex(new BufferAttribute(triangles, 1));
-  const flat = geometry.toNonIndexed();
-  flat.computeVertexNormals();
-  return { name, tree, geometry: flat, ...ballAround(vertices) };
+  return { name, tree, geometry, ...ballAround(vertices) };
 }
 
 /** Around the middle of the box. */
@@ -84,7 +82,7 @@ export function sphereMesh(tree: Tree, level: number, most: number): InstancedMe
 }
 
 export function bodyMaterial(color: string): MeshStandardMaterial {
-  return new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0.02, side: DoubleSide });
+  return new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0.02, flatShading: true, side: DoubleSide });
 }
 
 export type AxisColor = "radius" | "thickness" | "structure";
