@@ -123,14 +123,14 @@ ORCHARD_EXPORT(broad_first_hit) int web_broad_first_hit(orchard_broad_phase* wor
   return found;
 }
 ORCHARD_EXPORT(broad_touching_sphere)
-std::size_t
-    web_broad_touching_sphere(orchard_broad_phase* world, const double* row, std::uint32_t* bodies, std::size_t room) {
+std::size_t web_broad_touching_sphere(orchard_broad_phase* world, const double* row, std::uint32_t* bodies,
+                                      std::size_t room) {
   const orchard_query_filter filter = query_filter_of(row + 4);
   return orchard_broad_phase_touching_sphere(world, row, row[3], &filter, bodies, room);
 }
 ORCHARD_EXPORT(broad_touching_box)
-std::size_t
-    web_broad_touching_box(orchard_broad_phase* world, const double* row, std::uint32_t* bodies, std::size_t room) {
+std::size_t web_broad_touching_box(orchard_broad_phase* world, const double* row, std::uint32_t* bodies,
+                                   std::size_t room) {
   const orchard_query_filter filter = query_filter_of(row + 6);
   return orchard_broad_phase_touching_box(world, row, row + 3, &filter, bodies, room);
 }

@@ -240,8 +240,8 @@ ORCHARD_EXPORT(detector_nearest) int web_detector_nearest(orchard_detector* worl
 }
 // Index and generation of each body, up to `room` bodies.
 ORCHARD_EXPORT(detector_touching_sphere)
-std::size_t
-    web_detector_touching_sphere(orchard_detector* world, const double* row, orchard_body* bodies, std::size_t room) {
+std::size_t web_detector_touching_sphere(orchard_detector* world, const double* row, orchard_body* bodies,
+                                         std::size_t room) {
   const orchard_query_filter filter = query_filter_of(row + 4);
   return orchard_detector_touching_sphere(world, row, row[3], &filter, bodies, room);
 }

@@ -8,6 +8,8 @@ import { cssColor, type Stage } from "./stage.js";
 
 /** Steps that a figure is the mean of: a clock of a tenth of a millisecond tells so much about the mean of many. */
 const MEAN = 60;
+/** The first steps build everything, and engines compile what they run. */
+const WARM = 24;
 
 /** 1,000 bodies, and what finding their contacts takes. */
 export class CrowdView {
@@ -81,9 +83,9 @@ export class CrowdView {
   }
   #step(): void {
     const report = this.#world!.step(this.#budgetMs());
-    if (++this.#steps > 2) this.#recent.push(report);  // the first steps build everything
+    if (++this.#steps > WARM) this.#recent.push(report);
     if (this.#recent.length > 600) this.#recent.shift();
-    if (this.#steps % 12 === 0) this.#say();
+    if (this.#steps > WARM && this.#steps % 12 === 0) this.#say();
   }
 
   #say(): void {
