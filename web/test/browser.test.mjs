@@ -192,6 +192,7 @@ test("the answers in the browser are the native ones, bit for bit", async (t) =>
 test("1,000 bodies: overlaps are those of the hash, in milliseconds within the budget", async (t) => {
   await withDemo({ width: 420, height: 500, hash: "#crowd" }, async (page) => {  // few pixels, drawn by software
     await until(page, () => Number(document.querySelector("#crowd-exact").dataset.steps) >= 60);
+    await press(page, "#pause");
     const value = (selector) => page.$eval(selector, (element) => Number(element.dataset.value));
     const figures = { bounds: await value("#crowd-bounds"), hash: await value("#crowd-hash"), exact: await value("#crowd-exact") };
     t.diagnostic(JSON.stringify(figures));
