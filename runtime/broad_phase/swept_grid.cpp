@@ -222,7 +222,7 @@ void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
     const BodyIndex body = batch.large[i];
     const Visit* const end = many_visits_of(body, insertion.boxes[body].whole(), visits.data());
     for (const Visit* visit = visits.data(); visit != end; ++visit) prefetch(&lines_[visit->line]);
-    insert_visits(insertion, std::span(visits.data(), end));
+    insert_visits(insertion, std::span<const Visit>(visits.data(), end));
   }
 }
 

@@ -165,7 +165,8 @@ void PairScheduler::decide_class(std::size_t begin, std::size_t end, StepBudget&
       continue;
     }
     // Until it is the turn of what begins.
-    if (begun_ < schedule_.size()) at_once = std::min(at_once, static_cast<std::size_t>(lead_) / kFirstSlice + 1);
+    if (begun_ < schedule_.size())
+      at_once = std::min<std::size_t>(at_once, static_cast<std::size_t>(lead_) / kFirstSlice + 1);
     for (; begin < std::min(end, begun_) && order_.size() < at_once; ++begin) {
       if (!settled(schedule_[begin])) order_.push_back(schedule_[begin]);
     }

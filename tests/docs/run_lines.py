@@ -30,6 +30,7 @@ NOT_RUN = {
         "tools/docs ..": BY_CI,
         "tools/packages ..": BY_CI,
         "tools/check-runtime ..": BY_CI,
+        "tools/web ..": BY_CI,
         "tools/follow PAGE ..": BY_CI + " with the pages that are followed from first to last",
         ".ci/run ..": "is what every change must pass",
     },
@@ -41,6 +42,11 @@ NOT_RUN = {
     "docs/reference/command-line.md": {
         "orchard view out/lamp/lamp.orchard --window": "needs a screen; viz.Window.DoesWhatItIsTold is at it",
         "orchard completion zsh ..": "writes outside of the folder; Completion.* of the tests of apps read what it says",
+    },
+    "docs/guide/web.md": {
+        "tools/web ..": BY_CI,
+        "cd web ..": "needs what the line before it builds; web/test/pack.test.mjs does it",
+        "cd ../../my-project ..": "is the reader's own; web/test/pack.test.mjs does the same",
     },
     "docs/design/voronoi.md": {"paraview ..": "needs a screen"},
 }
