@@ -53,7 +53,7 @@ ORCHARD_EXPORT(broad_query_time) double web_broad_query_time(orchard_broad_phase
 // Motions asked for, promises found broken, bytes on the heap.
 ORCHARD_EXPORT(broad_counts) void web_broad_counts(orchard_broad_phase* world, double* out) {
   out[0] = static_cast<double>(orchard_broad_phase_motions_asked(world));
-  out[1] = static_cast<double>(orchard_broad_phase_promises_broken(world));
+  out[1] = static_cast<double>(orchard_broad_phase_motion_bound_violations(world));
   out[2] = static_cast<double>(orchard_broad_phase_memory_bytes(world));
 }
 

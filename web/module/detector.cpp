@@ -18,7 +18,7 @@ void put_state(double* to, const orchard_body_state& state) {
   *to++ = state.drift;
   to = put(to, state.half_space, 3);
   *to++ = state.expiry;
-  *to++ = state.turns_promised != 0 ? state.angular_speed : std::nan("");
+  *to++ = state.turns_bounded != 0 ? state.angular_speed : std::nan("");
 }
 
 orchard_body_state state_of(const double* row) {
@@ -29,8 +29,8 @@ orchard_body_state state_of(const double* row) {
   state.drift = row[17];
   std::copy_n(row + 18, 3, state.half_space);
   state.expiry = row[21];
-  state.turns_promised = !std::isnan(row[22]);
-  state.angular_speed = state.turns_promised != 0 ? row[22] : 0;
+  state.turns_bounded = !std::isnan(row[22]);
+  state.angular_speed = state.turns_bounded != 0 ? row[22] : 0;
   return state;
 }
 
