@@ -4,11 +4,11 @@
 #include <numbers>
 #include <optional>
 
-#include "a_number.h"
 #include "add_commands.h"
 #include "axis_export.h"
 #include "command_list.h"
 #include "list_option.h"
+#include "number_validator.h"
 #include "shared_options.h"
 #include "tree_options.h"
 
@@ -37,9 +37,9 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
       ->check(CLI::IsMember({"automatic", "clusters", "neighbors"}));
   command
       .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
-      ->check(ANumber(CLI::Range(0.0, 90.0)));
+      ->check(NumberValidator(CLI::Range(0.0, 90.0)));
   command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [28.6]")
-      ->check(ANumber(CLI::Range(0.0, 180.0)));
+      ->check(NumberValidator(CLI::Range(0.0, 180.0)));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
   add_join(command, sample.join);
 }
@@ -100,7 +100,7 @@ void add_side(CLI::App& command, MedialCommand& medial) {
                               "Of which space: inside the solid, or outside, within a sphere around it [inside]")
                           ->check(CLI::IsMember({"inside", "outside"}));
   command.add_option("--outside-radius", medial.outside_radius, "Of that sphere, in bounding radii")
-      ->check(ANumber(CLI::Range(1.1, 1000.0)))
+      ->check(NumberValidator(CLI::Range(1.1, 1000.0)))
       ->needs(side)
       ->capture_default_str();
 }
@@ -115,7 +115,7 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
       .add_option("--error", medial.few_error,
                   "The same, in as few balls as are this near: percent of the diagonal, two-sided distance between the "
                   "surface and what the balls stand for, as measured at the end")
-      ->check(ANumber(CLI::Range(1e-4, 100.0)))
+      ->check(NumberValidator(CLI::Range(1e-4, 100.0)))
       ->excludes(vertices);
   command
       .add_option(
@@ -133,7 +133,7 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
           "--envelope-cell", medial.envelope_cell,
           "Edge of the cells that surface is cut from, in percent of the diagonal: what is thinner may be lost; "
           "time and size grow with the square of its inverse")
-      ->check(ANumber(CLI::Range(0.01, 50.0)))
+      ->check(NumberValidator(CLI::Range(0.01, 50.0)))
       ->needs(envelope)
       ->capture_default_str();
 }
@@ -142,7 +142,7 @@ void add_angle(CLI::App& command, const std::string& option, double& radians, co
   command
       .add_option_function<double>(
           option, [&radians](double degrees) { radians = degrees * std::numbers::pi / 180; }, help)
-      ->check(ANumber(CLI::Range(most < 180 ? 0.01 : 0.0, most)));
+      ->check(NumberValidator(CLI::Range(most < 180 ? 0.01 : 0.0, most)));
 }
 
 void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
@@ -166,7 +166,7 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
   const auto add_limit = [&](const char* option, std::optional<double>& limit, const char* help) {
-    return command.add_option(option, limit, help)->check(ANumber(CLI::Range(0.0, kMaxCoordinate)));
+    return command.add_option(option, limit, help)->check(NumberValidator(CLI::Range(0.0, kMaxCoordinate)));
   };
   CLI::Option* below = add_limit("--below", thickness.below,
                                  "Say what area is thinner than this, in mesh units, in which places, and how thin");

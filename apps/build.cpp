@@ -12,7 +12,6 @@
 #include "build_plot.h"
 #include "commands.h"
 #include "console.h"
-#include "idle_options.h"
 #include "input_file.h"
 #include "load_solid.h"
 #include "orchard/geometry/atomic_file.h"
@@ -26,6 +25,7 @@
 #include "reading_report.h"
 #include "report.h"
 #include "sphere_lists.h"
+#include "unused_options.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/render.h"
@@ -104,7 +104,7 @@ Destination check(const BuildCommand& command) {
     throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
   std::vector<fs::path> inputs = command.source.files();
   if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
-  refuse_idle_options(command);
+  refuse_unused_options(command);
   require_sizes(command.options);
   tree_options(command);  // whether the numbers fit together
   for (const fs::path& file : inputs) check_input(file);

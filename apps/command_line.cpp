@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "a_number.h"
 #include "add_commands.h"
 #include "command_list.h"
 #include "list_option.h"
+#include "number_validator.h"
 #include "shared_options.h"
 
 namespace orchard::apps {
@@ -77,7 +77,7 @@ void add_view(CLI::App& app, Request& request) {
       ->capture_default_str();
   command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: as the model needs; a window 1000x800)");
   command.add_option("--opacity", view.opacity, "Of meshes, where there is something else to see: 0 to 1")
-      ->check(ANumber(CLI::Range(0.0, 1.0)))
+      ->check(NumberValidator(CLI::Range(0.0, 1.0)))
       ->capture_default_str();
   add_figure(command, view);
   command.add_flag("--window", view.window,

@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "console.h"
 #include "feature_lines.h"
-#include "idle_options.h"
 #include "input_file.h"
 #include "medial_advice.h"
 #include "medial_report.h"
@@ -26,6 +25,7 @@
 #include "promises.h"
 #include "reading_report.h"
 #include "report.h"
+#include "unused_options.h"
 
 namespace orchard::apps {
 namespace {
@@ -82,7 +82,7 @@ Destination check(const MedialCommand& command) {
   check_axis_exports(command);
   if (command.tree && command.sweep.empty())
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
-  refuse_idle_options(command);
+  refuse_unused_options(command);
   check_sweep(command);  // without a sweep, that of the one combination that there is
   inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
   if (!command.features.empty()) inputs.push_back(command.features);

@@ -37,8 +37,8 @@ TuningFlag choice(const char* name, std::vector<std::string> choices, const char
   return {.name = name, .help = help, .standard = choices.front(), .choices = choices, .set = std::move(set)};
 }
 
-TuningFlag idle_where(TuningFlag flag, std::function<std::string(const MedialTuning&)> idle) {
-  flag.idle = std::move(idle);
+TuningFlag unused_where(TuningFlag flag, std::function<std::string(const MedialTuning&)> unused) {
+  flag.unused = std::move(unused);
   return flag;
 }
 
@@ -73,23 +73,24 @@ std::string no_thinning(const T& t) {
 std::string no_refining(const T& t) { return t.refine ? "" : "--refine no (--raw)"; }
 
 std::vector<TuningFlag> point_flags() {
-  return {whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
-                [](T& t, double x) { t.samples = static_cast<Index>(x); }),
-          whole("edge-samples", "a fifth", 0, 1e7,
-                "Of them along edges: more make sheets reach sharp edges, fewer resolve the faces better",
-                [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
-          choice("relaxation", {"automatic", "clusters", "neighbors"},
-                 "Points keep apart within flat clusters (designed parts) or across faces (scans)", set_relaxation),
-          whole("iterations", "40", 0, 1000, "Of relaxation: more even points give smoother sheets",
-                [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
-          real("cluster-angle", "0.0057", 0, 90,
-               "Degrees that a cluster may turn: more treats curved parts as one face without edges",
-               [](T& t, double x) { t.cluster_degrees = x; }),
-          idle_where(real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
-                          [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
-                     no_creases),
-          whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
-                [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
+  return {
+      whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
+            [](T& t, double x) { t.samples = static_cast<Index>(x); }),
+      whole("edge-samples", "a fifth", 0, 1e7,
+            "Of them along edges: more make sheets reach sharp edges, fewer resolve the faces better",
+            [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
+      choice("relaxation", {"automatic", "clusters", "neighbors"},
+             "Points keep apart within flat clusters (designed parts) or across faces (scans)", set_relaxation),
+      whole("iterations", "40", 0, 1000, "Of relaxation: more even points give smoother sheets",
+            [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
+      real("cluster-angle", "0.0057", 0, 90,
+           "Degrees that a cluster may turn: more treats curved parts as one face without edges",
+           [](T& t, double x) { t.cluster_degrees = x; }),
+      unused_where(real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
+                        [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
+                   no_creases),
+      whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
+            [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
 }
 
 std::vector<TuningFlag> diagram_flags() {
@@ -100,17 +101,17 @@ std::vector<TuningFlag> diagram_flags() {
       choice("gaps", {"connected", "loose", "strict", "none"},
              "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts",
              set_gaps),
-      idle_where(real("joined-radius", "0", 0, 1000,
-                      "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
-                      [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
-                 no_repair),
-      idle_where(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
-                       [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
-                 no_repair),
-      idle_where(choice("thin", {"no", "yes"},
-                        "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
-                        [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }),
-                 no_thinning)};
+      unused_where(real("joined-radius", "0", 0, 1000,
+                        "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
+                        [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
+                   no_repair),
+      unused_where(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
+                         [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
+                   no_repair),
+      unused_where(choice("thin", {"no", "yes"},
+                          "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
+                          [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }),
+                   no_thinning)};
 }
 
 std::vector<TuningFlag> axis_flags() {
@@ -136,37 +137,39 @@ std::vector<TuningFlag> refining_flags() {
       choice("refine", {"yes", "no"},
              "Whether balls are made exact and sheets end smoothly, or the axis stays as the diagram has it (--raw)",
              [](T& t, const std::string& text) { t.refine = text == "yes"; }),
-      idle_where(real("border-loss", "0.1", 0, 100,
-                      "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
-                      [](T& t, double x) { t.refinement.border_loss = x / 100; }),
-                 no_refining),
-      idle_where(real("linear-error", "0.05", 1e-4, 100,
-                      "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
-                      [](T& t, double x) { t.refinement.tolerance = x / 100; }),
-                 no_refining),
-      idle_where(
+      unused_where(
+          real("border-loss", "0.1", 0, 100,
+               "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
+               [](T& t, double x) { t.refinement.border_loss = x / 100; }),
+          no_refining),
+      unused_where(real("linear-error", "0.05", 1e-4, 100,
+                        "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
+                        [](T& t, double x) { t.refinement.tolerance = x / 100; }),
+                   no_refining),
+      unused_where(
           whole("reach-rounds", "9", 0, 100,
                 "Times that sheets reach for what they leave open by more than 1.65 border losses: 0 leaves out blunt "
                 "edges and ridges that no point shows",
                 [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
           no_refining),
-      idle_where(real("feature-loss", "0.165", 1e-4, 100,
-                      "Percent of the diagonal: sheets reach to convex edges beyond which so much is lost otherwise",
-                      [](T& t, double x) { t.refinement.feature_loss = x / 100; }),
-                 no_refining),
-      idle_where(real("edge-length", "3", 0.05, 100,
-                      "Percent of the diagonal that edges of the axis are long: less makes more and smaller triangles",
-                      [](T& t, double x) { t.refinement.edge_length = x / 100; }),
-                 no_refining)};
+      unused_where(real("feature-loss", "0.165", 1e-4, 100,
+                        "Percent of the diagonal: sheets reach to convex edges beyond which so much is lost otherwise",
+                        [](T& t, double x) { t.refinement.feature_loss = x / 100; }),
+                   no_refining),
+      unused_where(
+          real("edge-length", "3", 0.05, 100,
+               "Percent of the diagonal that edges of the axis are long: less makes more and smaller triangles",
+               [](T& t, double x) { t.refinement.edge_length = x / 100; }),
+          no_refining)};
 }
 
 std::vector<TuningFlag> open_place_flags() {
   return {
-      idle_where(whole("open-rounds", "1", 0, 20,
-                       "Times that points are added where the surface is left open, and everything is rebuilt: more "
-                       "resolve thin parts, and take longer",
-                       [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
-                 no_refining)};
+      unused_where(whole("open-rounds", "1", 0, 20,
+                         "Times that points are added where the surface is left open, and everything is rebuilt: more "
+                         "resolve thin parts, and take longer",
+                         [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
+                   no_refining)};
 }
 
 std::vector<TuningFlag> report_flags() {

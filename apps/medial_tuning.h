@@ -38,7 +38,7 @@ struct TuningFlag {
   TuningStep step = TuningStep::points;
   std::function<void(MedialTuning&, const std::string&)> set;
   // Which other flag's value leaves this one without effect, as "--gaps none"; empty if none does.
-  std::function<std::string(const MedialTuning&)> idle = {};
+  std::function<std::string(const MedialTuning&)> unused = {};
 
   // Why a value cannot be, without the flag's name; empty if it can.
   std::string fault(const std::string& value) const;

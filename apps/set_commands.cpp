@@ -4,11 +4,11 @@
 #include <numbers>
 #include <optional>
 
-#include "a_number.h"
 #include "add_commands.h"
 #include "axis_export.h"
 #include "command_list.h"
 #include "list_option.h"
+#include "number_validator.h"
 #include "shared_options.h"
 #include "tree_options.h"
 #include "weight_option.h"
@@ -39,20 +39,20 @@ void add_set_options(CLI::App& command, SpheresCommand& spheres) {
           "--error", spheres.error,
           "The fewest spheres with this error, in percent of the diagonal: how far a cover sticks out, how far the "
           "surface is from spheres inside or particles, the mean two-sided distance of balanced ones")
-      ->check(ANumber(CLI::Range(1e-4, 100.0)));
+      ->check(NumberValidator(CLI::Range(1e-4, 100.0)));
   command
       .add_option("--volume-error", spheres.volume_error,
                   "The same by volume, in percent of the solid's: what of a cover lies outside, what spheres inside or "
                   "particles leave out")
-      ->check(ANumber(CLI::Range(1e-3, 1000.0)));
+      ->check(NumberValidator(CLI::Range(1e-3, 1000.0)));
   command.add_flag("--solid", options.solid, "A cover of the whole solid, not of its surface alone");
   command
       .add_option("--padding", options.padding,
                   "A cover of every point up to this far from the surface, in mesh units: added to all radii")
-      ->check(ANumber(CLI::Range(0.0, 1e15)))
+      ->check(NumberValidator(CLI::Range(0.0, 1e15)))
       ->capture_default_str();
   command.add_option("--min-radius", options.min_radius, "No sphere is smaller, in mesh units")
-      ->check(ANumber(CLI::Range(0.0, 1e15)))
+      ->check(NumberValidator(CLI::Range(0.0, 1e15)))
       ->capture_default_str();
   command
       .add_option_function<std::string>(
@@ -94,11 +94,11 @@ void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
   command
       .add_option("--overlap", spheres.overlap,
                   "Particles: how much of the smaller of two spheres may lie in the other, in percent of its volume")
-      ->check(ANumber(CLI::Range(0.0, 100.0)))
+      ->check(NumberValidator(CLI::Range(0.0, 100.0)))
       ->capture_default_str();
   command.add_flag("--equal", options.equal_radii, "Particles: all radii are equal");
   command.add_option("--density", options.density, "Particles: mass over volume, in any unit")
-      ->check(ANumber(CLI::Range(1e-15, 1e15)))
+      ->check(NumberValidator(CLI::Range(1e-15, 1e15)))
       ->capture_default_str();
   command
       .add_option_function<std::string>(
@@ -115,12 +115,12 @@ void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
   command
       .add_option("--center-error", spheres.center_error,
                   "Particles: how far off the centre of mass may be, in percent of the diagonal")
-      ->check(ANumber(CLI::Range(1e-6, 100.0)))
+      ->check(NumberValidator(CLI::Range(1e-6, 100.0)))
       ->capture_default_str();
   command
       .add_option("--inertia-error", spheres.inertia_error,
                   "Particles: how far off the inertia tensor may be at equal mass, in percent")
-      ->check(ANumber(CLI::Range(1e-6, 1000.0)))
+      ->check(NumberValidator(CLI::Range(1e-6, 1000.0)))
       ->capture_default_str();
 }
 
@@ -185,7 +185,7 @@ void add_audit(CLI::App& app, Request& request) {
   command
       .add_option("--buffer", audit.buffer,
                   "Audit the spheres with this much on every radius, too, in place of the file's own buffer")
-      ->check(ANumber(CLI::Range(-1e15, 1e15)));
+      ->check(NumberValidator(CLI::Range(-1e15, 1e15)));
   add_join(command, audit.join);
   auto* folder = command.add_option("-o,--output", audit.folder, "Folder for the views and the report");
   auto* picture =

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "a_number.h"
+#include "number_validator.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::apps {
@@ -47,7 +47,7 @@ CLI::Option* add_join(CLI::App& command, std::optional<double>& join) {
           "--join", join,
           fmt::format("Corners of open edges up to this far apart are one, in bounding radii; 0: none (default: {:g})",
                       tolerance::kJoin))
-      ->check(ANumber(CLI::Range(0.0, kMaxJoin)));
+      ->check(NumberValidator(CLI::Range(0.0, kMaxJoin)));
 }
 
 CLI::Option* add_force(CLI::App& command, Output& output) {
@@ -67,7 +67,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       .add_option(
           "--wrap-alpha", options.wrap_alpha,
           "Openings narrower than this stay closed, in diagonals; less follows the mesh better, and takes longer")
-      ->check(ANumber(CLI::Range(1e-4, 0.5)))
+      ->check(NumberValidator(CLI::Range(1e-4, 0.5)))
       ->needs(wrap)
       ->capture_default_str();
   command
@@ -75,7 +75,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
           "--fill-holes", [&options](double width) { options.fill_holes = width; },
           "Fill holes up to this width, in bounding radii, whatever their edges (default: 0.5, and of at most 100 "
           "edges)")
-      ->check(ANumber(CLI::Range(0.0, 2.0)))
+      ->check(NumberValidator(CLI::Range(0.0, 2.0)))
       ->excludes(strict)
       ->excludes(wrap);
   add_join(command, options.join)->excludes(strict)->excludes(wrap);

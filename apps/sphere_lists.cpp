@@ -74,7 +74,7 @@ SphereLists read_json(const std::filesystem::path& file) {
         const Sphere sphere = parse_sphere(item);
         if (!sphere.center.allFinite() || !(sphere.radius >= 0) || !std::isfinite(sphere.radius))
           throw InputError(file.string() + ": level " + std::to_string(lists.levels.size() - 1) +
-                           " has a sphere that is not finite; write it anew");
+                           " has a sphere that is not finite; write it again");
         if (sphere.radius > 0) lists.levels.back().push_back(sphere);
       }
     }

@@ -4,11 +4,11 @@
 #include <numbers>
 #include <optional>
 
-#include "a_number.h"
 #include "add_commands.h"
 #include "axis_export.h"
 #include "command_list.h"
 #include "list_option.h"
+#include "number_validator.h"
 #include "shared_options.h"
 #include "tree_options.h"
 
@@ -25,7 +25,7 @@ void add_build(CLI::App& app, Request& request) {
       .add_option("--time", build.seconds,
                   "tightened: the tightest tree that there is after so many seconds, at whatever effort; the octree if "
                   "there is none yet")
-      ->check(ANumber(CLI::Range(0.0, 1e6)))
+      ->check(NumberValidator(CLI::Range(0.0, 1e6)))
       ->excludes(command.get_option("--effort"));
   add_tuning(command, build.tuning, true);
   add_axis_source(command, build.source);

@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
-#include "a_number.h"
 #include "list_option.h"
+#include "number_validator.h"
 
 namespace orchard::apps {
 namespace {
@@ -82,7 +82,7 @@ Refinement::Region parse_region(const std::string& text) {
 void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
   AnnealingTuning& tuning = options.annealing;
   constexpr const char* group = "Annealing, in place of what --effort stands for [as in the dissertation]";
-  const auto share = ANumber(CLI::Range(1e-6, 1 - 1e-6));
+  const auto share = NumberValidator(CLI::Range(1e-6, 1 - 1e-6));
   const auto count = CLI::Range(1, 1'000'000);
   const auto add = [&](const char* option, auto& value, const char* what, const auto& check) {
     command.add_option(option, value, what)->check(check)->group(group);
@@ -92,9 +92,11 @@ void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
              "(corrected-samples)")
       ->group(group);
   add("--anneal-move", tuning.move, "Longest translation of a change, in radii of the parent [0.035]",
-      ANumber(CLI::Range(0.0, 1.0)));
-  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]", ANumber(CLI::Range(0.01, 1.0)));
-  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]", ANumber(CLI::Range(1.0, 100.0)));
+      NumberValidator(CLI::Range(0.0, 1.0)));
+  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]",
+      NumberValidator(CLI::Range(0.01, 1.0)));
+  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]",
+      NumberValidator(CLI::Range(1.0, 100.0)));
   add("--anneal-first-trials", tuning.first_trials, "Changes that the first temperature is found by [40]", count);
   add("--anneal-first-acceptance", tuning.first_acceptance, "Probability of a mean rise at the first temperature [0.9]",
       share);
@@ -155,7 +157,7 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   command
       .add_option("--error", options.refinement.error,
                   "No children for a sphere whose inaccuracy is this or less, in mesh units (0: down to --depth)")
-      ->check(ANumber(CLI::NonNegativeNumber));
+      ->check(NumberValidator(CLI::NonNegativeNumber));
   command
       .add_option_function<std::vector<std::string>>(
           "--region",

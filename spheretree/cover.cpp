@@ -23,10 +23,10 @@ using Points = std::vector<Point>;
 
 // Finds the path that takes points in for the least growth. Growth counts relative to each ball's radius: a per cent
 // of a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
-class Grower {
+class PathGrower {
  public:
   // Balls of levels above `first_level` are not to grow: what they hold is enough.
-  Grower(SphereTree& tree, double margin, Index first_level)
+  PathGrower(SphereTree& tree, double margin, Index first_level)
       : tree_(tree), margin_(margin), first_level_(first_level) {}
 
   // The first of those that cost least. None costs more than the path that is cheapest at every step: most others are
@@ -101,7 +101,7 @@ class Grower {
 };
 
 // One path for the whole uncovered region, or one for each of its points, whichever grows less.
-double take_in(Grower& grower, const detail::UncoveredRegion& uncovered) {
+double take_in(PathGrower& grower, const detail::UncoveredRegion& uncovered) {
   Points all = uncovered.corners;
   if (all.empty()) all.push_back(uncovered.farthest);
   const double together = grower.cost_of_best_path(all);
@@ -135,7 +135,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
     if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
     // Balls only grow, so what is covered stays covered.
     triangles.clear();
-    Grower grower(tree, margin, report.rounds < kKeepingRounds ? first_level : 0);
+    PathGrower grower(tree, margin, report.rounds < kKeepingRounds ? first_level : 0);
     const auto take = [&](const detail::UncoveredRegion& region) {
       report.max_growth = std::max(report.max_growth, take_in(grower, region) / radius);
     };

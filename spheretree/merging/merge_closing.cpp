@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "ball_fit.h"
+#include "cover_candidates.h"
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/cover.h"
-#include "takers.h"
 
 namespace orchard::detail {
 namespace {
@@ -46,10 +46,10 @@ class Closer {
       const std::vector<UncoveredRegion> uncovered = find_deep_uncovered_regions(surface_, coverage, balls);
       if (report.rounds == 0) report.uncovered_regions = static_cast<Index>(uncovered.size());
       if (uncovered.empty()) break;
-      const std::vector<Index> takers = give(uncovered);
+      const std::vector<Index> candidates = give(uncovered);
       changed.clear();
-      for (Index node : takers) changed.push_back(tree_.nodes[node].sphere);
-      tbb::parallel_for(std::size_t{0}, takers.size(), [&](std::size_t i) { refit(takers[i]); });
+      for (Index node : candidates) changed.push_back(tree_.nodes[node].sphere);
+      tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) { refit(candidates[i]); });
     }
     const Index last = tree_.depth();
     for (SphereNode& node : tree_.nodes)
@@ -61,8 +61,8 @@ class Closer {
  private:
   // Adds the uncovered regions to what the nodes that they cost least have to hold; returns these nodes, ascending.
   std::vector<Index> give(const std::vector<UncoveredRegion>& uncovered) {
-    const std::vector<Taking> takings = find_takers(uncovered, [&](const UncoveredRegion& region) {
-      Takers best;
+    const std::vector<Taking> takings = find_cover_candidates(uncovered, [&](const UncoveredRegion& region) {
+      CoverCandidates best;
       descend(0, {&region.farthest, 1}, best.farthest);
       if (best.farthest.ball != kNone) descend(0, region.points(), best.whole);
       return best;
@@ -70,27 +70,27 @@ class Closer {
     std::vector<char> marked(tree_.nodes.size(), 0);
     for (std::size_t i = 0; i < uncovered.size(); ++i) {
       const std::vector<Point>& corners = uncovered[i].corners;
-      const auto [taker, whole] = takings[i];
-      if (taker == kNone) continue;  // across the border of a path region: cover() mends it
-      marked[taker] = 1;
-      held_[taker].push_back(uncovered[i].farthest);
-      if (whole) held_[taker].insert(held_[taker].end(), corners.begin(), corners.end());
+      const auto [candidate, whole] = takings[i];
+      if (candidate == kNone) continue;  // across the border of a path region: cover() mends it
+      marked[candidate] = 1;
+      held_[candidate].push_back(uncovered[i].farthest);
+      if (whole) held_[candidate].insert(held_[candidate].end(), corners.begin(), corners.end());
     }
-    std::vector<Index> takers;
+    std::vector<Index> candidates;
     for (Index i = 0; i < marked.size(); ++i)
-      if (marked[i]) takers.push_back(i);
-    return takers;
+      if (marked[i]) candidates.push_back(i);
+    return candidates;
   }
 
   void refit(Index i) {
-    const FittedBall fitted = fitters_.local().fit(held_[i], tree_.nodes[i].sphere.center, kTakerEvaluations);
+    const FittedBall fitted = fitters_.local().fit(held_[i], tree_.nodes[i].sphere.center, kCandidateEvaluations);
     tree_.nodes[i].sphere = {fitted.center, fitted.radius + margin_};
     center_distance_[i] = fitted.center_distance;
   }
 
   // Of the leaves below the node whose path region, but for the leaf itself, holds the points: the one that they cost
   // least.
-  void descend(Index index, std::span<const Point> points, Taker& best) const {
+  void descend(Index index, std::span<const Point> points, CoverCandidate& best) const {
     const SphereNode& node = tree_.nodes[index];
     double reach = 0;
     for (const Point& p : points) reach = std::max(reach, (p - node.sphere.center).squaredNorm());
@@ -101,7 +101,7 @@ class Closer {
     }
     const double growth = std::max(0.0, std::sqrt(reach) - node.sphere.radius) / radius_;
     const double loose = std::max(0.0, node.sphere.radius + center_distance_[index]) / radius_;
-    const double rise = std::pow(loose + growth, power_) - std::pow(loose, power_) + kTakerTie * growth;
+    const double rise = std::pow(loose + growth, power_) - std::pow(loose, power_) + kCandidateTie * growth;
     if (rise < best.rise) best = {index, rise};
   }
 

@@ -18,7 +18,7 @@ struct ClosingReport {
 // that level and leaves above it change. What a few rounds leave open is closed by a little growth of all balls of the
 // level and by cover(); so the tree is conservative afterwards. held[i]: the points that node i answers for; uncovered
 // regions are added to them.
-// A tightened level's closing (tightened/level_closing.h) finds takers by the same rule, but is one round of many,
+// A tightened level's closing (tightened/level_closing.h) finds candidates by the same rule, but is one round of many,
 // between which the search goes on, and fits a ball to what it alone holds. Here a region goes down the tree to a leaf,
 // which keeps every point that it was ever given, and the rounds go on to the end.
 ClosingReport close_by_refitting(SphereTree& tree, const Surface& surface, std::vector<std::vector<Point>>& held,

@@ -35,7 +35,7 @@ struct Candidate {
   Sphere sphere;
 };
 // The queue's head is the cheapest; ties go to the lowest indices, so that the result is the same everywhere.
-struct Dearer {
+struct HigherCost {
   bool operator()(const Candidate& x, const Candidate& y) const {
     if (x.cost != y.cost) return x.cost > y.cost;
     return x.a != y.a ? x.a > y.a : x.b > y.b;
@@ -59,7 +59,7 @@ class Merger {
       std::vector<Candidate> first;
       first.reserve(edges_.size());
       for (const auto& [a, b] : edges_) first.push_back(candidate(a, b));
-      queue_ = Queue(Dearer(), std::move(first));
+      queue_ = Queue(HigherCost(), std::move(first));
     }
     while (alive_ > target) {
       if (queue_.empty()) {
@@ -86,7 +86,7 @@ class Merger {
     std::vector<Index> core;  // some of its points
     Index into;
   };
-  using Queue = std::priority_queue<Candidate, std::vector<Candidate>, Dearer>;
+  using Queue = std::priority_queue<Candidate, std::vector<Candidate>, HigherCost>;
 
   static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -157,7 +157,7 @@ class Merger {
     for (Index i = 0; i < nodes_.size(); ++i) {
       if (i == min || nodes_[i].into != kNone) continue;
       const Candidate pair = candidate(min, i);
-      if (Dearer()(best, pair)) best = pair;
+      if (HigherCost()(best, pair)) best = pair;
     }
     return best;
   }

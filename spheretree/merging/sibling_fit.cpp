@@ -139,17 +139,17 @@ class Fit {
   // What the others would cost more if they took over a ball's points, for every ball, the cheapest first.
   std::vector<Index> cheapest_to_lose(const Siblings& state) const {
     const auto count = static_cast<Index>(state.balls.size());
-    std::vector<std::vector<double>> reach(count, std::vector<double>(count, 0));  // [lost][taker]
+    std::vector<std::vector<double>> reach(count, std::vector<double>(count, 0));  // [lost][candidate]
     for (Index p = 0; p < points_.size(); ++p) {
       const Index lost = state.owner[p];
-      Index taker = kNone;
+      Index candidate = kNone;
       double min = kInfinity;
       for (Index b = 0; b < count; ++b) {
         if (b == lost) continue;
         const double k = state.balls[b].looseness_with(points_[p]);
-        if (k < min) min = k, taker = b;
+        if (k < min) min = k, candidate = b;
       }
-      reach[lost][taker] = std::max(reach[lost][taker], min);
+      reach[lost][candidate] = std::max(reach[lost][candidate], min);
     }
     std::vector<double> rise(count, 0);
     for (Index lost = 0; lost < count; ++lost) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "takers.h"
+#include "cover_candidates.h"
 
 namespace orchard::detail {
 namespace {
@@ -16,9 +16,9 @@ constexpr double kInward = 0.1;
 // Finds the balls that an uncovered region costs least. Few path regions hold its points, and only balls in these come
 // into question. The objective is convex in the looseness: a rise is at least the slope times the growth, which spares
 // most of them.
-class TakerSearch {
+class CandidateSearch {
  public:
-  TakerSearch(const LevelBalls& balls, const LevelObjective& objective, double bounding_radius)
+  CandidateSearch(const LevelBalls& balls, const LevelObjective& objective, double bounding_radius)
       : balls_(balls), objective_(objective), bounding_radius_(bounding_radius), balls_in_(balls.regions().size()) {
     for (Index b = 0; b < balls.size(); ++b) {
       slopes_.push_back(objective.slope(balls[b]));
@@ -26,8 +26,8 @@ class TakerSearch {
     }
   }
 
-  Takers cheapest(const UncoveredRegion& uncovered) const {
-    Takers best;
+  CoverCandidates cheapest(const UncoveredRegion& uncovered) const {
+    CoverCandidates best;
     std::vector<Index> path_regions = balls_.regions().regions_around(uncovered.farthest);
     best.farthest = cheapest({&uncovered.farthest, 1}, path_regions);
     std::erase_if(path_regions, [&](Index r) {
@@ -46,12 +46,12 @@ class TakerSearch {
 
   // Of the balls in these path regions; the first, if there are several. The last point, which is an uncovered region's
   // farthest, says which to begin at.
-  Taker cheapest(std::span<const Point> points, std::span<const Index> path_regions) const {
+  CoverCandidate cheapest(std::span<const Point> points, std::span<const Index> path_regions) const {
     std::vector<Candidate> candidates;
     for (Index r : path_regions)
       for (Index b : balls_in_[r])
         candidates.push_back({slopes_[b] * ((points.back() - balls_[b].center).norm() - balls_[b].radius), b});
-    Taker best;
+    CoverCandidate best;
     if (candidates.empty()) return best;
     std::iter_swap(candidates.begin(),
                    std::min_element(candidates.begin(), candidates.end(),
@@ -61,9 +61,9 @@ class TakerSearch {
     return best;
   }
 
-  static bool surely_above(double min_rise, const Taker& best) { return min_rise > best.rise * (1 + 1e-3); }
+  static bool surely_above(double min_rise, const CoverCandidate& best) { return min_rise > best.rise * (1 + 1e-3); }
 
-  void consider(Index b, std::span<const Point> points, Taker& best) const {
+  void consider(Index b, std::span<const Point> points, CoverCandidate& best) const {
     const LevelBall& ball = balls_[b];
     FittedBall grown = ball;
     const auto too_dear = [&](const Point& p) {
@@ -73,7 +73,7 @@ class TakerSearch {
     if (std::any_of(points.begin(), points.end(), too_dear)) return;
     const double growth = grown.radius - ball.radius;
     const double rise =
-        (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kTakerTie * growth / bounding_radius_;
+        (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kCandidateTie * growth / bounding_radius_;
     if (rise < best.rise || (rise == best.rise && b < best.ball)) best = {b, rise};
   }
 
@@ -95,8 +95,8 @@ void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, L
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       std::vector<Point>& points = taken[batch[i]];
       balls.append_held_alone(batch[i], points);
-      fitted[i] =
-          balls.fitted(batch[i], BallFitter(surface, balls.measure()).fit(points, balls[batch[i]], kTakerEvaluations));
+      fitted[i] = balls.fitted(
+          batch[i], BallFitter(surface, balls.measure()).fit(points, balls[batch[i]], kCandidateEvaluations));
     });
     for (std::size_t i = 0; i < batch.size(); ++i) balls.replace(batch[i], std::move(fitted[i]));
   }
@@ -106,9 +106,9 @@ void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, L
 
 void take_in(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
              bool hold, LevelBalls& balls) {
-  const TakerSearch search(balls, objective, surface.bounding_radius());
+  const CandidateSearch search(balls, objective, surface.bounding_radius());
   const std::vector<Taking> takings =
-      find_takers(uncovered, [&](const UncoveredRegion& region) { return search.cheapest(region); });
+      find_cover_candidates(uncovered, [&](const UncoveredRegion& region) { return search.cheapest(region); });
   std::vector<std::vector<Point>> taken(balls.size());
   Samples fresh;
   const auto add_sample = [&](const Point& point, Index ball) {
@@ -117,13 +117,13 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
   };
   for (std::size_t i = 0; i < uncovered.size(); ++i) {
     const UncoveredRegion& region = uncovered[i];
-    const auto [taker, whole] = takings[i];
-    if (taker == kNone) continue;
-    if (whole) taken[taker].insert(taken[taker].end(), region.corners.begin(), region.corners.end());
-    taken[taker].push_back(region.farthest);
-    add_sample(region.farthest, taker);
+    const auto [candidate, whole] = takings[i];
+    if (candidate == kNone) continue;
+    if (whole) taken[candidate].insert(taken[candidate].end(), region.corners.begin(), region.corners.end());
+    taken[candidate].push_back(region.farthest);
+    add_sample(region.farthest, candidate);
     if (!hold || !whole) continue;
-    for (const Point& p : region.corners) add_sample((1 - kInward) * p + kInward * region.farthest, taker);
+    for (const Point& p : region.corners) add_sample((1 - kInward) * p + kInward * region.farthest, candidate);
   }
   balls.add_samples(fresh);
   fit_again(surface, taken, balls);

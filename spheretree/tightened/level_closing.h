@@ -11,8 +11,8 @@ namespace orchard::detail {
 // fitted again to it and to the samples that it alone holds, and the region's farthest point becomes a sample. With
 // `hold`, points near its corners do too. An uncovered region that lies in no path region as a whole goes by its
 // farthest point alone; where not even that has a ball, it is left for the levels above to mend.
-// The closing of a merged level (merging/merge_closing.h) finds takers by the same rule, but down a tree, and runs its
-// rounds to the end. This is one round, after which the search may go on and balls may let go of what they took in.
+// The closing of a merged level (merging/merge_closing.h) finds candidates by the same rule, but down a tree, and runs
+// its rounds to the end. This is one round, after which the search may go on and balls may let go of what they took in.
 void take_in(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
              bool hold, LevelBalls& balls);
 

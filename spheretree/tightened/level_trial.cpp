@@ -17,12 +17,12 @@ constexpr int kFirstEvaluations = 5, kLastEvaluations = 12;
 constexpr double kWantedShare = 0.7;  // of trials that begin where the caller wants; the others at any loose ball
 constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
 constexpr double kStayShare = 0.3,
-                 kOneAnewShare = 0.45;  // of the others, in which none or one ball starts anew, not two
+                 kOneRestartShare = 0.45;  // of the others, in which none or one ball starts over, not two
 constexpr double kAllAnewShare = 0.3,
-                 kEachAnewShare = 0.4;  // of very few balls, all start anew, or each does
-constexpr Index kFewForMoves = 8;       // balls, up to which there is no such move
-constexpr Index kFew = 128;             // balls, up to which more is put at stake at a time
-constexpr double kWorthwhile = 1e-6;    // part of the cost that must go
+                 kEachRestartShare = 0.4;  // of very few balls, all start over, or each does
+constexpr Index kFewForMoves = 8;          // balls, up to which there is no such move
+constexpr Index kFew = 128;                // balls, up to which more is put at stake at a time
+constexpr double kWorthwhile = 1e-6;       // part of the cost that must go
 // By what part balls may become less loose in the last round.
 constexpr double kHoped = 0.3;
 
@@ -159,22 +159,22 @@ class Proposal {
     const bool moves = trial_.moved != kNone;
     if (moves) {
       const std::vector<Index>& there = balls_[trial_.chosen[0]].samples;
-      start_anew(trial_.balls[trial_.moved], there.empty() ? freed_ : there);
+      restart(trial_.balls[trial_.moved], there.empty() ? freed_ : there);
     }
     if (moves) return;
     const double which = random_.uniform();
     if (very_few()) {
-      const double share = which < kAllAnewShare ? 1.0 : kEachAnewShare;
+      const double share = which < kAllAnewShare ? 1.0 : kEachRestartShare;
       for (LevelBall& ball : trial_.balls)
-        if (random_.uniform() < share) start_anew(ball, freed_);
+        if (random_.uniform() < share) restart(ball, freed_);
       return;
     }
-    const int anew = which < kStayShare ? 0 : which < kStayShare + kOneAnewShare ? 1 : 2;
-    for (int k = 0; k < anew; ++k) start_anew(trial_.balls[random_.below(trial_.balls.size())], freed_);
+    const int restarts = which < kStayShare ? 0 : which < kStayShare + kOneRestartShare ? 1 : 2;
+    for (int k = 0; k < restarts; ++k) restart(trial_.balls[random_.below(trial_.balls.size())], freed_);
   }
 
   // Near one of the samples, in one of its path regions.
-  void start_anew(LevelBall& ball, const std::vector<Index>& samples) {
+  void restart(LevelBall& ball, const std::vector<Index>& samples) {
     const Index sample = samples[random_.below(samples.size())];
     Point center = samples_.starts[sample];
     if (random_.uniform() < 0.3) center = 0.5 * (center + samples_.points[sample]);
@@ -199,7 +199,7 @@ class Proposal {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
       if (trial_.needs[i].empty())
-        start_anew(trial_.balls[i], freed_);
+        restart(trial_.balls[i], freed_);
       else
         order.push_back(i);
     }

@@ -27,7 +27,7 @@ struct TrialScratch {
   std::vector<float> min, owner;  // how loose the trial's balls get by each at least, and which does
 };
 
-// A few neighbouring balls give up what only they hold, some start anew, and they share it out again. The trial has
+// A few neighbouring balls give up what only they hold, some start over, and they share it out again. The trial has
 // balls if the objective falls and every sample is held; their samples are not found yet. `wanted`: how much each ball
 // is wanted as the one that a trial begins at, summed up over the balls. Only `random` decides which trial it is.
 LevelTrial propose_trial(const LevelBalls& balls, const LevelObjective& objective, std::span<const double> wanted,

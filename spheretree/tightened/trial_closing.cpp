@@ -50,10 +50,10 @@ class TrialCloser {
       if (arcs_.empty()) return true;
       std::vector<char> grown(added_.size(), 0);
       for (const OpenArc& arc : arcs_) {
-        const std::size_t taker = cheapest_taker(arc);
-        if (taker == kNone) return false;
-        trial_.needs[taker].insert(trial_.needs[taker].end(), {arc.begin, arc.end});
-        grown[taker] = 1;
+        const std::size_t candidate = cheapest_candidate(arc);
+        if (candidate == kNone) return false;
+        trial_.needs[candidate].insert(trial_.needs[candidate].end(), {arc.begin, arc.end});
+        grown[candidate] = 1;
       }
       for (std::size_t i = 0; i < added_.size(); ++i)
         if (grown[i]) put(i, fitter_.fit(trial_.needs[i], trial_.balls[i], kEvaluations), round);
@@ -89,9 +89,9 @@ class TrialCloser {
   }
 
   // Of the trial's balls in whose path region both ends lie.
-  std::size_t cheapest_taker(const OpenArc& arc) const {
+  std::size_t cheapest_candidate(const OpenArc& arc) const {
     double min = std::numeric_limits<double>::infinity();
-    std::size_t taker = kNone;
+    std::size_t candidate = kNone;
     for (std::size_t i = 0; i < added_.size(); ++i) {
       const LevelBall& ball = trial_.balls[i];
       FittedBall larger = ball;
@@ -101,9 +101,9 @@ class TrialCloser {
           !cover_.in_path_region(ball.path_region, arc.end))
         continue;
       min = rise;
-      taker = i;
+      candidate = i;
     }
-    return taker;
+    return candidate;
   }
 
   const LevelObjective& objective_;

@@ -118,7 +118,7 @@ export class BroadPhase extends Owned {
     return this.#count(0);
   }
   /** Found by the option `validate`. */
-  get promisesBroken(): number {
+  get motionBoundViolations(): number {
     return this.#count(1);
   }
   get memoryBytes(): number {

@@ -7,9 +7,9 @@
 namespace orchard::apps {
 
 // A range of doubles without what is not a number: that passes every range of CLI's, for it is neither below nor above.
-class ANumber : public CLI::Validator {
+class NumberValidator : public CLI::Validator {
  public:
-  explicit ANumber(const CLI::Validator& range) : Validator(range) {
+  explicit NumberValidator(const CLI::Validator& range) : Validator(range) {
     func_ = [range](std::string& input) {
       double value = 0;
       const bool number = CLI::detail::lexical_cast(input, value) && !std::isnan(value);

@@ -1,4 +1,4 @@
-#include "takers.h"
+#include "cover_candidates.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,7 +10,8 @@ constexpr double kDearer = 8;
 
 }  // namespace
 
-std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTakers& cheapest) {
+std::vector<Taking> find_cover_candidates(const std::vector<UncoveredRegion>& uncovered,
+                                          const CheapestCandidates& cheapest) {
   std::vector<Taking> takings(uncovered.size());
   tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
     const auto [whole, farthest] = cheapest(uncovered[i]);

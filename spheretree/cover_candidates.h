@@ -10,22 +10,22 @@
 namespace orchard::detail {
 
 // Queries of the signed distance to fit a ball again to what it has taken in.
-inline constexpr int kTakerEvaluations = 14;
+inline constexpr int kCandidateEvaluations = 14;
 // What breaks ties between balls that would not get looser at all, as a fraction of growth over R.
-inline constexpr double kTakerTie = 1e-9;
+inline constexpr double kCandidateTie = 1e-9;
 
-struct Taker {
+struct CoverCandidate {
   Index ball = kNone;
   double rise = std::numeric_limits<double>::infinity();  // of its cost
 };
 
 // Of the balls that can hold an uncovered region's points(), and of those that can hold its farthest one alone, the one
 // that this costs least.
-struct Takers {
-  Taker whole, farthest;
+struct CoverCandidates {
+  CoverCandidate whole, farthest;
 };
 
-using CheapestTakers = std::function<Takers(const UncoveredRegion&)>;  // called by several threads
+using CheapestCandidates = std::function<CoverCandidates(const UncoveredRegion&)>;  // called by several threads
 
 struct Taking {
   Index ball = kNone;  // none: no ball can hold even the farthest point
@@ -36,6 +36,7 @@ struct Taking {
 // farthest point alone does, or no ball can hold it. Then it is a long sliver, or lies across the border of a path
 // region, and will fall apart: only its farthest point goes, to the ball that this costs least. Parallel over the
 // regions.
-std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTakers& cheapest);
+std::vector<Taking> find_cover_candidates(const std::vector<UncoveredRegion>& uncovered,
+                                          const CheapestCandidates& cheapest);
 
 }  // namespace orchard::detail

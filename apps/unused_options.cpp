@@ -1,4 +1,4 @@
-#include "idle_options.h"
+#include "unused_options.h"
 
 #include <fmt/format.h>
 
@@ -65,17 +65,17 @@ void refuse_replaced(const TuningFlag& flag, const Names& sources) {
 
 // Refuses a flag that other flags' values leave without effect, whichever of the tunings is run.
 void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tunings) {
-  if (!flag.idle) return;
+  if (!flag.unused) return;
   std::string why;
   for (const MedialTuning& tuning : tunings) {
-    why = flag.idle(tuning);
+    why = flag.unused(tuning);
     if (why.empty()) return;
   }
   throw InputError(fmt::format("--{} has no effect with {}", flag.name, why));
 }
 
 // Refuses what a sweep overrides, and what it varies without any column that would tell.
-void refuse_idle_in_sweep(const MedialCommand& command, const Names& swept) {
+void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
   for (const std::string& name : swept) {
     if (std::count(swept.begin(), swept.end(), name) > 1)
       throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", name));
@@ -88,7 +88,7 @@ void refuse_idle_in_sweep(const MedialCommand& command, const Names& swept) {
 
 }  // namespace
 
-void refuse_idle_options(const BuildCommand& command) {
+void refuse_unused_options(const BuildCommand& command) {
   const TreeMethod method = command.options.method;
   for (const auto& [option, methods] : own_options()) {
     if (among(option, command.given) && std::find(methods.begin(), methods.end(), method) == methods.end())
@@ -111,7 +111,7 @@ void refuse_idle_options(const BuildCommand& command) {
   }
 }
 
-void refuse_idle_options(const MedialCommand& command) {
+void refuse_unused_options(const MedialCommand& command) {
   const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
   if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
     throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
@@ -122,7 +122,7 @@ void refuse_idle_options(const MedialCommand& command) {
   if (command.picture && (sweeps || (!command.report && !judges)))
     throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
   const Names swept = swept_flags(command);
-  refuse_idle_in_sweep(command, swept);
+  refuse_unused_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
   if (!command.features.empty()) {
     if (judges || sweeps || command.outside || !command.tuning.refine)

@@ -7,7 +7,7 @@ namespace orchard::apps {
 // without effect: names it and says what it belongs to. `--seed` always passes: where nothing is random, any seed is
 // kept to. So does what is so anyhow, as `--report` with a sweep, which always measures. In a sweep, an option is idle
 // that is so with every combination of the values.
-void refuse_idle_options(const BuildCommand& command);
-void refuse_idle_options(const MedialCommand& command);
+void refuse_unused_options(const BuildCommand& command);
+void refuse_unused_options(const MedialCommand& command);
 
 }  // namespace orchard::apps

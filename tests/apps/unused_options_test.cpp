@@ -35,7 +35,7 @@ void expect_refused(const Workplace& here, const Words& command, const std::vect
   }
 }
 
-TEST(IdleOptions, MedialRefusesWhatItsInputOrOtherFlagsLeaveIdle) {
+TEST(UnusedOptions, MedialRefusesWhatItsInputOrOtherFlagsLeaveIdle) {
   const Workplace here;
   const std::string file = here.add("p.xyz", std::string("0 0 0\n"));
   // The files are not read yet when an option is refused.
@@ -62,7 +62,7 @@ TEST(IdleOptions, MedialRefusesWhatItsInputOrOtherFlagsLeaveIdle) {
                   {{"--wrap-alpha", "0.02"}, "--wrap-alpha requires --wrap"}});
 }
 
-TEST(IdleOptions, ASweepRefusesWhatNoneOfItsRunsHasAUseFor) {
+TEST(UnusedOptions, ASweepRefusesWhatNoneOfItsRunsHasAUseFor) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
   expect_refused(here, {"medial", mesh, "-o", out},
@@ -81,7 +81,7 @@ TEST(IdleOptions, ASweepRefusesWhatNoneOfItsRunsHasAUseFor) {
   EXPECT_EQ(json::parse(run.out)["runs"].size(), 2u) << "as everywhere, --json is printed whether --quiet or not";
 }
 
-TEST(IdleOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
+TEST(UnusedOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), file = here.add("p.xyz", std::string("0 0 0\n"));
   expect_refused(
@@ -107,7 +107,7 @@ TEST(IdleOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
   EXPECT_EQ(here.run(test::quick_build(mesh, (here / "out").string(), {"--seed", "3"})).exit_code, 0);
 }
 
-TEST(IdleOptions, SampleAndVoronoiRefuseThemToo) {
+TEST(UnusedOptions, SampleAndVoronoiRefuseThemToo) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
   const std::string points = here.add("p.xyz", std::string("0 0 0\n1 0 0\n0 1 0\n0 0 1\n"));
@@ -126,7 +126,7 @@ TEST(IdleOptions, SampleAndVoronoiRefuseThemToo) {
       << "where nothing is random, any seed is kept to";
 }
 
-TEST(IdleOptions, AFlagForOtherKindsOfFilesIsRefused) {
+TEST(UnusedOptions, AFlagForOtherKindsOfFilesIsRefused) {
   const Workplace here;
   const std::string ball = here.add("ball.obj", test::icosphere(1)), trees = (here / "trees").string();
   ASSERT_EQ(here.run(test::quick_build(ball, trees)).exit_code, 0);
