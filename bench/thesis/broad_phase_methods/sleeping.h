@@ -18,7 +18,7 @@ using runtime::detail::StepReport;
 
 // The dissertation's broad phase (Fig. 4.23): sleep until the earliest two bounds touch, rebuild, and look again. While
 // bounds touch it goes on step by step, and reports the pairs whose spheres really overlap.
-class Sleeping final : public runtime::detail::Method {
+class Sleeping final : public runtime::detail::BroadPhaseAlgorithm {
  public:
   Sleeping(BodyPool& pool, const SleepingOptions& options);
 
