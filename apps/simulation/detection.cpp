@@ -24,7 +24,7 @@ runtime::DetectorOptions Detection::options(double time_step) {
   runtime::DetectorOptions options;
   options.time_step = time_step;
   options.watch = false;  // the scenes keep what they promise, and cancel the rest
-  options.promised = [this](double time, runtime::BodyIndex body, const Motion& promise) {
+  options.bound_given = [this](double time, runtime::BodyIndex body, const Motion& promise) {
     promises_[body_of_[body]] = {promise, time};
   };
   return options;
