@@ -162,7 +162,7 @@ class World {
     result["body"] = number_of(found->body);
     result["distance"] = found->distance;
     result["point"] = std::array<double, 3>(found->point);
-    return std::move(result);
+    return result;
   }
 
   py::dict events() const {

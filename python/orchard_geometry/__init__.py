@@ -12,6 +12,7 @@ Arrays are NumPy's, lengths in mesh units, and distances negative inside.
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import typing
 
 from . import runtime
@@ -54,13 +55,10 @@ __all__ = [
 def __getattr__(name: str) -> typing.Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    try:
-        module = importlib.import_module("." + _HOME[name], __name__)
-    except ImportError as error:
-        if getattr(error, "name", None) != __name__ + "._construction":
-            raise
+    if importlib.util.find_spec(__name__ + "._construction") is None:
         raise ImportError(f"{name} belongs to the construction, which is not installed here; there is the run-time "
-                          "alone") from error
+                          "alone")
+    module = importlib.import_module("." + _HOME[name], __name__)
     value = getattr(module, name)
     globals()[name] = value
     return value

@@ -265,7 +265,7 @@ class MedialAxis:
 
     def _repr_html_(self) -> str:
         structure = self.structure
-        rows = [("balls", len(self)), ("edges", len(self.edges)), ("faces", len(self.faces))]
+        rows: list[tuple[str, object]] = [("balls", len(self)), ("edges", len(self.edges)), ("faces", len(self.faces))]
         rows += [(f"{kind}s", structure.count(kind)) for kind in KINDS]
         rows += [("radii", f"{self.radii.min():.4g} to {self.radii.max():.4g}")]
         return "<table>" + "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"

@@ -258,7 +258,7 @@ class Detector:
         found = self._world.step(number("time", time, -1e100, 1e100), limits[0], limits[1])
         names = ("changes", "a", "b", "times", "answers", "separation_bounds", "points", "normals", "impact_times")
         rows = zip(*(view(found[name]).tolist() for name in names))
-        events = [Event(Change(change), a, b, when, Answer(answer), bound, tuple(point), tuple(normal), impact, index)
+        events = [Event(Change(change), a, b, when, Answer(answer), bound, _triple(point), _triple(normal), impact, index)
                   for index, (change, a, b, when, answer, bound, point, normal, impact) in enumerate(rows)]
         self._events = events
         return Frame(events=events, **{name: found[name] for name in (
@@ -299,8 +299,12 @@ class Detector:
         return f"<Detector: {len(self)} bodies at {self.time:g} s>"
 
 
+def _triple(numbers: list[float]) -> tuple[float, float, float]:
+    x, y, z = numbers
+    return x, y, z
+
+
 def _point(found: dict[str, typing.Any] | None) -> WorldPoint | None:
     if found is None:
         return None
-    x, y, z = found["point"]
-    return WorldPoint(found["body"], found["distance"], (x, y, z))
+    return WorldPoint(found["body"], found["distance"], _triple(found["point"]))

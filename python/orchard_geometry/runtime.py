@@ -65,7 +65,7 @@ def _wxyz(quaternion: str) -> bool:
 
 
 def _triangles(a: typing.Any, b: typing.Any) -> Ints:
-    both = numpy.stack([a, b], axis=1).astype(numpy.int64)
+    both: Ints = numpy.stack([a, b], axis=1).astype(numpy.int64)
     both[both == _NONE] = -1
     return both
 
@@ -142,7 +142,7 @@ class Tree:
         first, last = numpy.searchsorted(self.levels, [wanted, wanted + 1])
         if not complete:
             return everything[first:last]
-        return everything[(self.levels == wanted) | (self.leaves & (self.levels < wanted))]
+        return typing.cast(Floats, everything[(self.levels == wanted) | (self.leaves & (self.levels < wanted))])
 
     @property
     def parents(self) -> Ints:
