@@ -16,7 +16,7 @@ namespace {
 QualityOptions quality_options(Index samples, std::uint64_t seed) {
   QualityOptions options{.seed = seed};
   const auto scaled = [&](Index standard) {
-    return std::max(Index{1}, static_cast<Index>(double{samples} / options.surface_samples * standard));
+    return std::max(Index{1}, static_cast<Index>(static_cast<double>(samples) / options.surface_samples * standard));
   };
   options.search = scaled(options.search);
   options.contact_cells = scaled(options.contact_cells);
