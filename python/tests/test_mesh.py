@@ -147,11 +147,11 @@ def test_distances_are_negative_inside(box):
 def test_repair_and_wrap(box):
     assert box.repair().mesh is box and box.repair().lines == []
     opened = og.Mesh(box.vertices, box.faces[1:])
-    assert not opened.solid and "boundary" in opened.faults or opened.faults
-    done = opened.repair()
+    assert not opened.solid and "boundary" in opened.faults and not opened.repair().solid
+    done = opened.repair(fill_holes=2)
     assert done.solid and done.mesh.volume == pytest.approx(box.volume) and done.lines
     with pytest.warns(og.RepairWarning, match="repaired"):
-        og.thickness(og.Mesh(box.vertices, box.faces[1:]), [[0, 0, 0.4]])
+        og.thickness(og.Mesh(box.vertices, [box.faces[0][::-1], *box.faces[1:]]), [[0, 0, 0.4]])
     with pytest.raises(og.MeshError, match="not a closed"):
         og.thickness(opened, [[0, 0, 0.4]], strict=True)
     sheet = og.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
