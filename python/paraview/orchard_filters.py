@@ -72,7 +72,7 @@ class Filter(VTKPythonAlgorithmBase):
 @smhint.xml(CATEGORY)
 @smproperty.input(name="Input", port_index=0)
 @smdomain.datatype(dataTypes=["vtkPolyData"], composite_data_supported=False)
-class MedialAxis(Filter):
+class MedialAxisFilter(Filter):
     """The medial axis of a solid: triangles, and edges that none has. Point arrays radius, contact_angle in degrees, and
     structure with structure_kind (0 sheet, 1 seam, 2 border, 3 junction, 4 curve), to colour by and to threshold;
     cell arrays structure, structure_kind and contact_angle, the least of the corners."""
@@ -145,7 +145,7 @@ class MedialAxis(Filter):
 @smhint.xml(CATEGORY)
 @smproperty.input(name="Input", port_index=0)
 @smdomain.datatype(dataTypes=["vtkPolyData"], composite_data_supported=False)
-class SphereTree(Filter):
+class SphereTreeFilter(Filter):
     """A certified sphere-tree of a solid: the centres of a level's spheres as points with the arrays radius, error, level
     and parent. Show them as 3D Glyphs: spheres, scaled by the array radius with the factor 2."""
 
@@ -189,7 +189,7 @@ class SphereTree(Filter):
 @smhint.xml(CATEGORY)
 @smproperty.input(name="Input", port_index=0)
 @smdomain.datatype(dataTypes=["vtkPolyData"], composite_data_supported=False)
-class LocalThickness(Filter):
+class LocalThicknessFilter(Filter):
     """How thick a solid is: its mesh, long edges divided, with the arrays thickness (NaN where nothing faces the place),
     ball_diameter and contact_angle in degrees, of points and of cells, to threshold and to colour by."""
 
