@@ -25,8 +25,7 @@ void translate(std::exception_ptr pointer) {
 void set_threads(std::size_t threads) {
   static std::unique_ptr<tbb::global_control> limit;
   limit.reset();
-  if (threads > 0)
-    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+  if (threads > 0) limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
 
 }  // namespace

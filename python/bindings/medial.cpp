@@ -34,7 +34,6 @@ py::list tuning_table() {
   return table;
 }
 
-
 py::dict report_of(const MedialBuild& build) {
   py::dict seconds;
   for (const auto& [stage, time] : build.seconds) seconds[py::str(stage)] = time;

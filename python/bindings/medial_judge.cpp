@@ -125,9 +125,8 @@ AxisPointer pruned(const AxisPointer& axis, double angle, double scale, Index sa
 }
 
 py::tuple envelope(const Axis& axis, double cell, py::object progress) {
-  EnvelopeMesh found = watched(std::move(progress), [&](const Progress& watch) {
-    return envelope_mesh(axis.mesh, {.cell = cell}, watch);
-  });
+  EnvelopeMesh found = watched(std::move(progress),
+                               [&](const Progress& watch) { return envelope_mesh(axis.mesh, {.cell = cell}, watch); });
   return py::make_tuple(std::make_shared<Surface>(std::move(found.mesh)), found.lost);
 }
 

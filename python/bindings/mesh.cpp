@@ -111,8 +111,8 @@ py::tuple wrap(const SurfacePointer& surface, double alpha, double offset, py::o
   SurfaceDistance to_input, from_input;
   const SurfacePointer wrapped = watched(std::move(progress), [&](const Progress& watch) {
     report_progress(watch, "wrap", 0);
-    auto result = std::make_shared<Surface>(wrap_mesh(surface->mesh(), {.alpha = alpha, .offset = offset}),
-                                            surface->ball_kind());
+    auto result =
+        std::make_shared<Surface>(wrap_mesh(surface->mesh(), {.alpha = alpha, .offset = offset}), surface->ball_kind());
     to_input = surface_distance(*result, *surface, {}, watch);
     from_input = surface_distance(*surface, *result, {}, watch);
     return result;
@@ -158,10 +158,9 @@ py::dict closest(const SurfacePointer& surface, const py::buffer& queries, bool 
 }
 
 Relaxation relaxation_named(const std::string& name) {
-  return named<Relaxation>("relaxation", name,
-                           {{"automatic", Relaxation::automatic},
-                            {"clusters", Relaxation::clusters},
-                            {"neighbors", Relaxation::neighbors}});
+  return named<Relaxation>(
+      "relaxation", name,
+      {{"automatic", Relaxation::automatic}, {"clusters", Relaxation::clusters}, {"neighbors", Relaxation::neighbors}});
 }
 
 py::dict sample(const SurfacePointer& surface, Index samples, Index edge_samples, int iterations, std::uint64_t seed,
@@ -210,9 +209,8 @@ void bind_mesh(py::module_& module) {
       .def_property_readonly("bounding_radius", &Surface::bounding_radius)
       .def_property_readonly("bounding_center", [](const Surface& s) { return to_array(s.bounding_ball().center); })
       .def_property_readonly("bounding_box", &bounding_box)
-      .def_property_readonly("root_ball", [](const Surface& s) {
-        return s.ball_kind() == BoundingBall::ritter ? "ritter" : "minimal";
-      });
+      .def_property_readonly(
+          "root_ball", [](const Surface& s) { return s.ball_kind() == BoundingBall::ritter ? "ritter" : "minimal"; });
   module.def("make_surface", &make_surface);
   module.def("load", &load);
   module.def("inspect", &inspect);

@@ -25,8 +25,8 @@ Pose pose_of_matrix(const double* m, std::size_t number) {
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
     refuse_pose(number, "the last row of the matrix is not 0 0 0 1; translations are in the last column");
   // The determinant of the upper left part is the cube of the scale.
-  const double determinant = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-                             m[2] * (m[4] * m[9] - m[5] * m[8]);
+  const double determinant =
+      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
   if (!(determinant > 0)) refuse_pose(number, "the matrix is singular or a mirror, no rotation");
   double scale = std::cbrt(determinant);
   if (std::fabs(scale - 1) < 1e-6) scale = 1;  // rounding of a matrix without scale
@@ -40,8 +40,7 @@ Pose pose_of_matrix(const double* m, std::size_t number) {
 }
 
 Pose pose_of_quaternion(const double* p, bool wxyz, std::size_t number) {
-  const std::array<double, 4> q =
-      wxyz ? std::array{p[3], p[4], p[5], p[6]} : std::array{p[6], p[3], p[4], p[5]};
+  const std::array<double, 4> q = wxyz ? std::array{p[3], p[4], p[5], p[6]} : std::array{p[6], p[3], p[4], p[5]};
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!std::isfinite(norm) || !std::all_of(p, p + 3, [](double x) { return std::isfinite(x); }))
     refuse_pose(number, "not finite");
@@ -51,6 +50,13 @@ Pose pose_of_quaternion(const double* p, bool wxyz, std::size_t number) {
   const std::optional<Pose> pose = runtime::pose_from_quaternion(q, to_vec(p));
   if (!pose) refuse_pose(number, "no rotation");
   return *pose;
+}
+
+std::size_t columns_of(const py::buffer& rows) {
+  const py::buffer_info info = rows.request();
+  const py::ssize_t columns = info.ndim == 2 ? info.shape[1] : 0;
+  if (columns != 7 && columns != 16) throw py::value_error("poses: expected (k, 7) or (k, 4, 4)");
+  return static_cast<std::size_t>(columns);
 }
 
 runtime::PackedSphereTree checked(runtime::LoadStatus status, runtime::PackedSphereTree tree, const std::string& name) {
@@ -112,14 +118,13 @@ Pose to_pose(const double* numbers, std::size_t count, bool wxyz, std::size_t nu
   return count == 16 ? pose_of_matrix(numbers, number) : pose_of_quaternion(numbers, wxyz, number);
 }
 
-std::vector<Pose> to_poses(const py::buffer& rows, bool wxyz) {
-  const py::ssize_t columns = rows.request().ndim == 2 ? rows.request().shape[1] : 0;
-  if (columns != 7 && columns != 16) throw py::value_error("poses: expected (k, 7) or (k, 4, 4)");
-  const Input<double> input(rows, columns);
-  std::vector<Pose> poses(input.size());
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    poses[i] = to_pose(input.row(i), static_cast<std::size_t>(columns), wxyz, i);
-  return poses;
+PoseRows::PoseRows(const py::buffer& rows, bool wxyz)
+    : columns_(columns_of(rows)), input_(rows, static_cast<py::ssize_t>(columns_)), wxyz_(wxyz) {}
+
+Pose to_single_pose(const py::buffer& row, bool wxyz) {
+  const PoseRows poses(row, wxyz);
+  if (poses.size() != 1) throw py::value_error("pose: expected one");
+  return poses[0];
 }
 
 runtime::Budget to_budget(std::uint64_t work, double seconds) {
@@ -135,13 +140,12 @@ void bind_trees(py::module_& module) {
   py::class_<Tree, TreePointer>(module, "Tree", "A certified sphere-tree as the run-time has it.")
       .def_static("load", &load_tree)
       .def_static("from_bytes", &tree_of_bytes)
-      .def_static("of_box",
-                  [](const Vec& half) { return std::make_shared<Tree>(runtime::box_tree(half)); })
+      .def_static("of_box", [](const Vec& half) { return std::make_shared<Tree>(runtime::box_tree(half)); })
       .def_static("of_triangles",
                   [](const py::buffer& vertices, const py::buffer& triangles) {
-                    return std::make_shared<Tree>(
-                        runtime::triangles_tree(Input<double>(vertices, 3).rows<Vec>(),
-                                                Input<std::uint32_t>(triangles, 3).rows<std::array<std::uint32_t, 3>>()));
+                    return std::make_shared<Tree>(runtime::triangles_tree(
+                        Input<double>(vertices, 3).rows<Vec>(),
+                        Input<std::uint32_t>(triangles, 3).rows<std::array<std::uint32_t, 3>>()));
                   })
       .def_static("of_hull",
                   [](const py::buffer& points) {

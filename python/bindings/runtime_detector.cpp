@@ -50,12 +50,12 @@ class World {
     options.filter = filter;
     options.continuous_speed = continuous_speed;
     return added(detector().add_body(
-        shape, {.pose = one(pose, wxyz), .velocity = velocity, .acceleration = acceleration}, options));
+        shape, {.pose = to_single_pose(pose, wxyz), .velocity = velocity, .acceleration = acceleration}, options));
   }
   std::uint64_t add_static(std::uint32_t shape, const py::buffer& pose, bool wxyz, const runtime::BodyFilter& filter) {
     runtime::BodyOptions options;
     options.filter = filter;
-    return added(detector().add_static({{.shape = shape}}, one(pose, wxyz), options));
+    return added(detector().add_static({{.shape = shape}}, to_single_pose(pose, wxyz), options));
   }
   std::uint64_t add_half_space(const Vec& normal, double offset) {
     return added(detector().add_half_space(normal, offset));
@@ -64,7 +64,7 @@ class World {
   void remove(std::uint64_t body) { known(detector().remove(body_of(body))); }
   void set_state(std::uint64_t body, const py::buffer& pose, bool wxyz, const Vec& velocity, double acceleration) {
     known(detector().set_state(
-        body_of(body), {.pose = one(pose, wxyz), .velocity = velocity, .acceleration = acceleration}));
+        body_of(body), {.pose = to_single_pose(pose, wxyz), .velocity = velocity, .acceleration = acceleration}));
   }
   void set_velocity(std::uint64_t body, const Vec& velocity) {
     known(detector().set_velocity(body_of(body), velocity));
@@ -145,11 +145,6 @@ class World {
     return detector_;
   }
 
-  static Pose one(const py::buffer& rows, bool wxyz) {
-    const std::vector<Pose> poses = to_poses(rows, wxyz);
-    require(poses.size() == 1, "pose: expected one");
-    return poses.front();
-  }
   static std::uint64_t added(const BodyId& body) {
     require(body != runtime::kNoBody, "a body needs a shape of this detector, a rigid pose and finite numbers");
     return number_of(body);
@@ -223,9 +218,8 @@ void bind_detector(py::module_& module) {
            })
       .def("add_static",
            [](World& world, std::uint32_t shape, const py::buffer& pose, bool wxyz, std::uint32_t category,
-              std::uint32_t mask, std::int32_t group) {
-             return world.add_static(shape, pose, wxyz, to_filter(category, mask, group));
-           })
+              std::uint32_t mask,
+              std::int32_t group) { return world.add_static(shape, pose, wxyz, to_filter(category, mask, group)); })
       .def("add_half_space", &World::add_half_space)
       .def("remove", &World::remove)
       .def("set_state", &World::set_state)

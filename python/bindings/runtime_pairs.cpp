@@ -26,15 +26,17 @@ Array field_of(const std::shared_ptr<const std::vector<Item>>& items, Middle Ite
 
 // Both bodies' poses of each question; one pose of a stands for all.
 struct Placements {
-  std::vector<Pose> a, b;
+  PoseRows a, b;
+  Pose only_a = {};  // if there is but one
   std::size_t size() const { return b.size(); }
-  const Pose& of_a(std::size_t i) const { return a.size() == 1 ? a.front() : a[i]; }
+  Pose of_a(std::size_t i) const { return a.size() == 1 ? only_a : a[i]; }
 };
 
 Placements placements(const py::buffer& poses_a, const py::buffer& poses_b, bool wxyz) {
-  Placements all{to_poses(poses_a, wxyz), to_poses(poses_b, wxyz)};
+  Placements all{PoseRows(poses_a, wxyz), PoseRows(poses_b, wxyz)};
   if (all.a.size() != 1 && all.a.size() != all.b.size())
     throw py::value_error("poses_a: expected one pose, or as many as poses: " + std::to_string(all.b.size()));
+  if (all.a.size() == 1) all.only_a = all.a[0];
   return all;
 }
 
@@ -72,8 +74,8 @@ py::dict distance(const TreePointer& a, const TreePointer& b, const py::buffer& 
   const runtime::TreePair pair(a->prepared, b->prepared);
   std::vector<runtime::Distance> distances(poses.size());
   for_each(poses.size(), [&](std::size_t i) {
-    distances[i] = runtime::distance(workspace, pair, poses.of_a(i), poses.b[i],
-                                     {.relative = relative, .absolute = absolute});
+    distances[i] =
+        runtime::distance(workspace, pair, poses.of_a(i), poses.b[i], {.relative = relative, .absolute = absolute});
   });
   const auto items = shared(std::move(distances));
   using D = runtime::Distance;
@@ -95,8 +97,7 @@ Array closer_than(const TreePointer& a, const TreePointer& b, const py::buffer& 
   const runtime::TreePair pair(a->prepared, b->prepared);
   std::vector<std::uint8_t> answers(poses.size());
   for_each(poses.size(), [&](std::size_t i) {
-    answers[i] =
-        static_cast<std::uint8_t>(runtime::closer_than(workspace, pair, poses.of_a(i), poses.b[i], margin));
+    answers[i] = static_cast<std::uint8_t>(runtime::closer_than(workspace, pair, poses.of_a(i), poses.b[i], margin));
   });
   return own(std::move(answers));
 }
@@ -126,8 +127,8 @@ py::dict contacts(const TreePointer& a, const TreePointer& b, const py::buffer& 
                             {count}, {sizeof(M)});
   result["points"] = view(items, items->empty() ? nullptr : first->points[0].place.data(), {count, points, 3},
                           {sizeof(M), point, sizeof(double)});
-  result["point_depths"] = view(items, items->empty() ? nullptr : &first->points[0].depth, {count, points},
-                                {sizeof(M), point});
+  result["point_depths"] =
+      view(items, items->empty() ? nullptr : &first->points[0].depth, {count, points}, {sizeof(M), point});
   return result;
 }
 
@@ -142,9 +143,9 @@ py::dict time_of_impact(const TreePointer& a, const TreePointer& b, const py::bu
   const runtime::TreePair pair(a->prepared, b->prepared);
   std::vector<runtime::Impact> impacts(from.size());
   for_each(from.size(), [&](std::size_t i) {
-    impacts[i] = runtime::time_of_impact(workspace, pair,
-                                         runtime::travel_between(from.of_a(i), to.of_a(i), a->prepared.middle),
-                                         runtime::travel_between(from.b[i], to.b[i], b->prepared.middle), options);
+    impacts[i] =
+        runtime::time_of_impact(workspace, pair, runtime::travel_between(from.of_a(i), to.of_a(i), a->prepared.middle),
+                                runtime::travel_between(from.b[i], to.b[i], b->prepared.middle), options);
   });
   const auto items = shared(std::move(impacts));
   using I = runtime::Impact;

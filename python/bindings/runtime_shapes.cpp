@@ -10,16 +10,10 @@ void require_triangles(const Tree& tree) {
     throw py::value_error("the tree has no triangles, which rays and points are asked about");
 }
 
-Pose single_pose(const py::buffer& rows, bool wxyz) {
-  const std::vector<Pose> poses = to_poses(rows, wxyz);
-  if (poses.size() != 1) throw py::value_error("pose: expected one");
-  return poses.front();
-}
-
 py::dict cast_rays(const TreePointer& tree, const py::buffer& origins, const py::buffer& directions, double longest,
                    const py::buffer& pose_row, bool wxyz) {
   require_triangles(*tree);
-  const Pose pose = single_pose(pose_row, wxyz);
+  const Pose pose = to_single_pose(pose_row, wxyz);
   const Input<double> from(origins, 3), along(directions, 3);
   if (from.size() != along.size()) throw py::value_error("directions: expected as many as origins");
   const std::size_t count = from.size();
@@ -43,7 +37,7 @@ py::dict cast_rays(const TreePointer& tree, const py::buffer& origins, const py:
 py::dict nearest_points(const TreePointer& tree, const py::buffer& centers, double limit, const py::buffer& pose_row,
                         bool wxyz, bool with_sign) {
   require_triangles(*tree);
-  const Pose pose = single_pose(pose_row, wxyz);
+  const Pose pose = to_single_pose(pose_row, wxyz);
   const Input<double> queries(centers, 3);
   const std::size_t count = queries.size();
   std::vector<double> distances(count);
@@ -52,7 +46,8 @@ py::dict nearest_points(const TreePointer& tree, const py::buffer& centers, doub
   for_each(count, [&](std::size_t i) {
     runtime::SurfacePoint point;
     if (with_sign) {
-      const runtime::SignedPoint found = runtime::signed_nearest_point(tree->packed, pose, to_vec(queries.row(i)), limit);
+      const runtime::SignedPoint found =
+          runtime::signed_nearest_point(tree->packed, pose, to_vec(queries.row(i)), limit);
       point = found.surface;
       normals[i] = found.normal;
     } else {
@@ -73,12 +68,11 @@ py::dict nearest_points(const TreePointer& tree, const py::buffer& centers, doub
 
 Array contains(const TreePointer& tree, const py::buffer& points, const py::buffer& pose_row, bool wxyz) {
   require_triangles(*tree);
-  const Pose pose = single_pose(pose_row, wxyz);
+  const Pose pose = to_single_pose(pose_row, wxyz);
   const Input<double> queries(points, 3);
   std::vector<std::uint8_t> inside(queries.size());
-  for_each(queries.size(), [&](std::size_t i) {
-    inside[i] = runtime::contains(tree->packed, pose, to_vec(queries.row(i))) ? 1 : 0;
-  });
+  for_each(queries.size(),
+           [&](std::size_t i) { inside[i] = runtime::contains(tree->packed, pose, to_vec(queries.row(i))) ? 1 : 0; });
   return own(std::move(inside));
 }
 

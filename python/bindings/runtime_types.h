@@ -38,8 +38,22 @@ using TreePointer = std::shared_ptr<Tree>;
 // the latter. Throws ValueError naming the pose.
 Pose to_pose(const double* numbers, std::size_t count, bool wxyz, std::size_t number);
 
-// All rows of a (k, 16) or (k, 7) array.
-std::vector<Pose> to_poses(const py::buffer& rows, bool wxyz);
+// The rows of a (k, 16) or (k, 7) array, which is read in place: a pose is made when it is asked for, also without the
+// GIL.
+class PoseRows {
+ public:
+  PoseRows(const py::buffer& rows, bool wxyz);
+  std::size_t size() const { return input_.size(); }
+  Pose operator[](std::size_t i) const { return to_pose(input_.row(i), columns_, wxyz_, i); }
+
+ private:
+  std::size_t columns_;
+  Input<double> input_;
+  bool wxyz_;
+};
+
+// The pose of an array of one row.
+Pose to_single_pose(const py::buffer& row, bool wxyz);
 
 inline Vec to_vec(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 

@@ -92,8 +92,8 @@ py::dict build(const SurfacePointer& surface, Index spheres, const std::string& 
   options.fit = named<SphereFit>(
       "fit", fit, {{"cover", SphereFit::cover}, {"inside", SphereFit::inside}, {"balanced", SphereFit::balanced}});
   require_usable(options);
-  const SphereSetBuild found = watched(
-      std::move(progress), [&](const Progress& watch) { return build_sphere_set(*surface, options, watch); });
+  const SphereSetBuild found =
+      watched(std::move(progress), [&](const Progress& watch) { return build_sphere_set(*surface, options, watch); });
   py::dict result;
   result["spheres"] = own_rows<double>(to_rows(found.spheres));
   result["kept"] = found.kept;

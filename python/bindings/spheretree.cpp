@@ -71,7 +71,8 @@ SphereTreeOptions to_options(const py::dict& given, Tuning tuning, bool from_axi
   set(given, "error", options.refinement.error);
   set_annealing(given, options.annealing);
   if (given.contains("regions")) {
-    for (const auto& [x, y, z, r, e] : given["regions"].cast<std::vector<std::tuple<double, double, double, double, double>>>())
+    for (const auto& [x, y, z, r, e] :
+         given["regions"].cast<std::vector<std::tuple<double, double, double, double, double>>>())
       options.refinement.regions.push_back({{Point(x, y, z), r}, e});
   }
   // As the command does: a tightened tree needs no axis, others a raw one; points by need unless they are given.
@@ -164,7 +165,8 @@ py::dict build(const SurfacePointer& surface, const py::dict& given, const Tunin
 
 py::dict verified(const SurfacePointer& surface, const py::buffer& bytes, py::object progress) {
   const PackedSphereTree tree = tree_of(bytes);
-  return to_python(watched(std::move(progress), [&](const Progress& watch) { return verify(*surface, tree, {}, watch); }));
+  return to_python(
+      watched(std::move(progress), [&](const Progress& watch) { return verify(*surface, tree, {}, watch); }));
 }
 
 // The packed floats as a tree in the mesh's frame.

@@ -1,6 +1,6 @@
 // The local thickness of a solid.
-#include "construction.h"
 #include "orchard/medial/thickness.h"
+#include "construction.h"
 
 namespace orchard::python {
 namespace {

@@ -21,4 +21,6 @@ for region in thin.regions[:5]:
         region["min_thickness"], *region["thinnest"], region["area"]))
 axes = thickness.plot()
 axes.set_axis_off()
-axes.figure.savefig(arguments.output / "thin_walls.png", dpi=120)
+axes.view_init(elev=15, azim=35, vertical_axis="y")
+axes.set_title(f"{thin.area / thin.defined_area:.0%} is thinner than {arguments.below:g}; grey: nothing faces the place")
+axes.figure.savefig(arguments.output / "thin_walls.png", dpi=100, bbox_inches="tight")

@@ -29,7 +29,7 @@ def _fit(axes: typing.Any, points: Floats) -> None:
         axes.set_xlim(middle[0] - half, middle[0] + half)
         axes.set_ylim(middle[1] - half, middle[1] + half)
         axes.set_zlim(middle[2] - half, middle[2] + half)
-        axes.set_box_aspect((1, 1, 1))
+        axes.set_box_aspect((1, 1, 1), zoom=1.2)
 
 
 def plot_mesh(vertices: Floats, faces: typing.Any, values: typing.Any, axes: typing.Any, **style: typing.Any) -> typing.Any:
