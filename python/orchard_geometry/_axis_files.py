@@ -40,6 +40,6 @@ def write_axis(axis: MedialAxis, path: str, ending: str) -> None:
     else:
         raise ValueError(f"{path}: an axis is saved as .ma, .ply, .obj, .graphml, .off, .sph, .cg, .txt, .xyz, .xyzr or "
                          ".balls")
-    from .runtime import _write
+    from ._trees import _write
 
     _write(path, ("\n".join(lines) + "\n").encode())

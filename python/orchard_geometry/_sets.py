@@ -13,7 +13,7 @@ from . import _construction
 from ._arrays import Anything, Floats, choice, floats, number, view, whole
 from ._mesh import Mesh
 from ._progress import Progress
-from .runtime import PathLike, _write
+from ._trees import PathLike, _write
 
 
 class Audit(typing.Dict[str, typing.Any]):

@@ -12,7 +12,7 @@ from ._medial import MedialAxis
 from ._mesh import Mesh
 from ._progress import Progress
 from ._tuning import tuning_of
-from .runtime import PathLike, Tree, _write
+from ._trees import PathLike, Tree, _write
 
 _METHODS = ("tightened", "merging", "annealing", "octree")
 

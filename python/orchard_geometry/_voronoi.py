@@ -37,7 +37,7 @@ class Voronoi:
         path = os.fspath(file)
         if os.path.splitext(path)[1].lower() != ".vor":
             raise ValueError(f"{path}: a diagram is saved as .vor")
-        from .runtime import _write
+        from ._trees import _write
 
         _write(path, self._diagram.to_vor().encode())
 

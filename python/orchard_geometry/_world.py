@@ -10,7 +10,8 @@ import numpy
 
 from . import _runtime
 from ._arrays import Anything, Floats, Indices, floats, indices, number, view, whole
-from .runtime import _IDENTITY, Answer, Tree, _limits, _of, _poses, _wxyz
+from ._poses import IDENTITY, Answer, limits_of, poses_of, tree_of, wxyz_of
+from ._trees import Tree
 
 
 def _vector(name: str, value: Anything) -> list[float]:
@@ -190,7 +191,7 @@ class Detector:
 
     def add_shape(self, tree: Tree) -> int:
         """A shape that any number of bodies may have: a tree."""
-        return self._world.add_tree(_of(tree, "tree"))
+        return self._world.add_tree(tree_of(tree, "tree"))
 
     def add_sphere(self, radius: float, center: Anything = (0, 0, 0)) -> int:
         """A solid sphere as a shape."""
@@ -204,21 +205,21 @@ class Detector:
         """A solid box around the origin as a shape; half the lengths of its edges."""
         return self._world.add_box(_vector("half_lengths", half_lengths))
 
-    def add_body(self, shape: int, pose: Anything = _IDENTITY, *, velocity: Anything = (0, 0, 0),
+    def add_body(self, shape: int, pose: Anything = IDENTITY, *, velocity: Anything = (0, 0, 0),
                  acceleration: float = 0, continuous_speed: float = 0, quaternion: str = "wxyz", category: int = 1,
                  mask: int = 0xFFFFFFFF, group: int = 0) -> int:
         """A body of a shape; returns its number. acceleration: a bound on how fast the velocity may change.
         continuous_speed above 0: contacts between two steps are found, too; no origin moves faster."""
-        return self._world.add_body(whole("shape", shape, 0, 2**32 - 1), _poses("pose", pose), _wxyz(quaternion),
+        return self._world.add_body(whole("shape", shape, 0, 2**32 - 1), poses_of("pose", pose), wxyz_of(quaternion),
                                     _vector("velocity", velocity), number("acceleration", acceleration, 0, 1e100),
                                     number("continuous_speed", continuous_speed, 0, 1e100),
                                     whole("category", category, 0, 2**32 - 1), whole("mask", mask, 0, 2**32 - 1),
                                     whole("group", group, -2**31, 2**31 - 1))
 
-    def add_static(self, shape: int, pose: Anything = _IDENTITY, *, quaternion: str = "wxyz", category: int = 1,
+    def add_static(self, shape: int, pose: Anything = IDENTITY, *, quaternion: str = "wxyz", category: int = 1,
                    mask: int = 0xFFFFFFFF, group: int = 0) -> int:
         """A body that never moves."""
-        return self._world.add_static(whole("shape", shape, 0, 2**32 - 1), _poses("pose", pose), _wxyz(quaternion),
+        return self._world.add_static(whole("shape", shape, 0, 2**32 - 1), poses_of("pose", pose), wxyz_of(quaternion),
                                       whole("category", category, 0, 2**32 - 1), whole("mask", mask, 0, 2**32 - 1),
                                       whole("group", group, -2**31, 2**31 - 1))
 
@@ -233,7 +234,7 @@ class Detector:
     def set_state(self, body: int, pose: Anything, *, velocity: Anything = (0, 0, 0), acceleration: float = 0,
                   quaternion: str = "wxyz") -> None:
         """Where a body is at the time of the last step, and how it moves on."""
-        self._world.set_state(body, _poses("pose", pose), _wxyz(quaternion), _vector("velocity", velocity),
+        self._world.set_state(body, poses_of("pose", pose), wxyz_of(quaternion), _vector("velocity", velocity),
                               number("acceleration", acceleration, 0, 1e100))
 
     def set_velocity(self, body: int, velocity: Anything) -> None:
@@ -254,7 +255,7 @@ class Detector:
 
     def step(self, time: float, *, work: int | None = None, seconds: float | None = None) -> Frame:
         """Answers the steps up to `time`, within a budget of counted work or seconds."""
-        limits = _limits(work, seconds)
+        limits = limits_of(work, seconds)
         found = self._world.step(number("time", time, -1e100, 1e100), limits[0], limits[1])
         names = ("changes", "a", "b", "times", "answers", "separation_bounds", "points", "normals", "impact_times")
         rows = zip(*(view(found[name]).tolist() for name in names))
