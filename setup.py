@@ -1,6 +1,7 @@
 """Builds the Python package by CMake: pip install --no-build-isolation . or python3 -m build --wheel --no-isolation.
 
-The compiled modules come from a build tree of their own, or from the one that ORCHARD_BUILD names.
+The compiled modules come from a build tree of their own, or from the one that ORCHARD_BUILD names, which has to be for
+the same version of Python.
 """
 import os
 import pathlib
@@ -27,10 +28,10 @@ class BuildByCMake(build_ext):
 
     def run(self):
         tree = pathlib.Path(os.environ.get("ORCHARD_BUILD") or pathlib.Path(self.build_temp).resolve() / "orchard")
-        subprocess.run(["cmake", "-S", ROOT, "-B", tree, "-DCMAKE_BUILD_TYPE=Release", "-DORCHARD_PYTHON=ON",
-                        f"-DORCHARD_PYTHON_EXECUTABLE={sys.executable}",
-                        *([] if (tree / "CMakeCache.txt").exists() else
-                          ["-DORCHARD_UNITY=ON", "-DORCHARD_VIZ=OFF", "-DORCHARD_TESTS=OFF"])], check=True)
+        new = [] if (tree / "CMakeCache.txt").exists() else [
+            "-DCMAKE_BUILD_TYPE=Release", f"-DORCHARD_PYTHON_EXECUTABLE={sys.executable}", "-DORCHARD_UNITY=ON",
+            "-DORCHARD_VIZ=OFF", "-DORCHARD_TESTS=OFF"]
+        subprocess.run(["cmake", "-S", ROOT, "-B", tree, "-DORCHARD_PYTHON=ON", *new], check=True)
         subprocess.run(["cmake", "--build", tree, "--parallel", str(os.cpu_count() or 1), "--target", "orchard_python"],
                        check=True)
         for extension in self.extensions:

@@ -2,8 +2,15 @@
 import os
 import pathlib
 import shutil
+import tempfile
 
+import hypothesis
 import pytest
+
+# The same cases at every run, and nothing left where the tests are.
+hypothesis.settings.register_profile("orchard", database=None, derandomize=True)
+hypothesis.settings.load_profile("orchard")
+hypothesis.configuration.set_hypothesis_home_dir(os.path.join(tempfile.gettempdir(), "orchard-hypothesis"))
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
