@@ -31,6 +31,20 @@ The program orchard turns a closed triangle mesh into its medial-axis
 surface, that into a tight sphere-tree which is certified to cover the mesh,
 and asks sphere-trees whether bodies touch. It draws pictures of all of it
 and writes files for ParaView.")
+  if(ORCHARD_PYTHON)
+    list(APPEND CPACK_COMPONENTS_ALL python)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-orchard-geometry)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+    string(REGEX MATCH "^[0-9]+\\.[0-9]+" python_version "${PYTHON_VERSION}")
+    string(REGEX REPLACE "^[0-9]+\\." "" python_minor "${python_version}")
+    math(EXPR python_minor "${python_minor} + 1")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${python_version}), python3 (<< 3.${python_minor}), python3-numpy")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
+    set(CPACK_COMPONENT_PYTHON_DESCRIPTION "medial axes, sphere-trees and collision answers from Python
+The module orchard_geometry turns triangle meshes into medial axes and
+certified sphere-trees, makes sets of spheres with a promise, and asks
+100,000 collision queries in one call.")
+  endif()
 else()
   set(CPACK_COMPONENTS_ALL runtime runtime_development)
   set(library liborchard-runtime${PROJECT_VERSION_MAJOR})

@@ -1,0 +1,24 @@
+"""Tuning options: keywords on their way to the command line's own table, which has their ranges and sets them."""
+from __future__ import annotations
+
+import typing
+
+import numpy
+
+
+def as_text(name: str, value: typing.Any) -> str:
+    """A value as the command line writes it, to the last digit."""
+    if isinstance(value, (bool, numpy.bool_)):
+        return "yes" if value else "no"
+    if isinstance(value, (int, numpy.integer)):
+        return str(int(value))
+    if isinstance(value, (float, numpy.floating)):
+        return repr(float(value))
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{name}: {value!r} is neither a number nor a word")
+
+
+def tuning_of(**options: typing.Any) -> dict[str, str]:
+    """The options that are given, by the command line's names."""
+    return {name.replace("_", "-"): as_text(name, value) for name, value in options.items() if value is not None}
