@@ -192,8 +192,8 @@ MedialBuildOptions to_build_options(const Tuning& tuning) {
   }
   for (const auto& [name, value] : tuning) {
     for (const apps::TuningFlag& flag : apps::tuning_flags()) {
-      if (flag.name != name || !flag.idle) continue;
-      if (const std::string cause = flag.idle(options); !cause.empty())
+      if (flag.name != name || !flag.unused) continue;
+      if (const std::string cause = flag.unused(options); !cause.empty())
         throw py::value_error(name + " has no effect with " + cause);
     }
   }
