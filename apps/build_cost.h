@@ -6,8 +6,8 @@
 
 namespace orchard::apps {
 
-// What a build will take, from what others took (docs/results/build-cost.md): tightened and merged trees within a factor of two
-// there, on a processor of the 2020s; octrees and annealing differ more among meshes.
+// What a build will take, from what others took (docs/results/build-cost.md): tightened and merged trees within a
+// factor of two there, on a processor of the 2020s; octrees and annealing differ more among meshes.
 struct BuildCost {
   double spheres = 0;  // in all levels, if the surface has room for them
   double points = 0;   // of the surface, for a medial axis; 0: none is made

@@ -5,8 +5,8 @@
 #include <cctype>
 
 #include "commands.h"
-#include "number_text.h"
 #include "input_file.h"
+#include "number_text.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "outputs.h"

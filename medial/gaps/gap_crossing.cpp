@@ -236,7 +236,7 @@ class Repair {
   detail::CellNeighbors neighbors_;
   std::optional<detail::RestrictedVoronoi> restricted_;
   std::vector<Crossing> crossings_;         // known to be left, ascending by cell
-  bool from_scratch_ = false;                       // they come from scratch, not from updates
+  bool from_scratch_ = false;               // they come from scratch, not from updates
   Index cells_tested_ = 0;                  // when they were last looked for
   std::vector<std::array<Index, 2>> cuts_;  // triangles that cut each other, both ways round; ascending
 };

@@ -15,8 +15,8 @@ class OverlapList {
 
   // Of the step under way, in any order, any number of times.
   void add(const BodyPair& pair) { append(from_scratch_ ? pairs_ : added_, pair); }  // it touches
-  void drop(const BodyPair& pair) { dropped_.push_back(pair); }              // it does not, unless it is added, too
-  void make_room(std::size_t slots) { grow(marks_, slots); }                 // bodies that are marked are below
+  void drop(const BodyPair& pair) { dropped_.push_back(pair); }  // it does not, unless it is added, too
+  void make_room(std::size_t slots) { grow(marks_, slots); }     // bodies that are marked are below
   void mark(BodyIndex body, std::uint8_t what) noexcept {
     if (from_scratch_ && what == kUpdated) return;
     marks_[body] |= what;

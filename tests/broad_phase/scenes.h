@@ -5,7 +5,8 @@
 
 #include "worlds.h"
 
-// The scenes of the table in docs/results/benchmarks.md, for the benchmark and for a test that compares them with brute force.
+// The scenes of the table in docs/results/benchmarks.md, for the benchmark and for a test that compares them with brute
+// force.
 namespace orchard::runtime::test {
 
 enum class SceneKind : std::uint8_t {

@@ -27,7 +27,8 @@ TEST(ParaViewPlugin, ReadsTheVersionThatTheProgramAndThePageHave) {
   std::memcpy(&header, bytes.data() + 12, sizeof header);
   const std::string number = std::to_string(version);
   EXPECT_EQ(found_in("viz/paraview/orchard_reader.py", "MAGIC, VERSION, BLOCK_BYTES, LEAF = [^,]*, ([0-9]+),"), number);
-  EXPECT_EQ(found_in("docs/reference/formats.md", "used in place by `view` and\n`MappedTree`. Version ([0-9]+)\\."), number);
+  EXPECT_EQ(found_in("docs/reference/formats.md", "used in place by `view` and\n`MappedTree`. Version ([0-9]+)\\."),
+            number);
   EXPECT_EQ(found_in("docs/reference/formats.md", "u32 \\| version: ([0-9]+) \\|"), number);
   EXPECT_EQ(found_in("docs/reference/formats.md", "the version is above ([0-9]+);"), number);
   EXPECT_EQ(found_in("docs/reference/formats.md", "header size: ([0-9]+)"), std::to_string(header));

@@ -59,8 +59,8 @@ struct FlaggedMedialMesh {
 MedialMesh without_deleted(const FlaggedMedialMesh& flagged);
 
 // The .ma format: a line "nv ne nf", then lines "v x y z r", "e i j" and "f i j k", counted from 0, each of which may
-// end with flags (docs/reference/formats.md). Numbers are the shortest that read back the same. Flags are written where there are
-// any, in the columns that MATFP reads; the column of deleted edges or triangles only if one is.
+// end with flags (docs/reference/formats.md). Numbers are the shortest that read back the same. Flags are written where
+// there are any, in the columns that MATFP reads; the column of deleted edges or triangles only if one is.
 std::string to_ma(const MedialMesh& mesh);
 std::string to_ma(const FlaggedMedialMesh& flagged);
 // The structure section for the end of a .ma file, as MATStruct reads it: a line with the number of parts, then for

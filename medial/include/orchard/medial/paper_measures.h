@@ -14,8 +14,8 @@ struct PaperOptions {
 };
 
 // What papers on medial axes print, by their own definitions, so that their numbers can be recomputed. Sampled: what
-// they find is no bound, and grows or falls with the samples; medial_quality() has bounds. docs/reference/medial-measures.md has
-// the sources. NaN where there is nothing to measure.
+// they find is no bound, and grows or falls with the samples; medial_quality() has bounds.
+// docs/reference/medial-measures.md has the sources. NaN where there is nothing to measure.
 struct PaperMeasures {
   // Point2Skeleton (Lin et al. 2021): of samples of the surface and of the reconstruction's boundary, each to its
   // nearest one of the other set. Over the diagonal of the box.

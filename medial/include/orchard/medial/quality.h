@@ -12,8 +12,9 @@
 
 namespace orchard {
 
-// How good a medial mesh is for a solid, whichever system made it. docs/reference/medial-measures.md defines each metric and says
-// what is perfect. The reconstruction is the union of the balls, cones and slabs of its vertices, edges and triangles.
+// How good a medial mesh is for a solid, whichever system made it. docs/reference/medial-measures.md defines each
+// metric and says what is perfect. The reconstruction is the union of the balls, cones and slabs of its vertices, edges
+// and triangles.
 
 struct QualityOptions {
   Index surface_samples = 100'000;  // for coverage and protrusion

@@ -3,8 +3,9 @@
 
 namespace orchard {
 
-// How well a medial mesh is made: its sheets, borders and triangles, whatever solid it is of. docs/reference/medial-measures.md
-// defines each measure. Lengths over the diagonal that is given. NaN where there is nothing to measure.
+// How well a medial mesh is made: its sheets, borders and triangles, whatever solid it is of.
+// docs/reference/medial-measures.md defines each measure. Lengths over the diagonal that is given. NaN where there is
+// nothing to measure.
 struct ShapeMeasures {
   Index sheets = 0;                         // of triangles that are joined across edges of exactly two
   Index small_sheets = 0;                   // whose bounding box has a diagonal below their largest radius

@@ -102,9 +102,9 @@ struct DetectorOptions {
   double position_slack = 0;  // see BroadPhaseOptions
   // Whether every moving body's state is asked for at every step and compared with what was promised (4.4). A promise
   // that does not hold is then cancelled in time for this very step, counted, and named in Frame::broken: nothing is
-  // missed. Without it a body is only asked for when something depends on it, which costs less (docs/guide/detector.md), and
-  // contacts are missed in silence unless every promise is kept or cancel() is called. Empty: on with a state source,
-  // off where the detector keeps the states, as set_state() cancels what it changes.
+  // missed. Without it a body is only asked for when something depends on it, which costs less
+  // (docs/guide/detector.md), and contacts are missed in silence unless every promise is kept or cancel() is called.
+  // Empty: on with a state source, off where the detector keeps the states, as set_state() cancels what it changes.
   std::optional<bool> watch{};
   // An "end" comes after so many steps in a row with a certain "no"; at least 1. What trembles at contact may use more.
   std::uint32_t steps_to_end = 1;
