@@ -14,6 +14,7 @@
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/runtime/tree_file.h"
+#include "orchard/spheretree/pack.h"
 #include "orchard/spheretree/tree_io.h"
 #include "reading_report.h"
 #include "report.h"
@@ -26,54 +27,34 @@ using nlohmann::json;
 struct LevelSummary {
   Index spheres = 0, leaves = 0;
   double mean_radius = 0, max_radius = 0, max_error = 0;
-  void add(double radius, double error, bool leaf) {
-    ++spheres;
-    leaves += leaf ? 1 : 0;
-    mean_radius += radius;
-    max_radius = std::max(max_radius, radius);
-    max_error = std::max(max_error, error);
-  }
 };
 
-json levels_json(std::vector<LevelSummary>& levels) {
+// By level, the root's first. `max_error` is the largest bound on the distance of a ball's points from the solid.
+json levels_json(const SphereTree& tree) {
+  std::vector<LevelSummary> levels(tree.depth() + std::size_t{1});
+  for (const SphereNode& node : tree.nodes) {
+    LevelSummary& level = levels[node.level];
+    ++level.spheres;
+    level.leaves += node.child_count == 0 ? 1 : 0;
+    level.mean_radius += node.sphere.radius;
+    level.max_radius = std::max(level.max_radius, node.sphere.radius);
+    level.max_error = std::max(level.max_error, node.distance_bound);
+  }
   json rows = json::array();
-  for (LevelSummary& level : levels) {
-    level.mean_radius /= std::max<Index>(1, level.spheres);
+  for (const LevelSummary& level : levels) {
     rows.push_back({{"spheres", level.spheres},
                     {"leaves", level.leaves},
-                    {"mean_radius", level.mean_radius},
+                    {"mean_radius", level.mean_radius / std::max<Index>(1, level.spheres)},
                     {"max_radius", level.max_radius},
                     {"max_error", level.max_error}});
   }
   return rows;
 }
 
-LevelSummary& at(std::vector<LevelSummary>& levels, std::size_t level) {
-  if (levels.size() <= level) levels.resize(level + 1);
-  return levels[level];
-}
-
 json inspect_packed(const std::filesystem::path& file) {
   runtime::PackedSphereTree tree;
   const auto status = runtime::load_file(file.c_str(), tree);
   if (status != runtime::LoadStatus::ok) throw InputError(file.string() + ": " + runtime::message(status));
-  struct Place {
-    std::uint32_t block, lane;
-    std::size_t level;
-  };
-  std::vector<LevelSummary> levels;
-  std::vector<Place> places{{0, 0, 0}};
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Place place = places[i];
-    const auto& block = tree.blocks[place.block];
-    const std::uint32_t link = block.link[place.lane];
-    const bool leaf = (link & runtime::kLeafBit) != 0;
-    at(levels, place.level).add(block.radius[place.lane], block.error[place.lane], leaf);
-    if (leaf) continue;
-    const auto [first, count] = runtime::children_of(tree.branching, link);
-    for (std::uint32_t child = 0; child < count; ++child)
-      places.push_back({first + child / runtime::kBlockWidth, child % runtime::kBlockWidth, place.level + 1});
-  }
   return {{"kind", "sphere-tree"},
           {"nodes", tree.node_count},
           {"branching", tree.branching},
@@ -83,18 +64,17 @@ json inspect_packed(const std::filesystem::path& file) {
           {"vertex_error", tree.vertex_error},
           {"origin", tree.origin},
           {"bytes_per_node", static_cast<double>(tree.blocks.size() * sizeof(runtime::SiblingBlock)) / tree.node_count},
-          {"levels", levels_json(levels)}};
+          {"levels", levels_json(unpack(tree))}};
 }
 
 json inspect_sph(const std::filesystem::path& file) {
-  const SphereTree tree = read_sph(file);
-  std::vector<LevelSummary> levels;
-  for (const SphereNode& node : tree.nodes) at(levels, node.level).add(node.sphere.radius, 0, node.child_count == 0);
+  SphereTree tree = read_sph(file);
+  for (SphereNode& node : tree.nodes) node.distance_bound = 0;  // the file says nothing of it
   return {{"kind", "sphere-tree"},
           {"nodes", tree.nodes.size()},
           {"branching", tree.branching},
           {"depth", tree.depth()},
-          {"levels", levels_json(levels)}};
+          {"levels", levels_json(tree)}};
 }
 
 json inspect_mesh(const InspectCommand& command) {

@@ -9,49 +9,13 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/xml_escaped.h"
 #include "orchard/runtime/tree_file.h"
-#include "orchard/spheretree/certify.h"
+#include "orchard/spheretree/pack.h"
 #include "orchard/spheretree/tree_io.h"
 
 namespace orchard::apps {
 namespace {
 
 using nlohmann::json;
-
-// The bounds of the spheres in the order of path_balls(), which is that of the levels.
-std::vector<double> errors_of(const runtime::PackedSphereTree& packed) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> places{{0, 0}};  // block and lane
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto [at, lane] = places[i];
-    const runtime::SiblingBlock& block = packed.blocks[at];
-    errors.push_back(double{block.error[lane]});
-    if ((block.link[lane] & runtime::kLeafBit) != 0) continue;
-    const auto [first, count] = runtime::children_of(packed.branching, block.link[lane]);
-    for (std::uint32_t child = 0; child < count; ++child)
-      places.emplace_back(first + child / runtime::kBlockWidth, child % runtime::kBlockWidth);
-  }
-  return errors;
-}
-
-// The packed floats as a tree in the mesh's frame.
-SphereTree unpack(const runtime::PackedSphereTree& packed) {
-  const Point origin(packed.origin[0], packed.origin[1], packed.origin[2]);
-  SphereTree tree;
-  tree.branching = packed.branching;
-  const std::vector<double> errors = errors_of(packed);
-  for (const PathBall& ball : path_balls(packed)) {
-    SphereNode node{.sphere = {ball.center + origin, ball.radius}, .parent = ball.parent};
-    node.distance_bound = errors[tree.nodes.size()];
-    const auto index = static_cast<Index>(tree.nodes.size());
-    if (ball.parent != kNone) {
-      SphereNode& parent = tree.nodes[ball.parent];
-      node.level = parent.level + 1;
-      if (parent.child_count++ == 0) parent.first_child = index;
-    }
-    tree.nodes.push_back(node);
-  }
-  return tree;
-}
 
 Sphere parse_sphere(const json& item) {
   if (item.is_array() && item.size() == 4)

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "orchard/geometry/error.h"
+#include "orchard/spheretree/certify.h"
+#include "packed_nodes.h"
 
 namespace orchard {
 namespace {
@@ -151,5 +153,26 @@ class Packer {
 runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface) { return Packer(tree, &surface).run(); }
 
 runtime::PackedSphereTree pack(const SphereTree& tree) { return Packer(tree, nullptr).run(); }
+
+SphereTree unpack(const runtime::PackedSphereTree& packed) {
+  const Point origin(packed.origin[0], packed.origin[1], packed.origin[2]);
+  const std::vector<PackedNode> places = packed_nodes(packed);
+  const std::vector<PathBall> balls = path_balls(packed);
+  SphereTree tree;
+  tree.branching = packed.branching;
+  for (Index i = 0; i < balls.size(); ++i) {
+    const runtime::SiblingBlock& block = packed.blocks[places[i].block];
+    SphereNode node{.sphere = {balls[i].center + origin, balls[i].radius}, .parent = balls[i].parent};
+    node.center_distance = block.depth[places[i].lane];
+    node.distance_bound = block.error[places[i].lane];
+    if (node.parent != kNone) {
+      SphereNode& parent = tree.nodes[node.parent];
+      node.level = parent.level + 1;
+      if (parent.child_count++ == 0) parent.first_child = i;
+    }
+    tree.nodes.push_back(node);
+  }
+  return tree;
+}
 
 }  // namespace orchard

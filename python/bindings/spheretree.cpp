@@ -169,24 +169,6 @@ py::dict verified(const SurfacePointer& surface, const py::buffer& bytes, py::ob
       watched(std::move(progress), [&](const Progress& watch) { return verify(*surface, tree, {}, watch); }));
 }
 
-// The packed floats as a tree in the mesh's frame.
-SphereTree unpacked(const PackedSphereTree& packed) {
-  const Point origin(packed.origin[0], packed.origin[1], packed.origin[2]);
-  SphereTree tree;
-  tree.branching = packed.branching;
-  for (const PathBall& ball : path_balls(packed)) {
-    SphereNode node{.sphere = {ball.center + origin, ball.radius}, .parent = ball.parent};
-    const auto index = static_cast<Index>(tree.nodes.size());
-    if (ball.parent != kNone) {
-      SphereNode& parent = tree.nodes[ball.parent];
-      node.level = parent.level + 1;
-      if (parent.child_count++ == 0) parent.first_child = index;
-    }
-    tree.nodes.push_back(node);
-  }
-  return tree;
-}
-
 // A .sph file of any system, packed for a surface, whose bounds are measured.
 py::dict read_sph_tree(const SurfacePointer& surface, const std::filesystem::path& file) {
   std::string text;
@@ -212,7 +194,7 @@ void bind_spheretree(py::module_& module) {
   module.def("sphere_tree", &build);
   module.def("verify", &verified);
   module.def("read_sph", &read_sph_tree);
-  module.def("to_sph", [](const py::buffer& bytes) { return to_sph(unpacked(tree_of(bytes))); });
+  module.def("to_sph", [](const py::buffer& bytes) { return to_sph(unpack(tree_of(bytes))); });
 }
 
 }  // namespace orchard::python

@@ -92,8 +92,8 @@ def sphere_set(mesh: Anything, spheres: int = 20, *, fit: str = "cover", error: 
                strict: bool = False, progress: Progress = None) -> SphereSet:
     """Exactly so many spheres for a solid, with a promise: fit="cover" holds the whole surface (solid=True: the whole
     solid), proven; "inside" lies in the solid, proven; "balanced" has its volume within 1 %. With error or volume_error
-    (percent of the diagonal, of the volume) as few as reach it, at most `spheres`. padding: every point so near to the
-    surface is held, too; min_radius: no sphere is smaller; both of cover, in mesh units.
+    (percent of the diagonal, of the volume) as few as reach it, at most `spheres`. padding, of cover alone: every point
+    so near to the surface is held, too. min_radius: no sphere is smaller. Both in mesh units.
 
     >>> from orchard_geometry import box_mesh
     >>> found = sphere_set(box_mesh(), 4, effort="low")

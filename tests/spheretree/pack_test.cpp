@@ -68,6 +68,30 @@ TEST(Pack, KeepsEveryBallInsideItsPackedOneAndEveryBoundBelowItsPackedOne) {
   }
 }
 
+TEST(Pack, UnpackingGivesTheStoredFloatsInTheFrameOfTheMesh) {
+  for (const TriangleMesh& mesh : meshes()) {
+    const Surface surface(mesh);
+    const SphereTree tree = measured(surface, 8, 3);
+    const auto packed = pack(tree, surface);
+    const SphereTree again = unpack(packed);
+    validate(again);
+    const double rounding = 1e-6 * surface.bounding_radius() + 1e-15 * surface.bounding_ball().center.norm();
+    ASSERT_EQ(again.nodes.size(), tree.nodes.size());
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+      const SphereNode &was = tree.nodes[i], &is = again.nodes[i];
+      EXPECT_EQ(is.parent, was.parent);
+      EXPECT_EQ(is.level, was.level);
+      EXPECT_EQ(is.child_count, was.child_count);
+      EXPECT_EQ(is.first_child, was.first_child);
+      EXPECT_LT((is.sphere.center - was.sphere.center).norm(), rounding);
+      EXPECT_NEAR(is.sphere.radius, was.sphere.radius, rounding);
+      EXPECT_GE(is.distance_bound, was.distance_bound);
+      EXPECT_NEAR(is.distance_bound, was.distance_bound, rounding);
+      EXPECT_NEAR(is.center_distance, was.center_distance, rounding);
+    }
+  }
+}
+
 TEST(Pack, PassesItsCertificateForAnyBranching) {
   const Surface surface(u_shape(0.3));
   for (const Index branching : {2u, 8u, 9u, 64u}) {

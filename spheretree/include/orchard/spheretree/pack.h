@@ -14,4 +14,8 @@ runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface);
 // The same of balls alone: around the root's centre, without triangles.
 runtime::PackedSphereTree pack(const SphereTree& tree);
 
+// The packed floats as a tree in the mesh's frame, with the stored bounds on distances; inaccuracies are not stored,
+// and unknown. Precondition: structure_fault(packed) is nullptr.
+SphereTree unpack(const runtime::PackedSphereTree& packed);
+
 }  // namespace orchard
