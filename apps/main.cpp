@@ -10,12 +10,12 @@
 #include <new>
 #include <optional>
 
-#include "command_line.h"
-#include "freed_memory.h"
-#include "interrupt.h"
+#include "command_line/command_line.h"
+#include "command_line/freed_memory.h"
+#include "command_line/interrupt.h"
+#include "command_line/standard_streams.h"
+#include "command_line/usage_error.h"
 #include "orchard/geometry/error.h"
-#include "standard_streams.h"
-#include "usage_error.h"
 
 namespace {
 

@@ -18,8 +18,8 @@
 #include <map>
 #include <string>
 
-#include "build.h"
-#include "certificate.h"
+#include "algorithms/build.h"
+#include "certificate/certificate.h"
 #include "hard_sets.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/sampling.h"

@@ -19,7 +19,7 @@ namespace orchard::python {
 // Surfaces are immutable, so threads and results share them.
 using SurfacePointer = std::shared_ptr<Surface>;
 
-// Tuning options by the names of the command line, and their values as text; apps/medial_tuning.h.
+// Tuning options by the names of the command line, and their values as text; apps/medial/medial_tuning.h.
 using Tuning = std::map<std::string, std::string>;
 
 // A long call: work(progress) without the GIL. Throws what Ctrl-C or the callback threw, and Cancelled if that said no.

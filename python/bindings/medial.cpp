@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "medial_tuning.h"
+#include "medial/medial_tuning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"

@@ -1,7 +1,7 @@
 // What is measured of medial axes, and what is made of them.
 #include <cmath>
 
-#include "medial_measures.h"
+#include "medial/medial_measures.h"
 #include "medial_types.h"
 #include "orchard/medial/axis_distance.h"
 #include "orchard/medial/envelope.h"

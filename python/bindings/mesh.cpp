@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "construction.h"
+#include "input/repair_distance.h"
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/repair.h"
@@ -11,7 +12,6 @@
 #include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/surface_distance.h"
 #include "orchard/geometry/wrap.h"
-#include "repair_distance.h"
 
 namespace orchard::python {
 namespace {

@@ -235,5 +235,5 @@ def sphere_tree(
 
 def _tuning_names() -> set[str]:
     """Those that `orchard build` has: what leads to an axis that is not refined."""
-    refining = 4  # TuningStep::refining of apps/medial_tuning.h
+    refining = 4  # TuningStep::refining of apps/medial/medial_tuning.h
     return {row["name"].replace("-", "_") for row in _construction.tuning_table() if row["step"] < refining}

@@ -1,0 +1,26 @@
+#pragma once
+#include "command_line/command_line.h"
+
+// Each command with its options, in files of their own by what they are about.
+namespace orchard::apps {
+
+// tree_commands.cpp
+void add_build(CLI::App& app, Request& request);
+void add_collide(CLI::App& app, Request& request);
+void add_verify(CLI::App& app, Request& request);
+void add_compare(CLI::App& app, Request& request);
+void add_profile(CLI::App& app, Request& request);
+void add_simulate(CLI::App& app, Request& request);
+
+// axis_commands.cpp
+void add_sample(CLI::App& app, Request& request);
+void add_voronoi(CLI::App& app, Request& request);
+void add_medial(CLI::App& app, Request& request);
+void add_leaderboard(CLI::App& app, Request& request);
+void add_thickness(CLI::App& app, Request& request);
+
+// set_commands.cpp
+void add_spheres(CLI::App& app, Request& request);
+void add_audit(CLI::App& app, Request& request);
+
+}  // namespace orchard::apps

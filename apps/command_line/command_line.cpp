@@ -1,0 +1,154 @@
+#include "command_line/command_line.h"
+
+#include <fmt/core.h>
+
+#include <optional>
+
+#include "command_line/add_commands.h"
+#include "command_line/command_list.h"
+#include "command_line/list_option.h"
+#include "command_line/number_validator.h"
+#include "command_line/shared_options.h"
+
+namespace orchard::apps {
+namespace {
+
+void add_inspect(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand(
+      "inspect", "Say what a mesh, tree, axis, sphere set or point file holds and what is wrong with it");
+  InspectCommand& inspect = request.inspect;
+  command
+      .add_option("file", inspect.file,
+                  "A mesh (.obj, .ply, .stl, .off), a tree (.orchard, .sph), an axis (.ma, ..), spheres (.txt, .csv, "
+                  ".json, ..) or points")
+      ->required();
+  add_join(command, inspect.join);
+  command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
+  command.add_option("--unit", inspect.unit,
+                     "The name of the file's unit, such as mm, for what is printed and written");
+  add_output_flags(command, inspect.output);
+  command.footer("Example:\n  orchard inspect data/lamp.obj --unit cm");
+  command.callback([&request, &command] {
+    request.inspect.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::inspect(request.inspect); };
+  });
+}
+
+void add_figure(CLI::App& command, ViewCommand& view) {
+  CLI::Option* color = command.add_option(
+      "--color", view.color,
+      "Colour by an array: radius, structure of axes; radius, error, inaccuracy, level of trees; any of .vtp files");
+  command.add_option("--range", view.range, "A,B: of these colours (default: of all values)")->needs(color);
+  CLI::Option* place = command.add_option("--look-at", view.look_at, "X,Y,Z: the middle of the picture");
+  command.add_option("--width", view.width, "Of what is seen around it, in mesh units (default: everything)")
+      ->needs(place)
+      ->check(CLI::PositiveNumber);
+  command.add_option("--clip", view.clip, "A,B,C,D: cut away what has A x + B y + C z > D");
+  command.add_flag("--edges", view.edges,
+                   "Lines at borders (dark) and seams (orange) of axes, and at feature edges of .vtp files");
+  command.add_flag("--balls", view.balls, "The balls of axes, not their sheets");
+  command
+      .add_option("--layout", view.layout, "Files over each other, or each beside the others with the meshes around it")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"over", "beside"}));
+  command.add_flag("--captions", view.captions, "Names and figures below the pictures");
+  command.add_flag("--transparent", view.transparent, "No white ground");
+  command.add_option("--turn", view.turn, "So many pictures from all around: PICTURE-001.png ..")
+      ->check(CLI::Range(2, 3600));
+}
+
+void add_view(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("view", "Draw files, one in the other, or look at them in a window");
+  ViewCommand& view = request.view;
+  command
+      .add_option(
+          "files", view.files,
+          "Trees (.orchard, .sph), medial axes (.ma), Voronoi diagrams (.vor), meshes (.obj, .ply, .stl, .off), "
+          "points (.xyz)")
+      ->required();
+  command.add_option("-o,--output", view.picture, "The picture, a .png file; with --window, where the key s saves to");
+  add_list(command, "--level", view.levels,
+           "Level of the trees, 0 for the root; several, such as 1,2,3, make a panel each (default: the deepest)", 0,
+           1'000'000);
+  command.add_option("--camera", view.camera,
+                     "Where the eye is: degrees from the front to the right, and upward (default: 34,23)");
+  command.add_option("--up", view.up, "The axis that points up")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: as the model needs; a window 1000x800)");
+  command.add_option("--opacity", view.opacity, "Of meshes, where there is something else to see: 0 to 1")
+      ->check(NumberValidator(CLI::Range(0.0, 1.0)))
+      ->capture_default_str();
+  add_figure(command, view);
+  command.add_flag("--window", view.window,
+                   "Open a window: up, down and digits choose the level, o and O the opacity of meshes; a click on a "
+                   "sphere prints its record, s saves what is seen, r shows all again, q closes");
+  command.add_flag("--quiet", view.quiet, "Print nothing but errors");
+  command.footer(
+      "Examples:\n  orchard view out/lamp/lamp.orchard data/lamp.obj -o out/lamp/view.png --level 1,2,3\n"
+      "  orchard view out/lamp/lamp.orchard --window");
+  command.callback([&request, &command] {
+    request.view.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::view(request.view); };
+  });
+}
+
+void add_completion(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("completion", "Print a script that completes commands in a shell");
+  command.add_option("shell", request.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  command.footer(
+      "Examples:\n  orchard completion bash > ~/.local/share/bash-completion/completions/orchard\n"
+      "  orchard completion zsh > /usr/local/share/zsh/site-functions/_orchard");
+  command.callback([&app, &request] {
+    request.run = [&app, &request] {
+      fmt::print("{}", request.shell == "bash" ? bash_completion(app) : zsh_completion(app));
+    };
+  });
+}
+
+// What packages and pages are made with; --help does not list it.
+void add_reference(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("reference", "Print all commands and options")->group("");
+  command.add_option("format", request.format, "markdown or man")
+      ->required()
+      ->check(CLI::IsMember({"markdown", "man"}));
+  command.callback([&app, &request] {
+    request.run = [&app, &request] {
+      fmt::print("{}", request.format == "man" ? manual_page(app, ORCHARD_VERSION) : markdown_reference(app));
+    };
+  });
+}
+
+// An empty word, as a script's unset variable leaves one, is never what anybody means, nor the same as no option at
+// all.
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator named([](std::string& value) { return value.empty() ? "the value is empty" : ""; }, "");
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_expected_min() > 0) option->check(named);
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app, Request& request) {
+  add_build(app, request);
+  add_collide(app, request);
+  add_verify(app, request);
+  add_inspect(app, request);
+  add_sample(app, request);
+  add_compare(app, request);
+  add_spheres(app, request);
+  add_audit(app, request);
+  add_voronoi(app, request);
+  add_medial(app, request);
+  add_leaderboard(app, request);
+  add_thickness(app, request);
+  add_view(app, request);
+  add_completion(app, request);
+  add_reference(app, request);
+  add_profile(app, request);
+  add_simulate(app, request);
+  refuse_empty_values(app);
+}
+
+}  // namespace orchard::apps

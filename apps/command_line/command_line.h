@@ -1,0 +1,38 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "command_line/commands.h"
+#include "command_line/exit_code.h"
+
+// What the user may write after the program's name.
+namespace orchard::apps {
+
+// What the user asked for, once parsed.
+struct Request {
+  BuildCommand build;
+  CollideCommand collide;
+  VerifyCommand verify;
+  InspectCommand inspect;
+  SpheresCommand spheres;
+  AuditCommand audit;
+  CompareCommand compare;
+  SampleCommand sample;
+  VoronoiCommand voronoi;
+  MedialCommand medial;
+  LeaderboardCommand leaderboard;
+  ThicknessCommand thickness;
+  ViewCommand view;
+  std::string shell, format;  // of completion and reference
+  ProfileCommand profile;
+  SimulateCommand simulate;
+  std::string typed;  // the whole command line
+  int threads = 0;    // 0: as many as the machine has
+  std::function<void()> run;
+  int exit_code = kSucceeded;  // set by a command whose result is not what was asked for
+};
+
+// Every command with its options; parsing one sets request.run.
+void add_commands(CLI::App& app, Request& request);
+
+}  // namespace orchard::apps

@@ -1,0 +1,87 @@
+#include "command_line/command_list.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace orchard::apps {
+namespace {
+
+// "{a,b,c}" in a type's name, if all of it are words.
+std::vector<std::string> choices_in(const std::string& type) {
+  const std::size_t begin = type.find('{'), end = type.find('}', begin);
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  std::vector<std::string> choices{""};
+  for (const char c : type.substr(begin + 1, end - begin - 1)) {
+    if (c == ',') {
+      choices.emplace_back();
+    } else if (c != ' ' || !choices.back().empty()) {
+      choices.back() += c;
+    }
+  }
+  const auto word = [](const std::string& choice) {
+    return !choice.empty() && std::isalpha(static_cast<unsigned char>(choice.front())) != 0 &&
+           std::all_of(choice.begin(), choice.end(),
+                       [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+  };
+  if (choices.size() < 2 || !std::all_of(choices.begin(), choices.end(), word)) return {};
+  return choices;
+}
+
+// "{1 to 9}" or "in [1 - 9]" in a type's name, without the brackets.
+std::string range_in(const std::string& type) {
+  for (const auto& [open, close] : {std::pair{'{', '}'}, {'[', ']'}}) {
+    const std::size_t begin = type.find(open), end = type.find(close, begin);
+    if (begin != std::string::npos && end != std::string::npos) return type.substr(begin + 1, end - begin - 1);
+  }
+  return {};
+}
+
+// Options whose value is a file or folder: their types do not tell.
+bool takes_file(const CLI::Option& option) {
+  static const std::vector<std::string> named{"output",    "points", "diagram", "features",
+                                              "from-axis", "axis",   "beside",  "plot"};
+  if (option.get_lnames().empty()) return true;
+  return std::find(named.begin(), named.end(), option.get_lnames().front()) != named.end();
+}
+
+OptionEntry entry_of(const CLI::Option& option) {
+  OptionEntry entry;
+  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
+  for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
+  entry.positional = entry.names.empty();
+  if (entry.positional) entry.names.push_back(option.get_name(true));
+  entry.help = option.get_description();
+  entry.flag = option.get_expected_min() == 0 && !entry.positional;
+  entry.required = option.get_required();
+  entry.repeats = option.get_expected_max() > 1;
+  entry.standard = option.get_default_str();
+  entry.file = takes_file(option);
+  if (entry.flag) return entry;
+  const std::string type = option.get_type_name();
+  entry.choices = choices_in(type);
+  if (!entry.choices.empty()) entry.file = false;
+  entry.value = range_in(type);
+  if (entry.value.empty() || !entry.choices.empty()) entry.value = type.substr(0, type.find(':'));
+  return entry;
+}
+
+CommandEntry entry_of(const CLI::App& command) {
+  CommandEntry entry{
+      .name = command.get_name(), .help = command.get_description(), .footer = command.get_footer(), .options = {}};
+  for (const CLI::Option* option : command.get_options())
+    if (!option->get_group().empty()) entry.options.push_back(entry_of(*option));
+  std::stable_partition(entry.options.begin(), entry.options.end(),
+                        [](const OptionEntry& option) { return option.positional; });
+  return entry;
+}
+
+}  // namespace
+
+std::vector<CommandEntry> command_list(const CLI::App& app) {
+  std::vector<CommandEntry> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (!command->get_group().empty()) commands.push_back(entry_of(*command));
+  return commands;
+}
+
+}  // namespace orchard::apps

@@ -1,0 +1,245 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/exit_code.h"
+#include "input/axis_source.h"
+#include "input/load_solid.h"
+#include "medial/medial_tuning.h"
+#include "orchard/medial/thickness.h"
+#include "orchard/spheretree/build.h"
+#include "orchard/spheretree/sphere_set.h"
+#include "orchard/voronoi/algorithms.h"
+#include "output/provenance.h"
+
+// The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
+// exit code and one line on stderr.
+namespace orchard::apps {
+
+struct Output {
+  bool quiet = false;  // no progress, no table
+  bool json = false;   // a JSON report on stdout instead of a table; no progress
+  bool force = false;  // replace the files of another input
+  Invocation run;      // what the report says of how it was made
+};
+
+struct BuildCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  SphereTreeOptions options;      // but for options.medial, which the tuning says
+  std::optional<double> seconds;  // what there is after that time
+  MedialTuning tuning;
+  AxisSource source;
+  bool views = true;                  // ParaView files, where the program was built with them
+  bool picture = false;               // a .png as well
+  bool page = false;                  // an .html page with pictures, tables and plots
+  bool cost = false;                  // say what it will cost, and build nothing
+  std::vector<std::string> exports;   // sph (always written), json, urdf
+  std::optional<Index> export_level;  // of the urdf; the last one
+  std::string up = "y";               // the mesh's axis that points up in the picture
+  std::vector<std::string> given;     // the options on the command line, by their long names, without dashes
+  bool accept = false;                // a promise that is not kept does not change the exit code
+  Output output;
+};
+ExitCode build(const BuildCommand& command);
+
+struct CollideCommand {
+  std::filesystem::path a, b;
+  std::string pose_a, pose;  // "tx ty tz qw qx qy qz" of a and b; empty: identity
+  Output output;
+};
+void collide(const CollideCommand& command);
+
+struct VerifyCommand {
+  std::filesystem::path tree, mesh;
+  std::optional<double> join;  // as in MeshOptions; so below
+  bool box_centered = false;   // a text tree around the centre of the mesh's bounding box
+  Output output;
+};
+bool verify(const VerifyCommand& command);  // false: something is not proven
+
+struct AuditCommand {
+  std::filesystem::path spheres, mesh;
+  std::filesystem::path folder;  // for the views and the report; empty: none
+  std::string link;              // of a file of several; empty: there is one
+  std::optional<double> buffer;  // on every radius, in place of the file's own
+  std::optional<double> join;
+  bool picture = false;
+  std::string up = "z";  // the mesh's axis that points up in the picture
+  Output output;
+};
+ExitCode audit(const AuditCommand& command);
+
+struct SpheresCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  SphereSetOptions options;
+  double error = 0, volume_error = 0;  // percent
+  double overlap = 0, center_error = 100 * ParticleOptions{}.center_error,
+         inertia_error = 100 * ParticleOptions{}.inertia_error;  // of particles, percent
+  std::vector<double> clip;              // normal and offset of the half-space that is kept; empty: all
+  std::filesystem::path vertex_weights;  // a number for each vertex; empty: none
+  std::vector<Index> curve;              // numbers of spheres to try as well
+  std::vector<std::string> exports;      // json, csv, urdf, yaml; x y z r as text always
+  std::string link;                      // the name in robots' files; empty: the mesh's
+  bool tree = false;                     // an .orchard file over the spheres; of a file of spheres, too
+  bool views = true, picture = false;
+  std::string up = "z";
+  std::vector<std::string> given;  // as of BuildCommand
+  bool accept = false;             // likewise
+  Output output;
+};
+ExitCode spheres(const SpheresCommand& command);
+
+struct SampleCommand {
+  std::filesystem::path mesh, folder;
+  Index samples = 5000;               // in all
+  std::optional<Index> edge_samples;  // of them on edges; a fifth unless it is given
+  std::optional<double> join;
+  int iterations = SamplingOptions{}.iterations;
+  std::uint64_t seed = 1;
+  Relaxation relaxation = Relaxation::automatic;
+  std::optional<double> cluster_degrees;
+  std::optional<double> crease_degrees;
+  bool views = true;  // ParaView files, where the program was built with them
+  Output output;
+};
+void sample(const SampleCommand& command);
+// Throws InputError if they contradict each other, or one leaves another without effect.
+void check_sampling(const SampleCommand& command);
+// What the command's options come to on a surface.
+SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface);
+
+struct VoronoiCommand {
+  std::filesystem::path input, folder;  // points or a mesh; no folder: write nothing
+  SampleCommand sampling;               // of a mesh; its own mesh, folder and output do not count
+  VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
+  bool compare = false;                     // run all algorithms
+  std::vector<Index> cells;                 // to write; empty: all
+  std::vector<double> box;                  // that cells are clipped to: x y z of two corners; empty: around the points
+  std::vector<std::string> sampling_given;  // the options of `sampling` on the command line, as of BuildCommand
+  Output output;
+};
+void voronoi(const VoronoiCommand& command);
+
+struct MedialCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  MedialTuning tuning;
+  AxisSource source;
+  bool outside = false;                       // the axis of the space around the solid, within a sphere
+  double outside_radius = 2;                  // of that sphere, in bounding radii
+  std::filesystem::path features;             // .obj: the edges that sheets reach to; empty: found by their loss
+  std::filesystem::path axis;                 // not empty: the axis of a file to judge; nothing is built
+  bool connect = false;                       // balls of files without cells, by their power diagram
+  std::vector<std::string> exports;           // of the axis: ma, ply, obj, graphml, vtp, npz, csv
+  bool report = false;                        // judge what was built
+  std::vector<std::filesystem::path> beside;  // axes of files to judge by the same measures, in the same table
+  bool picture = false;                       // of where the judged axis is worst
+  std::string up = "y";                       // the mesh's axis that points up in the picture
+  Index quality_samples = 100'000;            // surface points of the judgement
+  Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
+  double few_error = 0;                   // percent of the diagonal that the simplified axis may be off; 0: not asked
+  std::string few_kind = "medial";        // what the balls of the simplified axis may be: medial or free
+  bool curve = false;                     // simplify to ever fewer vertices, and write how far off each is
+  std::filesystem::path envelope;         // .obj: the surface of what the axis stands for; empty: none
+  double envelope_cell = 0.5;             // % of the diagonal
+  std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
+  std::string best = "hausdorff_max";     // of a sweep: the measure that its rows are printed by, the best first
+  std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
+  bool views = true;                      // ParaView files, where the program was built with them
+  std::vector<std::string> given;         // the options on the command line, as of BuildCommand
+  bool accept = false;                    // as of BuildCommand
+  Output output;
+};
+bool given(const MedialCommand& command, const char* option);  // on the command line
+ExitCode medial(const MedialCommand& command);
+
+struct LeaderboardCommand {
+  std::filesystem::path input, folder;  // of meshes and axes; for the table
+  std::vector<std::string> builders;    // of orchard: refined, raw; empty: both
+  std::vector<Index> vertices;          // numbers of balls beside those of the axes
+  bool connect = false;                 // as of MedialCommand
+  Index quality_samples = 20'000;       // surface points of each judgement
+  Index samples = kStandardSamples;     // surface points of orchard's axes
+  std::uint64_t seed = 1;
+  Output output;
+};
+void leaderboard(const LeaderboardCommand& command);
+
+struct CompareCommand {
+  std::filesystem::path mesh;
+  std::vector<std::filesystem::path> trees;  // .orchard, .sph, or .json lists of spheres
+  MeshOptions reading;
+  std::filesystem::path plot;  // .svg; empty: none
+  Output output;
+};
+void compare(const CompareCommand& command);
+
+struct ProfileCommand {
+  std::filesystem::path a, b;  // .orchard files; b empty: two copies of a
+  unsigned flights = 300;      // of b past a
+  std::uint64_t seed = 1;      // of the flights
+  std::filesystem::path plot;  // .svg; empty: none
+  std::filesystem::path csv;   // every pose and level; empty: none
+  Output output;
+};
+void profile(const ProfileCommand& command);
+
+struct SimulateCommand {
+  std::string scene;
+  std::filesystem::path tree;         // of the bodies; empty: a small ship of its own
+  std::size_t bodies = 0;             // 0: as many as the scene has
+  std::optional<std::size_t> frames;  // 100, or as many as were recorded
+  std::string budget;                 // a frame's, in tests of spheres or as time; empty: none
+  std::uint64_t seed = 1;
+  std::filesystem::path record, replay;  // what came from outside; empty: neither
+  std::filesystem::path folder;          // for the traces; empty: none
+  bool views = true;                     // frames for ParaView
+  Output output;
+};
+void simulate(const SimulateCommand& command);
+
+struct ThicknessCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  ThicknessOptions options;
+  std::optional<double> below;       // mesh units: say where the solid is thinner
+  std::optional<double> fail_below;  // the same, and the exit code is kTooThin if it is anywhere
+  std::string unit;                  // of the mesh, for what is printed and written; empty: "mesh units"
+  Index bins = 50;                   // of the histogram
+  bool views = true;                 // ParaView files, where the program was built with them
+  Output output;
+};
+ExitCode thickness(const ThicknessCommand& command);
+
+struct InspectCommand {
+  std::filesystem::path file;
+  std::optional<double> join;
+  bool full = false;  // count self-intersections of large meshes too
+  std::string unit;   // of the file, for what is printed and written; empty: none is named
+  Output output;
+};
+void inspect(const InspectCommand& command);
+
+struct ViewCommand {
+  std::vector<std::filesystem::path> files;  // trees, axes, diagrams, meshes, points: all in one picture
+  std::filesystem::path picture;             // .png; of a window, where s saves to
+  std::vector<Index> levels;                 // of the trees, a panel for each; empty: the deepest
+  std::string camera, size;                  // "azimuth,elevation" in degrees, "widthxheight" in pixels; empty: as fits
+  std::string up = "y";
+  double opacity = 0.16;        // of meshes beside other things
+  std::string color, range;     // an array; "a,b"
+  std::string look_at, clip;    // "x,y,z"; "a,b,c,d"
+  std::optional<double> width;  // of what is seen around look_at, in mesh units
+  std::string layout = "over";  // or beside
+  bool edges = false, balls = false, captions = false, transparent = false;
+  Index turn = 0;  // frames of a turntable; 0: one picture
+  bool window = false, quiet = false;
+  Invocation run;  // which the picture says
+};
+void view(const ViewCommand& command);
+
+}  // namespace orchard::apps

@@ -1,0 +1,29 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/command_line.h"
+
+// Options that several commands have, so that they read the same everywhere.
+namespace orchard::apps {
+
+// The options on the command line, by their long names.
+std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options);
+std::vector<std::string> given_of(const CLI::App& command);
+
+void add_mesh(CLI::App& command, std::filesystem::path& mesh);
+void add_mesh_options(CLI::App& command, MeshOptions& options);
+CLI::Option* add_join(CLI::App& command, std::optional<double>& join);
+void add_threads(CLI::App& command, Request& request);
+CLI::Option* add_up(CLI::App& command, std::string& up);
+void add_accept(CLI::App& command, bool& accept);
+CLI::Option* add_force(CLI::App& command, Output& output);
+void add_output_flags(CLI::App& command, Output& output);
+// How axes are tuned: all of it, or what trees have a use for.
+void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree);
+void add_axis_source(CLI::App& command, AxisSource& source);
+
+}  // namespace orchard::apps

@@ -1,0 +1,171 @@
+#include "command_line/tree_options.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "command_line/list_option.h"
+#include "command_line/number_validator.h"
+
+namespace orchard::apps {
+namespace {
+
+const std::map<std::string, TreeMethod> kMethods{{"tightened", TreeMethod::tightened},
+                                                 {"merging", TreeMethod::merging},
+                                                 {"annealing", TreeMethod::annealing},
+                                                 {"octree", TreeMethod::octree}};
+const std::map<std::string, SetEnergy> kEnergies{{"maximum", SetEnergy::maximum}, {"sum", SetEnergy::sum}};
+const std::map<std::string, SphereEnergy> kDistances{{"lemma", SphereEnergy::lemma},
+                                                     {"samples", SphereEnergy::samples},
+                                                     {"corrected-samples", SphereEnergy::corrected_samples}};
+const std::map<std::string, Effort> kEfforts{
+    {"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}};
+const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balanced},
+                                                   {"maximum", Objective::maximum},
+                                                   {"mean", Objective::mean},
+                                                   {"volume", Objective::volume}};
+
+const std::map<std::string, Selection> kSelections{
+    {"independent", Selection::independent}, {"acyclic", Selection::acyclic}, {"exhaustive", Selection::exhaustive}};
+const std::map<std::string, MergeClosing> kClosings{{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}};
+
+template <class Value>
+const char* key_of(const std::map<std::string, Value>& names, Value value) {
+  for (const auto& [key, candidate] : names)
+    if (candidate == value) return key.c_str();
+  return "";
+}
+
+template <class Value>
+std::vector<std::string> keys(const std::map<std::string, Value>& names) {
+  std::vector<std::string> list;
+  list.reserve(names.size());
+  for (const auto& entry : names) list.push_back(entry.first);
+  return list;
+}
+
+template <class Value>
+CLI::Option* add_choice(CLI::App& command, const char* option, const std::map<std::string, Value>& names, Value& value,
+                        const char* what) {
+  return command
+      .add_option_function<std::string>(
+          option, [&names, &value](const std::string& key) { value = names.at(key); }, what)
+      ->check(CLI::IsMember(keys(names)));
+}
+
+// "x,y,z,r=E".
+Refinement::Region parse_region(const std::string& text) {
+  std::array<double, 5> values{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, values[i]);
+    const char separator = i == 3 ? '=' : ',';
+    const bool last = i + 1 == values.size();
+    if (error != std::errc() || (last ? next != end : next == end || *next != separator))
+      throw CLI::ValidationError("--region " + text +
+                                 ": give a ball and the error allowed there as x,y,z,r=E in mesh units");
+    at = next + 1;
+  }
+  const bool finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  if (!finite || !(values[3] > 0) || !(values[4] > 0))
+    throw CLI::ValidationError("--region " + text + ": r and E must be above 0, all numbers finite");
+  return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
+}
+
+// The numbers of dissertation 5.3.1, in place of the effort's.
+void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
+  AnnealingTuning& tuning = options.annealing;
+  constexpr const char* group = "Annealing, in place of what --effort stands for [as in the dissertation]";
+  const auto share = NumberValidator(CLI::Range(1e-6, 1 - 1e-6));
+  const auto count = CLI::Range(1, 1'000'000);
+  const auto add = [&](const char* option, auto& value, const char* what, const auto& check) {
+    command.add_option(option, value, what)->check(check)->group(group);
+  };
+  add_choice(command, "--anneal-distance", kDistances, options.distance,
+             "How loose a sphere is: by Lemma 5.1 (lemma, the default), at 20 points (samples), or there and corrected "
+             "(corrected-samples)")
+      ->group(group);
+  add("--anneal-move", tuning.move, "Longest translation of a change, in radii of the parent [0.035]",
+      NumberValidator(CLI::Range(0.0, 1.0)));
+  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]",
+      NumberValidator(CLI::Range(0.01, 1.0)));
+  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]",
+      NumberValidator(CLI::Range(1.0, 100.0)));
+  add("--anneal-first-trials", tuning.first_trials, "Changes that the first temperature is found by [40]", count);
+  add("--anneal-first-acceptance", tuning.first_acceptance, "Probability of a mean rise at the first temperature [0.9]",
+      share);
+  add("--anneal-max-accepted", tuning.max_accepted, "Accepted changes at one temperature, at most [200]", count);
+  add("--anneal-max-rejected", tuning.max_rejected, "Rejected changes at one temperature, at most [200]", count);
+  add("--anneal-max-uncovering", tuning.max_uncovering,
+      "Changes at one temperature that uncover the surface and are tried again, at most [20000]", count);
+  add("--anneal-cooling", tuning.cooling, "Factor from one temperature to the next [0.9]", share);
+  add("--anneal-first-iterations", tuning.iterations_first, "Temperatures on the first level [100]", count);
+  add("--anneal-iterations", tuning.iterations, "Temperatures on the levels below [50]", count);
+}
+
+}  // namespace
+
+const char* name(TreeMethod method) { return key_of(kMethods, method); }
+const char* name(Effort effort) { return key_of(kEfforts, effort); }
+const char* name(Objective objective) { return key_of(kObjectives, objective); }
+const char* name(Selection selection) { return key_of(kSelections, selection); }
+
+void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
+  add_choice(
+      command, "--method", kMethods, options.method,
+      "How to build: tightened (default), the tightest; merging along the medial axis; simulated annealing; octree");
+  auto* depth = command.add_option("--depth", options.depth, "Levels below the root at most")
+                    ->check(CLI::Range(1, 20))
+                    ->capture_default_str();
+  auto* branching = command
+                        .add_option("--branching", options.branching,
+                                    "Children of a sphere at most; on average with tightened, where a sphere has as "
+                                    "many as it is worth, and merging, up to three times as many; "
+                                    "above 64 for tightened only")
+                        ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
+                        ->capture_default_str();
+  add_list(command, "--spheres", options.spheres,
+           "tightened: N1,N2,.. spheres on each level at most, in place of --depth and --branching; children go where "
+           "they help, up to 64 to a sphere")
+      ->excludes(depth)
+      ->excludes(branching);
+  add_choice(
+      command, "--effort", kEfforts, options.effort,
+      "How long to search: tightened, about 1 : 2 : 6; annealing, about 1 : 3 : 17, high as in the dissertation");
+  add_choice(command, "--objective", kObjectives, options.objective,
+             "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
+  add_choice(command, "--closing", kClosings, options.closing,
+             "merging: how spheres come to cover what their points miss: fitted again to it (default), or grown by a "
+             "tenth at a time, as in the dissertation");
+  add_choice(command, "--energy", kEnergies, options.energy,
+             "annealing: what makes a set of siblings loose, its loosest (default) or all together");
+  add_annealing_options(command, options);
+  add_choice(
+      command, "--redundant", kSelections, options.redundancy,
+      "Which spheres that others make needless are left out: all that can be (exhaustive, the default), chains of "
+      "them without cycles (acyclic), or only those that no other of them rests on, as in the dissertation "
+      "(independent)");
+  command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
+  command
+      .add_option("--error", options.refinement.error,
+                  "No children for a sphere whose inaccuracy is this or less, in mesh units (0: down to --depth)")
+      ->check(NumberValidator(CLI::NonNegativeNumber));
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--region",
+          [&options](const std::vector<std::string>& regions) {
+            for (const std::string& region : regions) options.refinement.regions.push_back(parse_region(region));
+          },
+          "x,y,z,r=E: the same, for spheres that meet this ball, in place of --error; may be repeated")
+      ->allow_extra_args(false);
+}
+
+}  // namespace orchard::apps

@@ -1,0 +1,150 @@
+#include "command_line/unused_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "command_line/tree_options.h"
+#include "medial/medial_run.h"
+#include "orchard/geometry/error.h"
+
+namespace orchard::apps {
+namespace {
+
+// What options of tree_options.cpp are for, where that is not every method.
+struct OwnOption {
+  const char* option;
+  std::vector<TreeMethod> methods;
+};
+const std::vector<OwnOption>& own_options() {
+  static const std::vector<OwnOption> options = [] {
+    std::vector<OwnOption> own{{"effort", {TreeMethod::tightened, TreeMethod::annealing}},
+                               {"objective", {TreeMethod::tightened}},
+                               {"spheres", {TreeMethod::tightened}},
+                               {"time", {TreeMethod::tightened}},
+                               {"closing", {TreeMethod::merging}}};
+    for (const char* option :
+         {"energy", "anneal-distance", "anneal-move", "anneal-min-scale", "anneal-max-scale", "anneal-first-trials",
+          "anneal-first-acceptance", "anneal-max-accepted", "anneal-max-rejected", "anneal-max-uncovering",
+          "anneal-cooling", "anneal-first-iterations", "anneal-iterations"})
+      own.push_back({option, {TreeMethod::annealing}});
+    return own;
+  }();
+  return options;
+}
+
+std::string names_of(const std::vector<TreeMethod>& methods) {
+  std::vector<std::string> names;
+  names.reserve(methods.size());
+  for (const TreeMethod method : methods) names.emplace_back(name(method));
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
+// The steps to an axis that a file stands in for. An axis of one's own still gets points on the surface, and is pruned.
+std::vector<TuningStep> steps_replaced(const std::string& source) {
+  if (source == "points") return {TuningStep::points, TuningStep::open_places};
+  if (source == "diagram") return {TuningStep::points, TuningStep::diagram, TuningStep::open_places};
+  return {TuningStep::diagram, TuningStep::axis};
+}
+
+using Names = std::vector<std::string>;
+
+bool among(const std::string& name, const Names& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Refuses flags for a step that a file is in place of.
+void refuse_replaced(const TuningFlag& flag, const Names& sources) {
+  for (const std::string& source : sources) {
+    const std::vector<TuningStep> replaced = steps_replaced(source);
+    if (std::find(replaced.begin(), replaced.end(), flag.step) != replaced.end())
+      throw InputError(
+          fmt::format("--{} has no effect with --{}, whose file is in place of that step", flag.name, source));
+  }
+}
+
+// Refuses a flag that other flags' values leave without effect, whichever of the tunings is run.
+void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tunings) {
+  if (!flag.unused) return;
+  std::string why;
+  for (const MedialTuning& tuning : tunings) {
+    why = flag.unused(tuning);
+    if (why.empty()) return;
+  }
+  throw InputError(fmt::format("--{} has no effect with {}", flag.name, why));
+}
+
+// Refuses what a sweep overrides, and what it varies without any column that would tell.
+void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
+  for (const std::string& name : swept) {
+    if (std::count(swept.begin(), swept.end(), name) > 1)
+      throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", name));
+    if (among(name, command.given))
+      throw InputError(fmt::format("--{} has no effect with --sweep {}=.., which sets it", name, name));
+  }
+  if (among("raw", command.given) && among("refine", swept))
+    throw InputError("--raw has no effect with --sweep refine=.., which sets it");
+}
+
+}  // namespace
+
+void refuse_unused_options(const BuildCommand& command) {
+  const TreeMethod method = command.options.method;
+  for (const auto& [option, methods] : own_options()) {
+    if (among(option, command.given) && std::find(methods.begin(), methods.end(), method) == methods.end())
+      throw InputError(
+          fmt::format("--{} has no effect on --method {}; it is for {}", option, name(method), names_of(methods)));
+  }
+  Names sources;
+  for (const char* source : {"points", "diagram", "from-axis"})
+    if (among(source, command.given)) sources.emplace_back(source);
+  const auto refuse_without_axis = [&](const std::string& option) {
+    throw InputError(fmt::format("--{} has no effect on --method {}, which builds from no medial axis; it is for {}",
+                                 option, name(method), names_of({TreeMethod::tightened, TreeMethod::merging})));
+  };
+  if (!samples_surface(method) && !sources.empty()) refuse_without_axis(sources.front());
+  for (const TuningFlag& flag : tuning_flags()) {
+    if (!among(flag.name, command.given) || flag.name == "seed") continue;
+    if (!samples_surface(method)) refuse_without_axis(flag.name);
+    refuse_replaced(flag, sources);
+    refuse_disabled(flag, {command.tuning});
+  }
+}
+
+void refuse_unused_options(const MedialCommand& command) {
+  const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
+  if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
+    throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+  if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
+    throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
+  if (!command.exports.empty() && sweeps) throw InputError("--export has no effect with --sweep, which writes no axis");
+  if (among("best", command.given) && !sweeps) throw InputError("--best has no effect without --sweep");
+  if (command.picture && (sweeps || (!command.report && !judges)))
+    throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
+  const Names swept = swept_flags(command);
+  refuse_unused_in_sweep(command, swept);
+  if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
+  if (!command.features.empty()) {
+    if (judges || sweeps || command.outside || !command.tuning.refine)
+      throw InputError(fmt::format("--features has no effect with {}", judges   ? "--axis, which builds nothing"
+                                                                       : sweeps ? "--sweep"
+                                                                       : command.outside ? "--side outside"
+                                                                                         : "--raw or --refine no"));
+    if (among("feature-loss", command.given))
+      throw InputError("--feature-loss has no effect with --features, which says where sheets end");
+  }
+  Names sources;
+  for (const char* source : {"points", "diagram"})
+    if (among(source, command.given)) sources.emplace_back(source);
+  const std::vector<MedialTuning> tunings = tunings_of(command);
+  for (const TuningFlag& flag : tuning_flags()) {
+    if ((!among(flag.name, command.given) && !among(flag.name, swept)) || flag.name == "seed") continue;
+    if (judges) throw InputError(fmt::format("--{} has no effect with --axis, which builds nothing", flag.name));
+    if (sweeps && flag.step == TuningStep::report)
+      throw InputError(fmt::format("--{} has no effect with --sweep, whose table tells nothing of it", flag.name));
+    refuse_replaced(flag, sources);
+    refuse_disabled(flag, tunings);
+  }
+}
+
+}  // namespace orchard::apps

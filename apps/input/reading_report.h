@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "input/repair_distance.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/repair.h"
+
+// What a command says of the file that it read, beside what repair did to the mesh.
+namespace orchard::apps {
+
+// A line for each kind of thing that the reader skipped or decided.
+void print_reading(const std::filesystem::path& file, const MeshReadReport& reading);
+nlohmann::json reading_json(const MeshReadReport& reading);
+
+// For --strict: throws InputError if anything that makes up the surface was skipped.
+void require_complete(const std::string& name, const MeshReadReport& reading);
+
+// That filled holes moved the surface far, and what to do about it; empty if they did not.
+std::string hole_warning(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
+// Prints a warning to standard error in a line of its own, whatever else a command prints.
+void print_warning(const std::filesystem::path& file, const std::string& warning);
+void print_hole_warning(const std::filesystem::path& file, const MeshRepairReport& repair,
+                        const RepairDistance& distance, double bounding_radius);
+
+}  // namespace orchard::apps

@@ -1,0 +1,81 @@
+#include "medial/axis_arrays.h"
+
+#include <span>
+
+#include "orchard/medial/structure.h"
+
+namespace orchard::apps {
+namespace {
+
+template <std::size_t n>
+std::vector<std::uint32_t> flat(const std::vector<std::array<Index, n>>& cells) {
+  std::vector<std::uint32_t> result;
+  result.reserve(n * cells.size());
+  for (const auto& cell : cells) result.insert(result.end(), cell.begin(), cell.end());
+  return result;
+}
+
+std::vector<double> flat(const std::vector<Point>& points) {
+  std::vector<double> result;
+  result.reserve(3 * points.size());
+  for (const Point& point : points) result.insert(result.end(), {point.x(), point.y(), point.z()});
+  return result;
+}
+
+enum Array : std::size_t { kBalls, kStructure, kKind, kEdges, kTriangles, kContacts, kContactBall };
+
+}  // namespace
+
+AxisContacts contacts_of(const MedialAxis& axis) {
+  AxisContacts contacts;
+  for (Index v = 0; v < axis.size(); ++v) {
+    for (const Index point : axis.forming_points[v]) {
+      contacts.balls.push_back(v);
+      contacts.places.push_back(axis.points[point]);
+    }
+  }
+  return contacts;
+}
+
+AxisContacts contacts_of(const Surface& surface, const MedialMesh& mesh) {
+  AxisContacts contacts;
+  for (Index v = 0; v < mesh.size(); ++v) {
+    contacts.balls.push_back(v);
+    contacts.places.push_back(surface.closest(mesh.centers[v]).position);
+  }
+  return contacts;
+}
+
+std::vector<NamedArray> axis_arrays(const MedialMesh& mesh, const AxisContacts& contacts) {
+  const MedialStructure structure = medial_structure(mesh);
+  std::vector<double> balls;
+  std::vector<std::uint32_t> kinds;
+  for (Index v = 0; v < mesh.size(); ++v) {
+    const Point& center = mesh.centers[v];
+    balls.insert(balls.end(), {center.x(), center.y(), center.z(), mesh.radii[v]});
+    kinds.push_back(static_cast<std::uint32_t>(structure.parts[structure.of_vertex[v]].kind));
+  }
+  return {{"balls", {"x", "y", "z", "radius"}, std::move(balls)},
+          {"structure", {"structure"}, structure.of_vertex},
+          {"structure_kind", {"structure_kind"}, std::move(kinds)},
+          {"edges", {"a", "b"}, flat(mesh.edges)},
+          {"triangles", {"a", "b", "c"}, flat(mesh.triangles)},
+          {"contacts", {"x", "y", "z"}, flat(contacts.places)},
+          {"contact_ball", {"ball"}, contacts.balls}};
+}
+
+std::vector<std::string> axis_table_endings() {
+  return {"-balls.csv", "-edges.csv", "-triangles.csv", "-contacts.csv"};
+}
+
+std::vector<std::pair<std::string, std::string>> axis_tables(const MedialMesh& mesh, const AxisContacts& contacts) {
+  const std::vector<NamedArray> all = axis_arrays(mesh, contacts);
+  const std::vector<NamedArray> touching{all[kContactBall], all[kContacts]};
+  const std::span<const NamedArray> arrays = all;
+  return {{"-balls.csv", to_csv(arrays.subspan(kBalls, 3))},
+          {"-edges.csv", to_csv(arrays.subspan(kEdges, 1))},
+          {"-triangles.csv", to_csv(arrays.subspan(kTriangles, 1))},
+          {"-contacts.csv", to_csv(touching)}};
+}
+
+}  // namespace orchard::apps

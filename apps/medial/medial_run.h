@@ -1,0 +1,39 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/commands.h"
+#include "medial/medial_measures.h"
+#include "orchard/medial/build.h"
+#include "output/outputs.h"
+
+// The parts of `orchard medial`.
+namespace orchard::apps {
+
+// What the command asks for: all counts go with --quality-samples.
+QualityOptions quality_options(const MedialCommand& command);
+
+MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
+                      const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress);
+
+// Of an axis that was not built here, with its distance from `first`.
+MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                             const MedialMesh& first, const Progress& progress);
+
+// Throws InputError if a combination of the values of command.sweep cannot be run.
+void check_sweep(const MedialCommand& command);
+// The flags that command.sweep varies, by their names. Throws InputError if one cannot be read.
+std::vector<std::string> swept_flags(const MedialCommand& command);
+// The tuning of every combination of the values of command.sweep, its last one's fastest; without a sweep, that of the
+// command. Throws InputError if one cannot be read.
+std::vector<MedialTuning> tunings_of(const MedialCommand& command);
+// The files of a sweep, but for its report.
+std::vector<std::string> sweep_names(const MedialCommand& command);
+// Every combination of the values of command.sweep, each judged: MODEL-sweep.csv, in the order of the combinations, and
+// a plot for each metric; in the report and printed with the best by command.best first.
+void sweep_medial(const MedialCommand& command, const Destination& destination, const Surface& surface,
+                  const Progress& progress);
+
+}  // namespace orchard::apps

@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/commands.h"
+#include "orchard/medial/build.h"
+#include "orchard/medial/quality.h"
+#include "orchard/medial/segments.h"
+#include "output/outputs.h"
+
+// What `orchard medial` shows: files for ParaView, and a picture.
+namespace orchard::apps {
+
+// What is wrong where, in the units of medial_measures(): percent of the diagonal, and of the radius for centredness.
+struct MedialErrors {
+  BallErrors vertices;         // of the medial mesh, of which the axis's come first
+  BallErrors faces;            // of the balls at the middles of the axis's faces, then of its walls; no centredness
+  SurfaceErrors points, mesh;  // at the surface points, and at the vertices of the mesh
+};
+// Of an axis that was built here.
+MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, const MedialMesh& mesh,
+                           const QualityOptions& options);
+
+// Every name that they may have.
+std::vector<std::string> view_names(const std::filesystem::path& model);
+
+struct MedialViews {
+  const Surface& surface;
+  const MedialBuild& build;
+  const MedialSegments& segments;
+  const SkeletonGraph& skeleton;
+  const MedialMesh& mesh;
+  const MedialErrors* errors = nullptr;  // null: not measured
+  std::vector<WorstPlace> worst = {};
+};
+// Where the program was built with VTK.
+void write_views(const MedialCommand& command, const MedialViews& views, Outputs& outputs);
+
+// A picture of where the axis is worst, as `name`, with `worst` numbered from 1 on. Coverage is shown at `sampling`, or
+// at points of its own if that is null. On a machine that cannot draw, a line says why.
+void write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                   const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst, const std::string& name,
+                   Outputs& outputs);
+
+}  // namespace orchard::apps

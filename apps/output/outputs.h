@@ -1,0 +1,80 @@
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command_line/interrupt.h"
+#include "output/provenance.h"
+
+// The files that a command writes. Each has the model and, where several commands would want the name, the command in
+// its own, so that runs on several models and of several commands share a folder.
+namespace orchard::apps {
+
+inline constexpr const char* kWrapEnding = "-wrap.obj";          // of the wrap that a tree was built on
+inline constexpr const char* kRepairedEnding = "-repaired.obj";  // of the mesh that repair made and it was built on
+inline constexpr const char* kClippedEnding = "-clipped.obj";    // of the part of the mesh that a plane leaves
+
+// NAME-OF-MODEL + ending.
+std::string named(const std::filesystem::path& model, const std::string& ending);
+
+// Where a command's files go, and whose they are.
+struct Destination {
+  std::filesystem::path folder;
+  std::string report;     // the name of the JSON report beside them, by which a later run knows whose they are
+  Provenance provenance;  // which all of them carry
+  bool force = false;     // replace files of another input
+};
+
+// For the beginning of a command, before it works for long: throws InputError if the folder cannot be made or written
+// to, if one of `names` in it is something that cannot be replaced, or is one of `inputs`, or if the report that is
+// there says that the files are those of another input. Files without such a report are replaced. Leaves nothing
+// behind.
+void check_outputs(const Destination& destination, std::span<const std::string> names,
+                   std::span<const std::filesystem::path> inputs);
+
+// The same for a single file.
+void check_output(const std::filesystem::path& file, std::span<const std::filesystem::path> inputs);
+
+// Files that appear in their folder all together, and only if everything went well: they are written to a folder of
+// their own, `.orchard-XXXXXX` inside the other, and moved at the end. An error or a signal before that leaves nothing
+// behind, and whatever an earlier run wrote as it was. Each one carries the provenance when it appears.
+class Outputs {
+ public:
+  // Throws Error if the folder cannot be made.
+  explicit Outputs(Destination destination);
+  ~Outputs();
+  Outputs(const Outputs&) = delete;
+  Outputs& operator=(const Outputs&) = delete;
+
+  // Where to write a file until commit(), and what to tell the user about it; nothing: it goes without saying. Throws
+  // Cancelled after a signal.
+  std::filesystem::path add(const std::string& name, const std::string& what = {});
+
+  // The same without a word, for what may not succeed.
+  std::filesystem::path staged(const std::string& name) const { return staging_ / name; }
+
+  // Where commit() puts it.
+  std::filesystem::path place_of(const std::string& name) const { return destination_.folder / name; }
+
+  // Writes the report, with the provenance in it.
+  void add_report(nlohmann::json& report, const std::string& what = {});
+
+  // Moves everything, each file in place of an older one of its name. Throws Error, and InputError if meanwhile a run
+  // on another input has put its files there.
+  void commit();
+
+  // A line for each file that has something to tell, and one if those of a run with other options were replaced.
+  void print() const;
+
+ private:
+  Destination destination_;
+  std::filesystem::path staging_;
+  std::optional<RecordedRun> replaced_;
+  std::vector<std::filesystem::path> made_;  // folders that did not exist, the outermost first
+  std::vector<std::pair<std::string, std::string>> files_;
+  Writing writing_;
+};
+
+}  // namespace orchard::apps

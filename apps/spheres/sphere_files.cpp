@@ -1,0 +1,119 @@
+#include "spheres/sphere_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "input/input_file.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/ply_tables.h"
+#include "orchard/geometry/text_lines.h"
+#include "output/sphere_lists.h"
+
+namespace orchard::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool begins_number(std::string_view word) {
+  return !word.empty() &&
+         (std::isdigit(static_cast<unsigned char>(word[0])) != 0 || word[0] == '-' || word[0] == '+' || word[0] == '.');
+}
+
+SphereFile read_text(const fs::path& file) {
+  std::string text = content_of(file);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  // A header has no number where the first coordinate is to be; its line stays, so that lines count as they do in the
+  // file.
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf\"");
+  if (first != std::string::npos && text[first] != '#' && !begins_number(std::string_view(text).substr(first, 4)) &&
+      text.compare(first, 3, "nan") != 0 && text.compare(first, 3, "inf") != 0) {
+    const std::size_t end = std::min(text.find('\n', first), text.size());
+    std::fill(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  }
+  TextLines lines(file.string(), std::move(text));
+  SphereGroup group;
+  while (lines.next()) {
+    Point center;
+    for (int axis = 0; axis < 3; ++axis) center[axis] = lines.real("a coordinate");
+    add_sphere(group, center, lines.real("a radius, the fourth number"), file.string());
+  }
+  return {"text, x y z r", {std::move(group)}};
+}
+
+SphereFile read_ply(const fs::path& file) {
+  const PlyTables ply(file);
+  const PlyTables::Table* vertices = ply.find("vertex");
+  if (vertices == nullptr)
+    throw InputError(file.string() + ": has no element vertex; write one with x, y, z and radius");
+  const auto column = [&](std::initializer_list<const char*> names) -> const PlyTables::Column& {
+    for (const char* name : names)
+      if (const PlyTables::Column* found = vertices->find(name); found != nullptr && !found->list) return *found;
+    throw InputError(fmt::format("{}: its vertices have no property {}", file.string(), *names.begin()));
+  };
+  const auto &x = column({"x"}), &y = column({"y"}), &z = column({"z"}), &r = column({"radius", "r"});
+  SphereGroup group;
+  for (std::size_t i = 0; i < vertices->rows(); ++i)
+    add_sphere(group, Point(x.numbers[i], y.numbers[i], z.numbers[i]), r.numbers[i],
+               fmt::format("{}: vertex {}", file.string(), i));
+  return {"PLY with radii", {std::move(group)}};
+}
+
+// The leaves, wherever they end.
+SphereFile read_tree(const fs::path& file) {
+  const SphereLists lists = read_spheres(file);
+  SphereGroup group;
+  for (const Level* level : {&lists.levels.back(), &lists.carried.back()})
+    for (const Sphere& sphere : *level) add_sphere(group, sphere.center, sphere.radius, file.string());
+  return {"the leaves of a tree", {std::move(group)}};
+}
+
+SphereFile read_by_ending(const fs::path& file) {
+  const std::string ending = lower_extension(file);
+  if (ending == ".json") return read_json_spheres(file);
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return read_yaml_spheres(file);
+  if (ending == ".urdf") return read_urdf_spheres(file);
+  if (ending == ".ply") return read_ply(file);
+  if (ending == ".sph" || ending == ".orchard") return read_tree(file);
+  if (ending == ".txt" || ending == ".csv" || ending == ".xyz") return read_text(file);
+  throw InputError(file.string() +
+                   ": spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .urdf, .ply, .sph and "
+                   ".orchard; name it so");
+}
+
+}  // namespace
+
+void add_sphere(SphereGroup& group, const Point& center, double radius, const std::string& where) {
+  if (!center.allFinite() || !std::isfinite(radius))
+    throw InputError(where +
+                     ": a sphere has a centre or a radius that is not a finite number; correct it or leave it out");
+  if (radius > 0)
+    group.spheres.push_back({center, radius});
+  else
+    ++group.switched_off;
+}
+
+SphereFile read_sphere_file(const fs::path& file) {
+  SphereFile spheres = read_by_ending(file);
+  std::erase_if(spheres.groups,
+                [](const SphereGroup& group) { return group.spheres.empty() && group.switched_off == 0; });
+  if (spheres.groups.empty()) throw InputError(file.string() + ": holds no sphere");
+  return spheres;
+}
+
+const SphereGroup& group_named(const SphereFile& spheres, const fs::path& file, const std::string& name) {
+  std::vector<std::string> names;
+  for (const SphereGroup& group : spheres.groups) {
+    if (group.name == name && !name.empty()) return group;
+    names.push_back(group.name);
+  }
+  if (name.empty() && spheres.groups.size() == 1) return spheres.groups.front();
+  if (names == std::vector<std::string>{""}) throw InputError(file.string() + ": names no links; leave out --link");
+  const std::string fault = name.empty() ? "holds several links; choose one by --link" : "has no link " + name;
+  throw InputError(fmt::format("{}: {}: {}", file.string(), fault, fmt::join(names, ", ")));
+}
+
+}  // namespace orchard::apps

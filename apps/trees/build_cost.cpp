@@ -1,0 +1,132 @@
+#include "trees/build_cost.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace orchard::apps {
+namespace {
+
+constexpr double kWorthAWord = 30;  // seconds
+
+// Fitted to what tools/build-cost measured: so long for each step, most of which make a sphere, so long for each
+// triangle of the mesh, and more for each triangle the more steps there are. That it grows as their root is what
+// fitted, not derived.
+struct Rates {
+  double step = 0;           // seconds
+  double triangle = 0;       // seconds for each triangle and root of the number of spheres
+  double triangle_once = 0;  // seconds for each triangle
+};
+
+constexpr double kSecondsPerTriangle = 1.3e-5;
+constexpr double kSecondsPerPoint = 4.5e-5, kWithoutAxis = 1.5e-5;
+constexpr double kBytes = 2.4e7, kBytesPerPoint = 2000, kBytesPerSphere = 1000;
+constexpr double kSecondsPerTrial = 3e-5;  // of --descent, and sphere
+
+double seconds_per_point(const SphereTreeOptions& options) {
+  return options.method == TreeMethod::tightened && !options.axis ? kWithoutAxis : kSecondsPerPoint;
+}
+
+double bytes_per_triangle(TreeMethod method) { return method == TreeMethod::annealing ? 1300 : 560; }
+
+int as_number(Effort effort) { return effort == Effort::low ? 0 : effort == Effort::standard ? 1 : 2; }
+
+// Of a tightened level, which has a ball for every eight surface points at most: those beyond a thousand are searched
+// less, and cost so much of what the others do.
+constexpr double kPointsPerBall = 8, kFullySearched = 1000, kCostBeyond = 0.3;
+
+// Of each level below the root, at most. points: as of estimated_cost().
+std::vector<double> counts(const SphereTreeOptions& options, double points) {
+  std::vector<double> levels(options.spheres.begin(), options.spheres.end());
+  for (Index level = 1; options.spheres.empty() && level <= options.depth; ++level)
+    levels.push_back(std::pow(static_cast<double>(options.branching), level));
+  if (options.method == TreeMethod::tightened && points > 0)
+    for (double& level : levels) level = std::min(level, std::max(1.0, points / kPointsPerBall));
+  return levels;
+}
+
+// What takes time: spheres, or, where simulated annealing searches for the children of one, those searches. On a level
+// of the octree about four times as many cubes hold surface as above, not eight; annealing left 19 to 33 spheres of 64
+// on level 2.
+double steps(const SphereTreeOptions& options, double points) {
+  const bool octree = options.method == TreeMethod::octree, annealing = options.method == TreeMethod::annealing;
+  if (!octree && !annealing) {
+    const double beyond = options.method == TreeMethod::tightened ? kCostBeyond : 1;
+    double result = 1;
+    for (const double level : counts(options, points))
+      result += std::min(level, kFullySearched) + beyond * std::max(0.0, level - kFullySearched);
+    return result;
+  }
+  const double first = octree ? 12 : static_cast<double>(options.branching);
+  double result = 1;
+  for (Index level = 1; level <= options.depth - (annealing ? 1 : 0); ++level)
+    result += std::min(std::pow(static_cast<double>(options.branching), level), first * std::pow(4.0, level - 1.0));
+  return result;
+}
+
+Rates rates(const SphereTreeOptions& options) {
+  const int effort = as_number(options.effort);
+  switch (options.method) {
+    case TreeMethod::tightened: {
+      constexpr double kSphere[] = {0.0018, 0.003, 0.028}, kTriangle[] = {0, 3e-7, 4e-5};
+      return {kSphere[effort], kTriangle[effort], 0};
+    }
+    case TreeMethod::annealing: {
+      // Every level divides all triangles among its searches.
+      constexpr double kSearch[] = {0.04, 0.08, 0.5}, kLevel[] = {9e-5, 2.5e-4, 1.2e-3};
+      return {kSearch[effort], 0, kLevel[effort] * options.depth};
+    }
+    case TreeMethod::merging:
+      return {0.0009, 1e-7, 0};
+    case TreeMethod::octree:
+      return {0.0004, 0, 0};
+  }
+  return {};
+}
+
+std::string of_time(double seconds) {
+  if (seconds < 100) return fmt::format("{:.0f} seconds", std::ceil(seconds / 10) * 10);
+  if (seconds < 5400) return fmt::format("{:.0f} minutes", std::ceil(seconds / 60));
+  return fmt::format("{:.0f} hours", std::ceil(seconds / 3600));
+}
+
+}  // namespace
+
+BuildCost estimated_cost(const SphereTreeOptions& options, double points, double triangles) {
+  BuildCost cost;
+  cost.points = points;
+  const std::vector<double> levels = counts(options, points);
+  cost.spheres = std::accumulate(levels.begin(), levels.end(), 1.0);
+  const double spheres = steps(options, points);
+  const Rates rate = rates(options);
+  const double of_triangle = kSecondsPerTriangle + rate.triangle * std::sqrt(spheres) + rate.triangle_once;
+  cost.seconds = points * seconds_per_point(options) + spheres * (rate.step + options.descent * kSecondsPerTrial) +
+                 triangles * of_triangle;
+  cost.bytes =
+      kBytes + points * kBytesPerPoint + spheres * kBytesPerSphere + triangles * bytes_per_triangle(options.method);
+  return cost;
+}
+
+std::string in_words(const BuildCost& cost, const SphereTreeOptions& options, bool always) {
+  if (cost.seconds < kWorthAWord && !always) return {};
+  std::string text = fmt::format("up to {:.0f} spheres", cost.spheres);
+  if (cost.points > 0) text += fmt::format(" from {:.0f} surface points", cost.points);
+  text += fmt::format(": about {} of processor time and {:.1f} GB of memory", of_time(cost.seconds),
+                      std::max(0.1, cost.bytes / 1e9));
+  if (cost.seconds < kWorthAWord) return text;
+  const bool searches = options.method == TreeMethod::tightened || options.method == TreeMethod::annealing;
+  const bool points_cost_most = cost.points * seconds_per_point(options) > cost.seconds / 2;
+  if (points_cost_most) return text + "; fewer --samples take less";
+  return text + (searches && options.effort != Effort::low
+                     ? "; --effort low, a smaller --depth or --branching take less"
+                     : "; a smaller --depth or --branching takes less");
+}
+
+nlohmann::json to_json(const BuildCost& cost) {
+  return {{"spheres", cost.spheres}, {"points", cost.points}, {"seconds", cost.seconds}, {"bytes", cost.bytes}};
+}
+
+}  // namespace orchard::apps

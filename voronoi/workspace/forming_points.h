@@ -1,0 +1,27 @@
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "workspace/workspace.h"
+
+namespace orchard::detail {
+
+// Which points form vertices. Noted by several threads at once, without branches: infinity, and what free vertices have
+// in the place of points, wrap around to the first place.
+class FormingPoints {
+ public:
+  explicit FormingPoints(std::size_t points) : forms_(points + 1, 0) {}
+  void note(const VoronoiVertex& vertex) {
+    static_assert(static_cast<Index>(kInfinitePoint + 1) == 0 && kNone == kInfinitePoint);
+    for (const Index point : vertex.forming_points)
+      std::atomic_ref(forms_[static_cast<Index>(point + 1)]).store(1, std::memory_order_relaxed);
+  }
+  bool has(Index point) const { return forms_[point + 1] != 0; }
+  std::size_t count() const { return static_cast<std::size_t>(std::count(forms_.begin() + 1, forms_.end(), 1)); }
+
+ private:
+  std::vector<std::uint8_t> forms_;  // by point
+};
+
+}  // namespace orchard::detail
