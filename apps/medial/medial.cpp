@@ -23,6 +23,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
 #include "orchard/medial/read_axis.h"
+#include "output/json_values.h"
 #include "output/outputs.h"
 #include "output/promises.h"
 #include "output/report.h"
@@ -167,7 +168,7 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
   report["diagonal"] = first.judgement.quality.diagonal;
   if (!beside.empty()) report["beside"] = std::move(others);
   report["worst_places"] = to_json(places);
-  for (const auto& [stage, time] : seconds) report["report_seconds"][stage] = time;
+  report["report_seconds"] = seconds_json(seconds);
   if (command.output.quiet || command.output.json) return;
   print_table(axes, {"stability_max", "economy_spheres"});
   print(places);

@@ -14,6 +14,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/spheretree/ball_tree.h"
+#include "output/json_values.h"
 #include "output/outputs.h"
 #include "output/picture.h"
 #include "spheres/audit_report.h"
@@ -148,12 +149,12 @@ json report_of(const SpheresCommand& command, const SolidMesh& solid, const Sphe
   report["promise"] = {{"text", promise_in_words(options, set)}, {"kept", broken.none()}, {"broken", broken.what}};
   report["enough_spheres"] = broken.none() ? json(set.spheres.size()) : set.enough ? json(*set.enough) : json();
   if (set.particles) report["particles"] = to_json(*set.particles, solid.surface.bounding_box().diagonal().norm());
-  for (const auto& [stage, seconds] : set.seconds) report["seconds"][stage] = seconds;
+  report["seconds"] = seconds_json(set.seconds);
   add_solid_json(solid, report);
-  report["certified_mesh"] = !command.clip.empty()    ? json(named(command.mesh, kClippedEnding))
-                             : solid.wrap             ? json(named(command.mesh, kWrapEnding))
-                             : solid.repair.changed() ? json(named(command.mesh, kRepairedEnding))
-                                                      : json();
+  report["certified_mesh"] = !command.clip.empty() ? json(named(command.mesh, kClippedEnding))
+                             : solid.wrap          ? json(named(command.mesh, kWrapEnding))
+                             : solid.changed()     ? json(named(command.mesh, kRepairedEnding))
+                                                   : json();
   return report;
 }
 

@@ -142,7 +142,7 @@ void write_trees(const BuildCommand& command, const Provenance& provenance, cons
 
 // The mesh that everything else was built on, where that is not the file's.
 const char* ending_of(const SolidMesh& solid) {
-  return solid.wrap ? kWrapEnding : solid.repair.changed() ? kRepairedEnding : nullptr;
+  return solid.wrap ? kWrapEnding : solid.changed() ? kRepairedEnding : nullptr;
 }
 
 void write_solid(const BuildCommand& command, const SolidMesh& solid, Outputs& outputs) {
