@@ -10,6 +10,7 @@
 #include <new>
 #include <optional>
 
+#include "command_line/add_commands.h"
 #include "command_line/command_line.h"
 #include "command_line/freed_memory.h"
 #include "command_line/interrupt.h"
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   Request request;
   request.typed = app.get_name();
   for (int i = 1; i < argc; ++i) request.typed += std::string(" ") + argv[i];
+  argc = take_worker_words(argc, argv, request);
   add_commands(app, request);
   if (const std::string fault = unknown_word(app, argc, argv); !fault.empty()) return fail(kBadInput, fault);
   try {
