@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# The examples of examples/batch do what they are for. Usage: engines_test.sh SOURCE PROGRAM dask|snakemake|slurm|parallel|xargs
+# Exit code 77 and a line that says why: the engine is not installed.
+set -euo pipefail
+source=$1 program=$2 engine=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+export HOME=$folder ORCHARD=$program
+skip() { echo "skipped: $1 is not installed"; exit 77; }
+command=(build --method octree --depth 1 --no-views)
+
+mkdir "$folder/meshes"
+for number in 1 2 3 4 5 6 7; do sed "s/^o .*/o copy-$number/" "$source/data/lamp.obj" > "$folder/meshes/lamp-$number.obj"; done
+echo garbage > "$folder/meshes/bad.stl"
+
+case $engine in
+  dask)
+    /usr/bin/python3 -c 'import distributed' 2> /dev/null || skip python3-distributed
+    /usr/bin/python3 "$source/examples/batch/dask_shards.py" "$folder/meshes" "$folder/out" --shards 8 --workers 2 --kill-one \
+      --orchard "$program" -- "${command[@]}" > "$folder/said" 2> "$folder/errors" || { cat "$folder/said" "$folder/errors" >&2; exit 1; }
+    grep -q '^killing the worker' "$folder/said"
+    [ "$(grep -c ' meshes of shard ' "$folder/said")" = 8 ]
+    ;;
+  snakemake)
+    command -v snakemake > /dev/null || skip snakemake
+    (cd "$folder" && snakemake -s "$source/examples/batch/Snakefile" --cores 2 --quiet all --config "orchard=$program" meshes=meshes out=out \
+      chunk=3 "command=${command[*]}" > said 2>&1) || { cat "$folder/said" >&2; exit 1; }
+    [ -e "$folder/out/shards/3-of-3.jsonl" ]
+    ;;
+  slurm)
+    # What Slurm sets for each task of an array; two of them at once, as on two nodes.
+    for task in 1 2 3; do
+      SLURM_ARRAY_TASK_ID=$task SLURM_ARRAY_TASK_COUNT=3 SLURM_CPUS_PER_TASK=1 SLURM_MEM_PER_NODE=1000 \
+        "$source/examples/batch/slurm_array.sh" "$folder/meshes" "$folder/out" "${command[@]}" > "$folder/said-$task" &
+    done
+    for task in 1 2 3; do wait -n; done
+    # One that is sent again finds everything there.
+    SLURM_ARRAY_TASK_ID=2 SLURM_ARRAY_TASK_COUNT=1 SHARDS=3 "$source/examples/batch/slurm_array.sh" "$folder/meshes" "$folder/out" "${command[@]}" > "$folder/again"
+    grep -q '3 known before' "$folder/again"
+    "$program" batch merge "$folder/out" -o "$folder/out/table" --quiet
+    ;;
+  parallel | xargs)
+    command -v "$engine" > /dev/null || skip "$engine"
+    WITH=$engine AT_A_TIME=2 "$source/examples/batch/parallel.sh" "$folder/meshes" "$folder/out" 3 "${command[@]}" > "$folder/said"
+    ;;
+esac
+
+# A row for each mesh, in order, whatever ran them.
+[ "$(wc -l < "$folder/out/table/batch.jsonl")" = 8 ]
+grep -c '"status":"solid"' "$folder/out/table/batch.jsonl" | grep -qx 7
+head -1 "$folder/out/table/batch.jsonl" | grep -q '"mesh":"bad.stl".*"why":"refused"'
+"$program" batch "$folder/meshes" -o "$folder/whole" --quiet -- "${command[@]}"
+cmp "$folder/whole/shards/1-of-1.jsonl" "$folder/out/table/batch.jsonl"
