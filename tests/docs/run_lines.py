@@ -51,7 +51,7 @@ NOT_RUN = {
     "docs/guide/batch.md": {
         "python3 ..": "needs Dask; apps.BatchEngines.dask runs it",
         "snakemake ..": "needs Snakemake; apps.BatchEngines.snakemake runs it",
-        "sbatch ..": "needs Slurm; apps.BatchEngines.slurm runs the script",
+        "sbatch ..": "needs Slurm; apps.BatchEngines.slurm and slurm-node run the script",
         "orchard batch merge out/slurm ..": "needs what the line before it makes",
         "examples/batch/parallel.sh ..": "is in the repository; apps.BatchEngines.parallel runs it",
     },

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The examples of examples/batch do what they are for. Usage: engines_test.sh SOURCE PROGRAM dask|snakemake|slurm|parallel|xargs
+# The examples of examples/batch do what they are for. Usage: engines_test.sh SOURCE PROGRAM dask|snakemake|slurm|slurm-node|parallel|xargs
 # Exit code 77 and a line that says why: the engine is not installed.
 set -euo pipefail
 source=$1 program=$2 engine=$3
@@ -7,6 +7,45 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 export HOME=$folder ORCHARD=$program
 skip() { echo "skipped: $1 is not installed"; exit 77; }
+
+# A controller and a node in $folder/slurm, on ports of their own; both end with this script.
+start_slurm() {
+  mkdir -p "$folder/slurm/state" "$folder/slurm/spool"
+  export SLURM_CONF=$folder/slurm/slurm.conf
+  cat > "$SLURM_CONF" << END
+ClusterName=batch
+SlurmctldHost=$(hostname -s)
+SlurmctldPort=26817
+SlurmdPort=26818
+SlurmUser=root
+SlurmdUser=root
+ProctrackType=proctrack/pgid
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core_Memory
+MpiDefault=none
+StateSaveLocation=$folder/slurm/state
+SlurmdSpoolDir=$folder/slurm/spool
+SlurmctldPidFile=$folder/slurm/controller.pid
+SlurmdPidFile=$folder/slurm/node.pid
+SlurmctldLogFile=$folder/slurm/controller.log
+SlurmdLogFile=$folder/slurm/node.log
+NodeName=$(hostname -s) CPUs=$(nproc) RealMemory=2000 State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES State=UP
+END
+  slurmctld -D -f "$SLURM_CONF" > /dev/null 2>&1 &
+  local controller=$!
+  slurmd -D -f "$SLURM_CONF" > /dev/null 2>&1 &
+  local node=$!
+  # shellcheck disable=SC2064
+  trap "kill $controller $node; wait; rm -rf '$folder'" EXIT
+  for _ in $(seq 100); do
+    [ "$(sinfo -h -o %t 2> /dev/null)" = idle ] && return
+    sleep 0.2
+  done
+  echo "skipped: Slurm does not start here: $(tail -1 "$folder/slurm/node.log")"
+  exit 77
+}
 command=(build --method octree --depth 1 --no-views)
 
 mkdir "$folder/meshes"
@@ -37,6 +76,17 @@ case $engine in
     # One that is sent again finds everything there.
     SLURM_ARRAY_TASK_ID=2 SLURM_ARRAY_TASK_COUNT=1 SHARDS=3 "$source/examples/batch/slurm_array.sh" "$folder/meshes" "$folder/out" "${command[@]}" > "$folder/again"
     grep -q '3 known before' "$folder/again"
+    "$program" batch merge "$folder/out" -o "$folder/out/table" --quiet
+    ;;
+  slurm-node)
+    # Slurm itself, as a cluster of this machine alone.
+    for word in slurmctld slurmd sbatch munge; do command -v "$word" > /dev/null || skip "$word"; done
+    munge -n > /dev/null 2>&1 || { echo "skipped: munged does not run here"; exit 77; }
+    [ "$(id -u)" = 0 ] || { echo "skipped: only root can start slurmd"; exit 77; }
+    start_slurm
+    sbatch --wait --array=1-3 --mem=500M --output "$folder/said-%a" "$source/examples/batch/slurm_array.sh" "$folder/meshes" "$folder/out" \
+      "${command[@]}" || { cat "$folder"/said-* "$folder"/slurm/*.log >&2; exit 1; }
+    [ "$(cat "$folder"/said-* | grep -c ' meshes of shard ')" = 3 ]
     "$program" batch merge "$folder/out" -o "$folder/out/table" --quiet
     ;;
   parallel | xargs)
