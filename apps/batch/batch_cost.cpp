@@ -22,11 +22,20 @@ constexpr double kMargin = 2;  // of what is asked of Slurm, over what is expect
 constexpr double kMebibyte = 1048576;
 constexpr double kLeastBytes = 64 * kMebibyte, kLeastSeconds = 60;
 
-// Of an axis: for each surface point and triangle, and the program itself.
-constexpr double kRawSecondsPerPoint = 3e-4, kRefinedSecondsPerPoint = 9e-3, kSecondsPerTriangle = 2e-5;
-constexpr double kRawBytesPerPoint = 4000, kRefinedBytesPerPoint = 20000, kBytesPerTriangle = 700, kBytes = 2.4e7;
-// Of a set: for each sphere, besides the points that it is fitted to.
-constexpr double kSetSeconds = 1.5, kSecondsPerSphere = 0.05, kBytesOfSet = 3e7, kBytesPerSphere = 1e5;
+// Of a raw axis (docs/results/growth.md), of a refined one (docs/results/medial-axes.md: 2 to 26 s there), and of a
+// set: seconds and bytes at least, for each surface point or sphere, and for each triangle.
+struct Rates {
+  double seconds, per_item, per_triangle;
+  double bytes, bytes_per_item, bytes_per_triangle;
+};
+constexpr Rates kRawAxis{0.05, 9e-5, 1.7e-5, 2.4e7, 5000, 430};
+constexpr Rates kRefinedAxis{3, 8e-4, 1e-4, 4e7, 8000, 430};
+constexpr Rates kSphereSet{0.8, 0.035, 1.7e-5, 2.8e7, 2.2e5, 430};
+
+MeshCost cost_of(const Rates& rates, double items, double triangles) {
+  return {rates.seconds + items * rates.per_item + triangles * rates.per_triangle,
+          rates.bytes + items * rates.bytes_per_item + triangles * rates.bytes_per_triangle};
+}
 
 struct ShardCost {
   std::size_t meshes = 0;
@@ -72,13 +81,9 @@ MeshCost expected_cost(const WorkerCommand& worker, double triangles) {
   if (worker.name == "medial") {
     const MedialTuning& tuning = worker.request->medial.tuning;
     const double points = tuning.samples.value_or(kStandardSamples);
-    return {
-        points * (tuning.refine ? kRefinedSecondsPerPoint : kRawSecondsPerPoint) + triangles * kSecondsPerTriangle,
-        kBytes + points * (tuning.refine ? kRefinedBytesPerPoint : kRawBytesPerPoint) + triangles * kBytesPerTriangle};
+    return cost_of(tuning.refine ? kRefinedAxis : kRawAxis, points, triangles);
   }
-  const double spheres = worker.request->spheres.options.spheres;
-  return {kSetSeconds + spheres * kSecondsPerSphere + triangles * kSecondsPerTriangle,
-          kBytes + kBytesOfSet + spheres * kBytesPerSphere + triangles * kBytesPerTriangle};
+  return cost_of(kSphereSet, worker.request->spheres.options.spheres, triangles);
 }
 
 void print_batch_cost(const BatchCommand& command, const WorkerCommand& worker, const Manifest& manifest,

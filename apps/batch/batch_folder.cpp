@@ -94,7 +94,10 @@ BatchFolder::BatchFolder(fs::path folder, const Shard& shard, const WorkerComman
   std::error_code ignored;
   if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored))
     throw InputError(folder_.string() + ": is no folder; choose another place with -o");
-  make_folder(folder_ / "results");
+  fs::create_directories(folder_ / "results", ignored);
+  if (access((folder_ / "results").c_str(), W_OK | X_OK) != 0)
+    throw InputError(folder_.string() + ": cannot be written to: " + std::generic_category().message(errno) +
+                     "; choose another place with -o");
   require_same(folder_, batch_description(worker));
   make_folder(folder_ / "shards");
   claim(resume);

@@ -15,6 +15,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kBins = 40, kMostMessages = 20;
+constexpr std::size_t kMostPoints = 5000;  // of a plot: more of them no program opens gladly, and no eye tells apart
 
 ordered_json parsed(const std::string& line) { return ordered_json::parse(line); }
 
@@ -145,14 +146,15 @@ json summary_of(const MergedRows& rows) {
 
 std::vector<plot::Plot> plots_of(const MergedRows& rows) {
   std::vector<plot::Plot> plots;
+  const std::size_t every = (rows.lines.size() + kMostPoints - 1) / kMostPoints;
   plot::Plot time;
-  time.title = "time against size";
+  time.title = every > 1 ? fmt::format("time against size, one of {} meshes", every) : "time against size";
   time.x_label = "triangles";
   time.y_label = "seconds";
   time.log_x = time.log_y = true;
   plot::Series& points = time.series.emplace_back();
   points.kind = plot::Series::Kind::points;
-  for (std::size_t i = 0; i < rows.lines.size(); ++i) {
+  for (std::size_t i = 0; i < rows.lines.size(); i += every) {
     const ordered_json triangles = parsed(rows.lines[i])["figures"].value("triangles", ordered_json());
     if (!triangles.is_number()) continue;
     points.x.push_back(triangles);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kEvery = 20;  // of so many meshes one is broken
 
-// Whether a triangle is missing, which is filled in.
+// Whether a triangle is there twice, which repair drops.
 bool is_repaired(std::size_t number) { return number % 12 == 7; }
 
 TriangleMesh shape(std::size_t number) {
@@ -27,7 +27,7 @@ TriangleMesh shape(std::size_t number) {
       return box({0, 0, 0}, {size, 1, 2});
     case 1: {
       TriangleMesh ball = icosphere(1, size);
-      if (is_repaired(number)) ball.triangles.pop_back();
+      if (is_repaired(number)) ball.triangles.push_back(ball.triangles.front());
       return ball;
     }
     case 2:

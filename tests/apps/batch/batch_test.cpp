@@ -1,6 +1,10 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <stdlib.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <map>
@@ -75,7 +79,7 @@ TEST(BatchOfMany, GivesEveryMeshARowInOrderAndShardsMergeToTheSameBytes) {
   std::map<std::string, std::size_t> reasons;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i]["index"], i);
-    EXPECT_EQ(rows[i]["status"], test::batch_status(i)) << rows[i];
+    EXPECT_EQ(rows[i]["status"], std::string(test::batch_status(i))) << rows[i];
     if (rows[i]["status"] == "failed") ++reasons[rows[i]["why"]];
   }
   const std::size_t each = many.count / 100;
@@ -98,6 +102,9 @@ TEST(BatchOfMany, DoesOnlyWhatIsMissingAfterItAndItsWorkersWereKilledAtAnyMoment
   for (std::size_t wanted = step; wanted < many.count - step; wanted += step) {
     Running program(many.words("killed", {"--resume"}), {}, many.here / "err");
     many.wait_for_results("killed", wanted, program);
+    for (const pid_t process : test::processes_with((many.here / "killed").string()))
+      if (process != program.pid()) kill(process, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
     program.send(SIGKILL);  // not to its group: the workers have to end by themselves
     EXPECT_EQ(program.wait(), -1);
     many.expect_nothing_half_done("killed");
@@ -197,6 +204,42 @@ TEST(Batch, EndsCleanlyByCtrlC) {
   EXPECT_TRUE(test::all_end((here / "out").string()));
 }
 
+// What a program writes to a terminal, until it ends.
+std::string shown_on_terminal(const std::vector<std::string>& words) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return "there is no terminal";
+  std::string shown;
+  Running program(words, {}, ptsname(terminal));
+  std::array<char, 4096> piece{};
+  for (bool ended = false; !ended;) {
+    ended = program.ended();
+    for (ssize_t count = 0; (count = read(terminal, piece.data(), piece.size())) > 0;)
+      shown.append(piece.data(), static_cast<std::size_t>(count));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  close(terminal);
+  return shown;
+}
+
+TEST(Batch, ShowsRateAndTimeLeftOnATerminalAndClearsTheLine) {
+  const Workplace here;
+  fs::create_directory(here / "meshes");
+  for (const char* name : {"a", "b", "c", "d"}) here.add("meshes/" + std::string(name) + ".obj", test::icosphere(1));
+  std::vector<std::string> words{"batch",     (here / "meshes").string(),
+                                 "-o",        (here / "out").string(),
+                                 "--jobs",    "1",
+                                 "--timeout", "0.5",
+                                 "--fault",   "hang=c.obj"};
+  words.insert(words.end(), kQuickTree.begin(), kQuickTree.end());
+  const std::string shown = shown_on_terminal(words);
+  EXPECT_NE(shown.find("2 of 4 meshes, 0 failed, "), std::string::npos) << shown;
+  EXPECT_NE(shown.find(" a second, "), std::string::npos) << shown;
+  EXPECT_NE(shown.find(" left"), std::string::npos) << shown;
+  EXPECT_TRUE(shown.ends_with("\r")) << shown;
+  words.insert(words.begin() + 4, {"--resume", "--quiet"});
+  EXPECT_EQ(shown_on_terminal(words), "");
+}
+
 TEST(Batch, GivesEqualFilesOfTwoFoldersOneResult) {
   const Workplace here;
   fs::create_directories(here / "meshes/one");
@@ -247,6 +290,7 @@ TEST(Batch, RefusesBadInputInOneLineBeforeAnythingIsWritten) {
            {{meshes, "-o", out, "--", "build", "--method", "octree", "--objective", "mean"}, "--objective"},
            {{meshes, "-o", out, "--", "medial", "--axis", "a.ma"}, "belongs to one mesh"},
            {{meshes, "--", "build"}, "--output"},
+           {{meshes, "-o", "/proc/nothing", "--", "build"}, "/proc/nothing"},
            {{"merge", meshes, "-o", out}, "batch.json"}}) {
     std::vector<std::string> words{"batch"};
     words.insert(words.end(), refused.words.begin(), refused.words.end());
