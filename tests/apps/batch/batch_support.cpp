@@ -65,6 +65,11 @@ const char* batch_status(std::size_t number) {
   return number % kEvery == kEvery / 2 ? "failed" : is_repaired(number) ? "repaired" : "solid";
 }
 
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 std::size_t batch_meshes() { return more() == 1 ? 100 : 1000; }
 
 std::vector<std::string> add_batch_meshes(const Workplace& here, const std::string& folder, std::size_t count) {

@@ -8,6 +8,11 @@
 // A folder of generated meshes, and what a batch makes of it.
 namespace orchard::test {
 
+// What most tests do with every mesh: an octree of one level, in a few milliseconds.
+inline const std::vector<std::string> kQuickTree{"--", "build", "--method", "octree", "--depth", "1", "--no-views"};
+
+std::string content_of(const std::filesystem::path& file);
+
 // How many meshes: 100, or 1,000 in the long tests.
 std::size_t batch_meshes();
 

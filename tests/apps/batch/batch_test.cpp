@@ -6,9 +6,7 @@
 
 #include <array>
 #include <chrono>
-#include <fstream>
 #include <map>
-#include <set>
 #include <thread>
 
 #include "apps/batch/sha256.h"
@@ -21,105 +19,10 @@ namespace {
 
 using nlohmann::json;
 using test::Finished;
+using test::kQuickTree;
 using test::Running;
 using test::Workplace;
 namespace fs = std::filesystem;
-
-const std::vector<std::string> kQuickTree{"--", "build", "--method", "octree", "--depth", "1", "--no-views"};
-
-std::string content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-// Generated meshes, and batches on them.
-struct Many {
-  const Workplace here;
-  const std::size_t count = test::batch_meshes();
-  const std::vector<std::string> faults = test::add_batch_meshes(here, "meshes", count);
-
-  std::vector<std::string> words(const std::string& out, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"batch", (here / "meshes").string(), "-o", (here / out).string(), "--timeout", "5",
-                                 "--json"};
-    for (const auto* part : {&faults, &more, &kQuickTree}) all.insert(all.end(), part->begin(), part->end());
-    return all;
-  }
-  json run(const std::string& out, const std::vector<std::string>& more = {}, int exit_code = 0) const {
-    const Finished run = here.run(words(out, more));
-    EXPECT_EQ(run.exit_code, exit_code) << run.err;
-    return json::parse(run.out, nullptr, false);
-  }
-  fs::path merged(const std::string& out) const {
-    const fs::path table = here / (out + "-table");
-    const Finished run = here.run({"batch", "merge", (here / out).string(), "-o", table.string(), "--quiet"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return table;
-  }
-  // Nothing is left of an interrupted run: no process, no file but results that are whole.
-  void expect_nothing_half_done(const std::string& out) const {
-    EXPECT_TRUE(test::all_end((here / out).string()));
-    for (const auto& two : fs::directory_iterator(here / out / "results"))
-      for (const auto& result : fs::directory_iterator(two)) {
-        EXPECT_TRUE(json::parse(content(result.path() / "row.json"), nullptr, false).is_object()) << result;
-        EXPECT_TRUE(json::parse(content(result.path() / "cost.json"), nullptr, false).is_object()) << result;
-      }
-  }
-  void wait_for_results(const std::string& out, std::size_t results, Running& program) const {
-    while (test::results_in(here / out) < results && !program.ended())
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    ASSERT_FALSE(program.ended()) << content(here / "err");
-  }
-};
-
-TEST(BatchOfMany, GivesEveryMeshARowInOrderAndShardsMergeToTheSameBytes) {
-  const Many many;
-  many.run("whole");
-  const std::vector<json> rows = test::rows_in(many.here / "whole/shards/1-of-1.jsonl");
-  ASSERT_EQ(rows.size(), many.count);
-  std::map<std::string, std::size_t> reasons;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_EQ(rows[i]["index"], i);
-    EXPECT_EQ(rows[i]["status"], std::string(test::batch_status(i))) << rows[i];
-    if (rows[i]["status"] == "failed") ++reasons[rows[i]["why"]];
-  }
-  const std::size_t each = many.count / 100;
-  EXPECT_EQ(reasons, (std::map<std::string, std::size_t>{{"refused", 4 * each}, {"timeout", each}}));
-  EXPECT_EQ(test::rows_in(many.here / "whole/shards/1-of-1.costs.jsonl").size(), many.count);
-
-  for (const char* shard : {"3/4", "1/4", "4/4", "2/4"}) many.run("parts", {"--shard", shard, "--jobs", "3"});
-  const fs::path one = many.merged("whole"), four = many.merged("parts");
-  for (const char* file : {"batch.jsonl", "batch.csv", "batch-summary.json"})
-    EXPECT_TRUE(content(one / file) == content(four / file)) << file;
-  EXPECT_EQ(test::rows_in(one / "batch.jsonl"), rows);
-  EXPECT_TRUE(fs::exists(one / "batch.svg"));
-}
-
-TEST(BatchOfMany, DoesOnlyWhatIsMissingAfterItAndItsWorkersWereKilledAtAnyMoment) {
-  const Many many;
-  many.run("whole");
-  std::size_t before = 0;
-  const std::size_t step = many.count / 5;
-  for (std::size_t wanted = step; wanted < many.count - step; wanted += step) {
-    Running program(many.words("killed", {"--resume"}), {}, many.here / "err");
-    many.wait_for_results("killed", wanted, program);
-    for (const pid_t process : test::processes_with((many.here / "killed").string()))
-      if (process != program.pid()) kill(process, SIGKILL);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    program.send(SIGKILL);  // not to its group: the workers have to end by themselves
-    EXPECT_EQ(program.wait(), -1);
-    many.expect_nothing_half_done("killed");
-    EXPECT_GE(test::results_in(many.here / "killed"), std::max(before, wanted));
-    before = test::results_in(many.here / "killed");
-  }
-  std::map<std::string, fs::file_time_type> made;
-  for (const auto& entry : fs::recursive_directory_iterator(many.here / "killed/results"))
-    if (entry.path().filename() == "row.json") made[entry.path().string()] = entry.last_write_time();
-  const json counts = many.run("killed", {"--resume"});
-  EXPECT_EQ(counts["known_before"], before);
-  for (const auto& [file, time] : made) EXPECT_EQ(fs::last_write_time(file), time) << file << " was made twice";
-  EXPECT_TRUE(content(many.here / "killed/shards/1-of-1.jsonl") == content(many.here / "whole/shards/1-of-1.jsonl"));
-  EXPECT_FALSE(fs::exists(many.here / "killed/.work"));
-}
 
 TEST(Batch, TriesWorkersAgainThatWereKilledFromOutside) {
   const Workplace here;
@@ -197,7 +100,7 @@ TEST(Batch, EndsCleanlyByCtrlC) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   program.send(SIGINT);
   EXPECT_EQ(program.wait(), 130);
-  EXPECT_EQ(content(here / "err"), "orchard: interrupted\n");
+  EXPECT_EQ(test::content_of(here / "err"), "orchard: interrupted\n");
   EXPECT_FALSE(fs::exists(here / "out/.work"));
   EXPECT_FALSE(fs::exists(here / "out/shards/1-of-1.jsonl"));
   EXPECT_EQ(test::results_in(here / "out"), 2u);
@@ -257,107 +160,6 @@ TEST(Batch, GivesEqualFilesOfTwoFoldersOneResult) {
   words.insert(words.begin() + 4, "--resume");
   EXPECT_EQ(here.run(words).exit_code, 0);  // the folder of results is not searched for meshes
   EXPECT_EQ(test::rows_in(here / "meshes/out/shards/1-of-1.jsonl").size(), 3u);
-}
-
-struct Refused {
-  std::vector<std::string> words;
-  std::string said;
-};
-
-TEST(Batch, RefusesBadInputInOneLineBeforeAnythingIsWritten) {
-  const Workplace here;
-  const auto path = [&](const char* name) { return (here / name).string(); };
-  fs::create_directory(here / "meshes");
-  fs::create_directory(here / "empty");
-  here.add("meshes/a.obj", test::icosphere(1));
-  here.add("list", std::string("meshes/a.obj\nmeshes/gone.obj\nmeshes/lost.ply\n"));
-  here.add("nothing", std::string("# no mesh\n\n"));
-  const std::string meshes = path("meshes"), out = path("out");
-  for (const Refused& refused : std::vector<Refused>{
-           {{path("empty"), "-o", out, "--", "build"}, "holds no mesh"},
-           {{path("none"), "-o", out, "--", "build"}, "cannot be read"},
-           {{path("list"), "-o", out, "--", "build"}, "meshes/lost.ply"},
-           {{path("list"), "-o", out, "--", "build"}, "meshes/gone.obj"},
-           {{path("nothing"), "-o", out, "--", "build"}, "names no mesh"},
-           {{"/dev/zero", "-o", out, "--", "build"}, "neither a folder nor a file"},
-           {{meshes, "-o", out, "--shard", "3/2", "--", "build"}, "--shard 3/2"},
-           {{meshes, "-o", out, "--shard", "0/2", "--", "build"}, "--shard 0/2"},
-           {{meshes, "-o", out, "--shard", "1", "--", "build"}, "--shard 1"},
-           {{meshes, "-o", out}, "behind --"},
-           {{meshes, "-o", out, "--", "verify"}, "build, medial or spheres"},
-           {{meshes, "-o", out, "--", "build", "--dept", "2"}, "--depth"},
-           {{meshes, "-o", out, "--", "build", "-o", "x"}, "-o cannot be among"},
-           {{meshes, "-o", out, "--", "build", "--method", "octree", "--objective", "mean"}, "--objective"},
-           {{meshes, "-o", out, "--", "medial", "--axis", "a.ma"}, "belongs to one mesh"},
-           {{meshes, "--", "build"}, "--output"},
-           {{meshes, "-o", "/proc/nothing", "--", "build"}, "/proc/nothing"},
-           {{"merge", meshes, "-o", out}, "batch.json"}}) {
-    std::vector<std::string> words{"batch"};
-    words.insert(words.end(), refused.words.begin(), refused.words.end());
-    const Finished run = here.run(words);
-    EXPECT_EQ(run.exit_code, 2) << refused.said;
-    EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
-    EXPECT_NE(run.err.find(refused.said), std::string::npos) << run.err;
-    EXPECT_FALSE(fs::exists(here / "out")) << refused.said;
-  }
-}
-
-TEST(Batch, RefusesAFolderOfOtherOptionsAndAShardThatWasBegunUnlessItResumes) {
-  const Workplace here;
-  fs::create_directory(here / "meshes");
-  here.add("meshes/a.obj", test::icosphere(1));
-  const std::vector<std::string> begin{"batch", (here / "meshes").string(), "-o", (here / "out").string()};
-  const auto run = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = begin;
-    words.insert(words.end(), more.begin(), more.end());
-    return here.run(words);
-  };
-  ASSERT_EQ(run({"--", "build", "--method", "octree", "--depth", "1", "--no-views"}).exit_code, 0);
-  const auto before = here.files("out");
-  const Finished other = run({"--resume", "--", "build", "--method", "octree", "--depth", "2", "--no-views"});
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("--depth 1"), std::string::npos) << other.err;
-  EXPECT_NE(other.err.find("--depth 2"), std::string::npos) << other.err;
-  const Finished again = run({"--", "build", "--method", "octree", "--depth", "1", "--no-views"});
-  EXPECT_EQ(again.exit_code, 2);
-  EXPECT_NE(again.err.find("--resume"), std::string::npos) << again.err;
-  EXPECT_EQ(here.files("out"), before);
-  // The same options in another order, and what decides nothing.
-  EXPECT_EQ(
-      run({"--resume", "--", "build", "--no-views", "--threads", "2", "--depth=1", "--method", "octree"}).exit_code, 0);
-}
-
-TEST(Batch, MergeNamesTheShardsThatAreMissing) {
-  const Workplace here;
-  fs::create_directory(here / "meshes");
-  for (const char* name : {"a", "b", "c"}) here.add("meshes/" + std::string(name) + ".obj", test::icosphere(1));
-  std::vector<std::string> words{"batch", (here / "meshes").string(), "-o", (here / "out").string(), "--shard", "2/3"};
-  words.insert(words.end(), kQuickTree.begin(), kQuickTree.end());
-  ASSERT_EQ(here.run(words).exit_code, 0);
-  const Finished merge = here.run({"batch", "merge", (here / "out").string(), "-o", (here / "table").string()});
-  EXPECT_EQ(merge.exit_code, 2);
-  EXPECT_NE(merge.err.find("1/3, 3/3"), std::string::npos) << merge.err;
-  EXPECT_FALSE(fs::exists(here / "table"));
-}
-
-TEST(Batch, PredictsWhatShardsTakeForSlurm) {
-  const Workplace here;
-  fs::create_directory(here / "meshes");
-  for (const char* name : {"a", "b", "c"}) here.add("meshes/" + std::string(name) + ".obj", test::icosphere(2));
-  const auto cost = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"batch", (here / "meshes").string(), "--cost", "--json", "--shard", "1/3"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Finished run = here.run(words);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return json::parse(run.out);
-  };
-  const json few = cost({"--", "medial", "--raw", "--samples", "1000"});
-  EXPECT_EQ(few["meshes"], 3);
-  EXPECT_EQ(few["triangles"], 3 * 320);
-  EXPECT_EQ(few["sbatch"][0], "#SBATCH --array=1-3");
-  const json many = cost({"--", "medial", "--raw", "--samples", "100000"});
-  EXPECT_GT(many["seconds"], 10 * few["seconds"].get<double>());
-  EXPECT_GT(many["bytes_of_largest_shard"], 2 * few["bytes_of_largest_shard"].get<double>());
 }
 
 TEST(Sha256, IsThatOfTheStandard) {
