@@ -39,11 +39,15 @@ std::uint64_t of_stl(std::ifstream& in, std::uint64_t bytes) {
 
 std::uint64_t of_ply(std::ifstream& in) {
   std::string line;
+  std::uint64_t vertices = 0;
   for (std::size_t i = 0; i < kMostHeaderLines && std::getline(in, line) && !line.starts_with("end_header"); ++i) {
     std::istringstream words(line);
     std::string element, name;
     std::uint64_t count = 0;
-    if (words >> element >> name >> count && element == "element" && name == "face") return count;
+    if (!(words >> element >> name >> count) || element != "element") continue;
+    if (name == "vertex") vertices = count;
+    if (name == "face") return count;
+    if (name == "tristrips") return 2 * vertices;  // as closed surfaces have; the strips' lengths are behind the header
   }
   return 0;
 }

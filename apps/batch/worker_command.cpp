@@ -85,7 +85,7 @@ WorkerCommand parse_worker_command(const std::vector<std::string>& words) {
       throw InputError("batch: " + option + " cannot be among the options of " + worker.name +
                        ": the batch itself says where results go and what is printed");
   }
-  std::vector<std::string> whole{worker.name, kAnyMesh, "-o", kAnyFolder};
+  std::vector<std::string> whole{worker.name, kAnyMesh, "-o", kAnyFolder, "--json"};
   whole.insert(whole.end(), worker.options.begin(), worker.options.end());
   CLI::App app{"", "orchard"};
   app.require_subcommand(1);
