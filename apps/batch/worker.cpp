@@ -126,7 +126,12 @@ std::optional<WorkerEnd> Worker::look() {
                                     : WorkerEnd::Cause::exited;
   end.number = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   end.seconds = seconds;
-  end.peak_bytes = std::max(peak_bytes_, static_cast<std::uint64_t>(usage.ru_maxrss) * 1024);
+  // The system's account begins with the memory of this process, which the new one shared until it became another program.
+  rusage own{};
+  getrusage(RUSAGE_SELF, &own);
+  end.peak_bytes = peak_bytes_;
+  if (usage.ru_maxrss > own.ru_maxrss)
+    end.peak_bytes = std::max(peak_bytes_, static_cast<std::uint64_t>(usage.ru_maxrss) * 1024);
   end.out = output_[0].text();
   end.err = output_[1].text();
   end.out_whole = output_[0].whole();
