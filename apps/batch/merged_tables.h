@@ -19,7 +19,8 @@ std::string costs_csv(const MergedRows& rows);
 // holds no times, so that it depends on the rows alone.
 nlohmann::json summary_of(const MergedRows& rows);
 
-// Seconds against triangles, of 5,000 meshes at most (then the title says so), and the histogram of the tightness; either is left out where no mesh has a value.
+// Seconds against triangles, of 5,000 meshes at most (then the title says so), and the histogram of the tightness;
+// either is left out where no mesh has a value.
 std::vector<plot::Plot> plots_of(const MergedRows& rows);
 
 }  // namespace orchard::apps

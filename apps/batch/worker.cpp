@@ -126,7 +126,8 @@ std::optional<WorkerEnd> Worker::look() {
                                     : WorkerEnd::Cause::exited;
   end.number = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   end.seconds = seconds;
-  // The system's account begins with the memory of this process, which the new one shared until it became another program.
+  // The system's account begins with the memory of this process, which the new one shared until it became another
+  // program.
   rusage own{};
   getrusage(RUSAGE_SELF, &own);
   end.peak_bytes = peak_bytes_;
