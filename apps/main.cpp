@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/add_commands.h"
 #include "command_line/command_line.h"
 #include "command_line/freed_memory.h"
 #include "command_line/help.h"
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   Request request;
   request.typed = app.get_name();
   for (int i = 1; i < argc; ++i) request.typed += std::string(" ") + argv[i];
+  argc = take_worker_words(argc, argv, request);
   add_commands(app, request);
   try {
     std::vector<std::string> words(argv, argv + argc);

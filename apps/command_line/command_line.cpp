@@ -163,6 +163,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_reference(app, request);
   add_profile(app, request);
   add_simulate(app, request);
+  add_batch(app, request);
   refuse_empty_values(app);
   group_options(app);
 }

@@ -75,16 +75,9 @@ std::string report_name(const MedialCommand& command) {
 
 // What can be refused before anything is built; then where the files go.
 Destination check(const MedialCommand& command) {
+  check_options(command);
   std::vector<fs::path> inputs = command.source.files();
   if (!command.axis.empty()) inputs.push_back(command.axis);
-  if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
-  if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
-  check_side(command);
-  check_axis_exports(command);
-  if (command.tree && command.sweep.empty())
-    throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
-  refuse_unused_options(command);
-  check_sweep(command);  // without a sweep, that of the one combination that there is
   inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
   if (!command.features.empty()) inputs.push_back(command.features);
   inputs.insert(command.axis.empty() ? inputs.begin() : inputs.begin() + 1, command.mesh);
@@ -343,6 +336,19 @@ MedialJudgement judge_beside(const MedialCommand& command, const Surface& surfac
     *length /= diagonal;
   judgement.distance = distance;
   return judgement;
+}
+
+void check_options(const MedialCommand& command) {
+  std::vector<fs::path> inputs = command.source.files();
+  if (!command.axis.empty()) inputs.push_back(command.axis);
+  if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
+  if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  check_side(command);
+  check_axis_exports(command);
+  if (command.tree && command.sweep.empty())
+    throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
+  refuse_unused_options(command);
+  check_sweep(command);  // without a sweep, that of the one combination that there is
 }
 
 ExitCode medial(const MedialCommand& command) {
