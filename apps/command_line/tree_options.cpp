@@ -151,6 +151,9 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
       "Which spheres that others make needless are left out: all that can be (exhaustive, the default), chains of "
       "them without cycles (acyclic), or only those that no other of them rests on, as in the dissertation "
       "(independent)");
+  command.add_flag("--anneal", options.anneal,
+                   "Simulated annealing afterwards, each set of siblings from where the method has it; none gets "
+                   "looser; any method but annealing");
   command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();

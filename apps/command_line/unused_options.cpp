@@ -90,7 +90,11 @@ void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
 
 void refuse_unused_options(const BuildCommand& command) {
   const TreeMethod method = command.options.method;
+  if (command.options.anneal && method == TreeMethod::annealing)
+    throw InputError("--anneal has no effect on --method annealing, which anneals anyway");
   for (const auto& [option, methods] : own_options()) {
+    if (command.options.anneal && std::find(methods.begin(), methods.end(), TreeMethod::annealing) != methods.end())
+      continue;
     if (among(option, command.given) && std::find(methods.begin(), methods.end(), method) == methods.end())
       throw InputError(
           fmt::format("--{} has no effect on --method {}; it is for {}", option, name(method), names_of(methods)));
