@@ -141,10 +141,10 @@ class Drawing {
   }
 
  private:
-  static constexpr double kWidth = 560, kHeight = 400;
+  static constexpr double kWidth = 560, kHeight = 330;
   static std::string place(const Point& p, double t) {
     std::ostringstream text;
-    text << 90 + 370 * t - 52 * p[0] << ',' << 240 - 105 * p[1] + 58 * p[0];
+    text << 90 + 370 * t - 52 * p[0] << ',' << 180 - 105 * p[1] + 58 * p[0];
     return text.str();
   }
   void label(const Point& p, double t, const std::string& what) {
@@ -156,10 +156,10 @@ class Drawing {
 };
 
 const char* const kHorn = "fill=\"#1f6fb4\" fill-opacity=\"0.07\" stroke=\"#1f6fb4\" stroke-opacity=\"0.55\"";
-const char* const kTrapezoid = "fill=\"#d9581c\" fill-opacity=\"0.03\" stroke=\"#d9581c\" stroke-opacity=\"0.45\"";
+const char* const kTrapezoid = "fill=\"#d9581c\" fill-opacity=\"0.03\" stroke=\"#d9581c\" stroke-opacity=\"0.6\"";
 const char* const kEdge = "stroke=\"#d9581c\" stroke-width=\"1.8\"";
 const char* const kRemoved = "fill=\"none\" stroke=\"#999\" stroke-dasharray=\"3 3\"";
-const char* const kPlane = "fill=\"#2e8b4f\" fill-opacity=\"0.25\" stroke=\"#2e8b4f\" stroke-width=\"1.5\"";
+const char* const kPlane = "stroke=\"#2e8b4f\" stroke-width=\"1.5\"";
 const char* const kPath = "stroke=\"#111\" stroke-width=\"2\"";
 
 double time_of(int section) { return static_cast<double>(section) / kSections; }
