@@ -91,7 +91,7 @@ void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
 void refuse_unused_options(const BuildCommand& command) {
   const TreeMethod method = command.options.method;
   if (command.options.anneal && method == TreeMethod::annealing)
-    throw InputError("--anneal has no effect on --method annealing, which anneals anyway");
+    throw InputError("--anneal has no effect on --method annealing, which anneals anyway; leave it out");
   for (const auto& [option, methods] : own_options()) {
     if (command.options.anneal && std::find(methods.begin(), methods.end(), TreeMethod::annealing) != methods.end())
       continue;
