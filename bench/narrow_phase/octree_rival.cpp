@@ -3,6 +3,8 @@
 // bench/broad_phase/moving_octree.h). Cells are isothetic in the first body's frame, which spares transforming half of
 // the triangles, and are divided only while both bodies have triangles in them. Beyond it: bounding balls first.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "math/triangle_pair.h"
@@ -16,6 +18,7 @@ using runtime::detail::TrianglePoints;
 
 constexpr std::size_t kFewPairs = 64;  // that are compared without dividing further
 constexpr int kDeepest = 10;
+constexpr double kRounding = 1e-9;  // of the lengths involved: triangles that nearly meet a cell count as in it
 
 struct Box {
   Vec3 lower, upper;
@@ -37,11 +40,27 @@ struct Box {
 struct Triangle {
   TrianglePoints points;
   Box box;
+  Vec3 normal;  // of any length
+  double offset;
+
+  // Whether its box and its plane meet the box, but for roundings.
+  bool meets(const Box& other) const {
+    if (!box.meets(other)) return false;
+    double height = -offset, reach = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      height += normal[d] * 0.5 * (other.lower[d] + other.upper[d]);
+      reach += std::fabs(normal[d]) * 0.5 * (other.upper[d] - other.lower[d]);
+    }
+    return std::fabs(height) <= reach + kRounding * (std::fabs(offset) + reach);
+  }
 };
 
-Triangle boxed(const TrianglePoints& points) {
-  Triangle triangle{points, Box::nothing()};
+Triangle prepared(const TrianglePoints& points) {
+  Triangle triangle{points, Box::nothing(), {}, 0};
   for (const Vec3& p : points) triangle.box.extend(p);
+  const Vec3 u = points[1] - points[0], v = points[2] - points[0];
+  triangle.normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  triangle.offset = dot(triangle.normal, points[0]);
   return triangle;
 }
 
@@ -60,7 +79,7 @@ class OctreePair final : public PairRival {
  public:
   OctreePair(const runtime::TreeView& a, const runtime::TreeView& b) : body_b_(triangles_of(b)) {
     for (const TrianglePoints& t : triangles_of(a)) {
-      a_.push_back(boxed(t));
+      a_.push_back(prepared(t));
       for (const Vec3& p : t) box_a_.extend(p);
     }
     b_.resize(body_b_.size());
@@ -79,7 +98,7 @@ class OctreePair final : public PairRival {
     for (std::size_t i = 0; i < body_b_.size(); ++i) {
       TrianglePoints moved{};
       for (std::size_t k = 0; k < 3; ++k) moved[k] = runtime::transform(pose, body_b_[i][k]);
-      b_[i] = boxed(moved);
+      b_[i] = prepared(moved);
       for (const Vec3& p : moved) shared.extend(p);
     }
     if (!shared.meets(box_a_)) return false;
@@ -112,44 +131,47 @@ class OctreePair final : public PairRival {
     if (of_a == 0 || of_b == 0) return false;
     if (of_a * of_b <= kFewPairs || depth == kDeepest) return compare(cell);
     const Vec3 middle = 0.5 * (cell.box.lower + cell.box.upper);
+    std::array<Cell, 8> parts{};
+    std::size_t pairs = 0;
+    const std::size_t begin = in_cells_.size();
     for (unsigned part = 0; part < 8; ++part) {
       Box box = cell.box;
       for (unsigned d = 0; d < 3; ++d) (part >> d & 1 ? box.lower : box.upper)[d] = middle[d];
-      const Cell child = filtered(cell, box);
-      const bool meet = meet_in(child, depth + 1);
-      in_cells_.resize(child.begin);
-      if (meet) return true;
+      parts[part] = filtered(cell, box);
+      pairs += (parts[part].middle - parts[part].begin) * (parts[part].end - parts[part].middle);
     }
-    return false;
+    // Where most triangles are in most parts, dividing costs more than it saves.
+    bool meet = false;
+    if (pairs >= of_a * of_b) {
+      meet = compare(cell);
+    } else {
+      for (const Cell& part : parts) meet = meet || meet_in(part, depth + 1);
+    }
+    in_cells_.resize(begin);
+    return meet;
   }
 
   // Cells are closed, so that no contact falls between two.
   Cell filtered(const Cell& cell, const Box& box) {
     Cell child{box, in_cells_.size(), 0, 0};
     for (std::size_t k = cell.begin; k < cell.middle; ++k)
-      if (a_[in_cells_[k]].box.meets(box)) in_cells_.push_back(in_cells_[k]);
+      if (a_[in_cells_[k]].meets(box)) in_cells_.push_back(in_cells_[k]);
     child.middle = in_cells_.size();
     if (child.middle == child.begin) return {box, child.begin, child.begin, child.begin};
     for (std::size_t k = cell.middle; k < cell.end; ++k)
-      if (b_[in_cells_[k]].box.meets(box)) in_cells_.push_back(in_cells_[k]);
+      if (b_[in_cells_[k]].meets(box)) in_cells_.push_back(in_cells_[k]);
     child.end = in_cells_.size();
     return child;
   }
 
-  // A pair whose boxes meet is compared in the cell of the lower corner of what they have in common, so nearly always
-  // once.
+  // Pairs that share several cells are compared in each.
   bool compare(const Cell& cell) const {
     for (std::size_t i = cell.begin; i < cell.middle; ++i) {
       const Triangle& one = a_[in_cells_[i]];
       for (std::size_t k = cell.middle; k < cell.end; ++k) {
         const Triangle& other = b_[in_cells_[k]];
         if (!one.box.meets(other.box)) continue;
-        bool here = true;
-        for (std::size_t d = 0; d < 3; ++d) {
-          const double corner = std::max(one.box.lower[d], other.box.lower[d]);
-          here = here && cell.box.lower[d] <= corner && corner <= cell.box.upper[d];
-        }
-        if (here && runtime::detail::triangles_intersect(one.points, other.points, nullptr)) return true;
+        if (runtime::detail::triangles_intersect(one.points, other.points, nullptr)) return true;
       }
     }
     return false;
