@@ -13,7 +13,9 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kStep = 1.0 / 60, kHorizon = 0.1;
-constexpr int kFine = 12;  // parts of a step in which a path is simulated
+constexpr std::size_t kFine = 12;  // parts of a step in which a path is simulated
+
+std::size_t fine(int step) { return static_cast<std::size_t>(step) * kFine; }
 
 class Noise : public test::Draw {
  public:
@@ -27,7 +29,7 @@ std::vector<Vec3> random_walk(const MotionFilterOptions& options, int steps, Noi
   const double h = kStep / kFine;
   Vec3 x{}, v = noise.vector(options.max_speed), a = noise.vector(options.max_acceleration);
   std::vector<Vec3> path{x};
-  for (int i = 0; i < steps * kFine; ++i) {
+  for (std::size_t i = 0; i < fine(steps); ++i) {
     x = x + h * v + (h * h / 2) * a;
     v = v + h * a;
     a = a + noise.vector(std::sqrt(options.jerk_density * h));
@@ -52,14 +54,14 @@ double share_kept(const MotionFilterOptions& options, double lost, int trials) {
     const auto path = random_walk(options, end, noise);
     MotionFilter filter(options);
     for (int i = 0; i <= asked; ++i) {
-      const Vec3 sample = path[static_cast<std::size_t>(i * kFine)] + noise.vector(options.noise);
+      const Vec3 sample = path[fine(i)] + noise.vector(options.noise);
       if (i > 0 && noise.uniform(0, 1) < lost) continue;
       EXPECT_TRUE(filter.add(i * kStep, sample));
     }
     const Motion motion = filter.motion(0, asked * kStep, kHorizon);
     bool holding = true;
-    for (int i = asked * kFine; i <= end * kFine; ++i)
-      holding = holding && holds(motion, (i - asked * kFine) * kStep / kFine, path[static_cast<std::size_t>(i)]);
+    for (std::size_t i = fine(asked); i <= fine(end); ++i)
+      holding = holding && holds(motion, static_cast<double>(i - fine(asked)) * kStep / kFine, path[i]);
     kept += holding;
   }
   return static_cast<double>(kept) / trials;
@@ -83,8 +85,8 @@ TEST(MotionFilter, BreaksBoundsWhereTheMotionIsWilderThanStated) {
   MotionFilter filter(calm);
   int broken = 0;
   for (int i = 0; i < 110; ++i) {
-    filter.add(i * kStep, path[static_cast<std::size_t>(i * kFine)] + noise.vector(calm.noise));
-    broken += !holds(filter.motion(0, i * kStep, kHorizon), 6 * kStep, path[static_cast<std::size_t>((i + 6) * kFine)]);
+    filter.add(i * kStep, path[fine(i)] + noise.vector(calm.noise));
+    broken += !holds(filter.motion(0, i * kStep, kHorizon), 6 * kStep, path[fine(i + 6)]);
   }
   EXPECT_GT(broken, 50);
 }

@@ -18,7 +18,8 @@ struct MotionFilterOptions {
 // A Kalman filter that predicts M and d of a tracked object from noisy samples of its position (dissertation 4.4): its
 // state is position, velocity and acceleration, the last one a random walk. Samples may come at any times and may be
 // missing. Use it where a user moves objects by a device that trembles; finite differences (motion_helpers.h) multiply
-// the noise by 1 / step^2. Adding a sample and asking for a motion cost some tens of nanoseconds each; nothing is allocated.
+// the noise by 1 / step^2. Adding a sample and asking for a motion cost some tens of nanoseconds each; nothing is
+// allocated.
 class MotionFilter {
  public:
   explicit MotionFilter(const MotionFilterOptions& options = {}) noexcept;
