@@ -23,4 +23,10 @@ void add_thickness(CLI::App& app, Request& request);
 void add_spheres(CLI::App& app, Request& request);
 void add_audit(CLI::App& app, Request& request);
 
+// batch_commands.cpp
+void add_batch(CLI::App& app, Request& request);
+// How many of the program's words are its own: those behind -- of a batch are the command that it runs, and are taken
+// from them into the request.
+int take_worker_words(int argc, const char* const* argv, Request& request);
+
 }  // namespace orchard::apps
