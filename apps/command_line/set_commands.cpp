@@ -178,15 +178,24 @@ void add_audit(CLI::App& app, Request& request) {
       .add_option(
           "spheres", audit.spheres,
           "The spheres, in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .urdf, "
-          ".ply with radii, .sph, .orchard")
+          ".srdf, .xml (MJCF), .mol (LAMMPS), .py (YADE), .ply with radii, .sph, .orchard; of a robot also a folder of "
+          "MorphIt's files")
       ->required();
-  add_mesh(command, audit.mesh);
+  command
+      .add_option("mesh", audit.mesh,
+                  "The mesh: .obj, .ply, .stl or .off; or a robot's .urdf, with all of whose links the spheres are "
+                  "compared")
+      ->required();
   command.add_option("--link", audit.link, "The link, where a file has several");
   command
       .add_option("--buffer", audit.buffer,
                   "Audit the spheres with this much on every radius, too, in place of the file's own buffer")
       ->check(NumberValidator(CLI::Range(-1e15, 1e15)));
   add_join(command, audit.join);
+  add_robot_reading(command, audit.reading);
+  command.add_flag("--wrap", audit.wrap,
+                   "Of a robot: links that are no solids are compared as closed skins around them, otherwise by their "
+                   "surface alone");
   auto* folder = command.add_option("-o,--output", audit.folder, "Folder for the views and the report");
   auto* picture =
       command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres stick out")
@@ -196,9 +205,11 @@ void add_audit(CLI::App& app, Request& request) {
   add_output_flags(command, audit.output);
   command.footer(
       "Exit code 3 if some of the surface is open.\n"
-      "Example:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit");
+      "Examples:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit\n"
+      "  orchard audit out/desk-arm/desk-arm-curobo.yml data/desk-arm.urdf");
   command.callback([&request, &command] {
     request.audit.output.run = invocation_of(command, request.typed);
+    request.audit.given = given_of(command);
     request.run = [&request] { request.exit_code = orchard::apps::audit(request.audit); };
   });
 }
