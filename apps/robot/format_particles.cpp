@@ -59,6 +59,25 @@ std::string molecule(const SphereModel& model, std::size_t g) {
   return text + coords + types + diameters + masses;
 }
 
+std::string single_template(const std::string& name, Index seed, const Sphere& sphere, const Inertial& body) {
+  return fmt::format(
+      "fix {} all particletemplate/sphere {} atom_type 1 volume_limit 1e-16 density constant {} radius constant {}\n",
+      name, seed, float_text(body.mass / volume(sphere)), float_text(sphere.radius));
+}
+
+std::string template_of(const std::string& name, Index seed, const std::vector<Sphere>& spheres, const Inertial& body,
+                        const std::string& file, Index type) {
+  const Eigen::Matrix3d& i = body.inertia;
+  double sum = 0;
+  for (const Sphere& sphere : spheres) sum += volume(sphere);
+  return fmt::format(
+      "fix {} all particletemplate/multisphere {} atom_type 1 volume_limit 1e-16 density constant {} nspheres {} ntry "
+      "{} spheres file {} scale 1.0 type {} mass {} inertia_tensor {} {} {} {} {} {} use_volume\n",
+      name, seed, float_text(body.mass / sum), spheres.size(), kTries, file, type, float_text(body.mass),
+      float_text(i(0, 0)), float_text(i(0, 1)), float_text(i(0, 2)), float_text(i(1, 1)), float_text(i(1, 2)),
+      float_text(i(2, 2)));
+}
+
 }  // namespace
 
 Files write_liggghts(const SphereModel& model, const FormatOptions& options) {
@@ -66,24 +85,19 @@ Files write_liggghts(const SphereModel& model, const FormatOptions& options) {
   const std::vector<std::string> stems = file_stems(model);
   std::string include =
       comments(model, "# ") +
-      "# A template for each link: spheres in the link's frame, which LIGGGHTS moves to the centre of mass of\n"
-      "# their union; masses and inertias about the centre of mass are the links' own.\n";
-  Index seed = 10'000;
+      "# A template for each link: spheres in the link's frame, which LIGGGHTS moves to the centre of mass of their\n"
+      "# union; masses and inertias about the centre of mass are the links' own. A link of one sphere is a template of "
+      "a\n"
+      "# single sphere, since those of several have two or more.\n";
+  Index seed = 10'000, type = 0;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const std::vector<Sphere>& spheres = model.groups[g].spheres;
     const std::string file = identifier(fmt::format("{}-liggghts-{}", options.prefix, stems[g])) + ".txt";
-    const Inertial& body = model.bodies[g];
-    const Eigen::Matrix3d& i = body.inertia;
-    double sum = 0;
-    for (const Sphere& sphere : model.groups[g].spheres) sum += volume(sphere);
-    files.push_back({file, lines_of(model.groups[g].spheres), ""});
+    files.push_back({file, lines_of(spheres), ""});
     seed = next_prime(seed);
-    include += fmt::format(
-        "fix {} all particletemplate/multisphere {} atom_type 1 volume_limit 1e-16 density constant {} nspheres {} "
-        "ntry {} spheres "
-        "file {} type {} mass {} inertia_tensor {} {} {} {} {} {} use_volume\n",
-        identifier(model.groups[g].name), seed, float_text(body.mass / sum), model.groups[g].spheres.size(), kTries,
-        file, g + 1, float_text(body.mass), float_text(i(0, 0)), float_text(i(0, 1)), float_text(i(0, 2)),
-        float_text(i(1, 1)), float_text(i(1, 2)), float_text(i(2, 2)));
+    const std::string name = identifier(model.groups[g].name);
+    include += spheres.size() == 1 ? single_template(name, seed, spheres.front(), model.bodies[g])
+                                   : template_of(name, seed, spheres, model.bodies[g], file, ++type);
   }
   files.push_back({options.prefix + "-liggghts.in", include, "a template for each link, for LIGGGHTS to include"});
   return files;

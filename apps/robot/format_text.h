@@ -22,11 +22,11 @@ std::string comments(const SphereModel& model, const char* mark);
 std::string harmless(std::string text);
 
 // The links that files name as tools: those of the options, or the link at the end of the longest chain of joints that
-// move, and of what is fixed to it.
+// move.
 std::vector<std::string> tool_frames(const SphereModel& model, const FormatOptions& options);
 
 // Of each link, those after it in the robot's order that need no test with it; of links with spheres.
-std::map<std::string, std::vector<std::string>> ignored_links(const SphereModel& model);
+std::vector<std::pair<std::string, std::vector<std::string>>> ignored_links(const SphereModel& model);
 
 // Of the free joints, in their order.
 struct RestingJoint {

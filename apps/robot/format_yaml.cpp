@@ -22,6 +22,7 @@ class Yaml {
   Yaml& raw(const std::string& value) { return out_ << value, *this; }
   Yaml& name(const std::string& value) { return out_ << word(value), *this; }
   Yaml& comment(const std::string& value) { return out_ << YAML::Comment(value), *this; }
+  Yaml& comment_line(const std::string& value) { return out_ << YAML::Newline << YAML::Comment(value), *this; }
   Yaml& names(const std::vector<std::string>& values) {
     out_ << YAML::BeginSeq;
     for (const std::string& value : values) name(value);
@@ -88,7 +89,7 @@ void write_ignored(const SphereModel& model, Yaml& yaml) {
 }
 
 std::string self_note(const SphereModel& model) {
-  return model.self ? model.self->in_words() : "not sampled: --states N does";
+  return "Pairs that need no test, " + (model.self ? model.self->in_words() : "not sampled: --states N does");
 }
 
 void write_cspace(const SphereModel& model, const FormatOptions& options, const char* rest, Yaml& yaml) {
@@ -125,7 +126,7 @@ std::string curobo(const SphereModel& model, const FormatOptions& options, bool 
   yaml.key("collision_sphere_buffer").raw(float_text(model.buffer));
   yaml.key("self_collision_buffer").begin();
   for (const std::string& link : links) yaml.key(link).raw("0.0");
-  yaml.end().comment(self_note(model)).key("self_collision_ignore");
+  yaml.end().comment_line(self_note(model)).key("self_collision_ignore");
   write_ignored(model, yaml);
   write_cspace(model, options, newest ? "default_joint_position" : "retract_config", yaml);
   yaml.key("collision_spheres").begin();
@@ -164,7 +165,7 @@ Files write_xrdf(const SphereModel& model, const FormatOptions& options) {
   for (const apps::SphereGroup& group : model.groups)
     if (model.buffer != 0) yaml.key(group.name).raw(float_text(model.buffer));
   yaml.end().end().key("self_collision").begin().key("geometry").name(geometry);
-  yaml.key("buffer_distance").begin().end().comment(self_note(model)).key("ignore");
+  yaml.key("buffer_distance").begin().end().comment_line(self_note(model)).key("ignore");
   write_ignored(model, yaml);
   yaml.end().key("geometry").begin().key(geometry).begin().key("spheres").begin();
   for (const apps::SphereGroup& group : model.groups) yaml.key(group.name).spheres(group.spheres);

@@ -158,11 +158,15 @@ std::vector<std::string> tool_frames(const SphereModel& model, const FormatOptio
   return {robot.links[deepest].name};
 }
 
-std::map<std::string, std::vector<std::string>> ignored_links(const SphereModel& model) {
-  std::map<std::string, std::vector<std::string>> ignored;
+std::vector<std::pair<std::string, std::vector<std::string>>> ignored_links(const SphereModel& model) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> ignored;
   if (!model.self) return ignored;
-  for (const LinkPair& pair : model.self->pairs)
-    if (pair.ignored()) ignored[model.robot->links[pair.a].name].push_back(model.robot->links[pair.b].name);
+  for (const LinkPair& pair : model.self->pairs) {  // ordered by the first
+    if (!pair.ignored()) continue;
+    const std::string& link = model.robot->links[pair.a].name;
+    if (ignored.empty() || ignored.back().first != link) ignored.push_back({link, {}});
+    ignored.back().second.push_back(model.robot->links[pair.b].name);
+  }
   return ignored;
 }
 

@@ -17,6 +17,11 @@ namespace {
 constexpr double kDigits = 1e7;  // of metres: a tenth of a micrometre
 constexpr int kMaxGrowths = 3;
 
+// While spheres are made, nothing but the cover is judged; in the end, means to about a percent: with few large spheres
+// they take longest of all.
+const SphereAuditOptions kQuickAudit{.max_cells = 2000, .rays = 400, .surface_samples = 200, .sphere_samples = 400};
+const SphereAuditOptions kFinalAudit{.surface_samples = 4000, .sphere_samples = 8000};
+
 double to_digits(double value) { return std::round(value * kDigits) / kDigits; }
 
 double as_float(double value) { return static_cast<double>(static_cast<float>(value)); }
@@ -90,7 +95,7 @@ LinkFit fit_link(const LinkShape& shape, Index spheres, const FitOptions& option
   SphereSetOptions own{.fit = result.fit, .spheres = spheres, .effort = options.effort, .find_enough = false};
   own.seed = options.seed;
   own.solid = cover && proof.needs_solid();
-  if (cover) own.audit = {.max_cells = 2000, .rays = 400, .surface_samples = 200, .sphere_samples = 400};
+  if (cover) own.audit = kQuickAudit;
   const SphereSetBuild build = build_sphere_set(shape.surface, own, progress);
   for (const Sphere& sphere : build.spheres) {
     const Sphere round = rounded(sphere, result.fit != SphereFit::inside);
@@ -98,7 +103,7 @@ LinkFit fit_link(const LinkShape& shape, Index spheres, const FitOptions& option
   }
   result.kept = build.kept;
   if (cover) grow_until_proven(proof, result);
-  result.audit = audit_spheres(shape.surface, result.spheres, {}, progress);
+  result.audit = audit_spheres(shape.surface, result.spheres, kFinalAudit, progress);
   if (cover && options.padding > 0)
     for (Sphere& sphere : result.spheres) sphere = rounded({sphere.center, sphere.radius + options.padding}, true);
   return result;

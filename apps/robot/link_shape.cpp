@@ -101,8 +101,8 @@ std::optional<LinkShape> link_shape(const Robot& robot, Index link, const ShapeO
     append(moved(std::move(own.mesh), element), parts.mended);
   }
   if (parts.deviation > 0)
-    parts.notes.push_back(fmt::format("link {}: curved primitives are polyhedra around them, {:.2g} m outside at most",
-                                      robot.links[link].name, parts.deviation));
+    parts.notes.push_back(
+        fmt::format("curved primitives are polyhedra around them, {:.2g} m outside at most", parts.deviation));
   return LinkShape{.link = link,
                    .original = std::move(parts.original),
                    .surface = Surface(std::move(parts.mended)),

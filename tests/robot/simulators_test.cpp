@@ -1,6 +1,7 @@
 // Files read by the simulators that they are for, where these are installed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "apps/program.h"
@@ -20,7 +21,7 @@ bool is_there(const char* program) {
   return std::system(("command -v " + std::string(program) + " > /dev/null").c_str()) == 0;
 }
 
-// The desk arm with three spheres to a link.
+// The desk arm with three spheres to a link, and one to its wrist.
 struct Arm {
   Workplace here;
   Robot robot = read_urdf(ORCHARD_DATA_DIR "/desk-arm.urdf");
@@ -31,7 +32,7 @@ struct Arm {
       if (link.collision.empty()) continue;
       SphereGroup group;
       group.name = link.name;
-      for (int i = 0; i < 3; ++i) group.spheres.push_back({Point(0.1 * i, 0.01 * i * i, -0.03), 0.0712345 + 0.01 * i});
+      for (int i = 0; i < (link.name == "wrist" ? 1 : 3); ++i) group.spheres.push_back({Point(0.1 * i, 0.01 * i * i, -0.03), 0.0712345 + 0.01 * i});
       model.groups.push_back(group);
       model.bodies.push_back(body_of(link, nullptr, group.spheres));
     }
@@ -77,19 +78,23 @@ TEST(ParticleSimulators, LiggghtsTakesTheTemplates) {
   if (!is_there("liggghts")) GTEST_SKIP() << "LIGGGHTS is not installed";
   const Arm arm;
   const std::string include = arm.write("liggghts");
-  std::string script =
+  std::string templates;
+  int count = 0;
+  for (const SphereGroup& group : arm.model.groups) {
+    if (group.spheres.size() == 1) continue;  // of another kind, which distributions of these do not take
+    std::string name = group.name;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    templates += " " + name + " 0.1";
+    ++count;
+  }
+  const std::string script =
       "units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\ncommunicate single vel yes\n"
       "region box block -5 5 -5 5 -5 5 units box\ncreate_box 1 box\nneighbor 0.1 bin\n"
       "fix m1 all property/global youngsModulus peratomtype 5e6\nfix m2 all property/global poissonsRatio peratomtype "
       "0.45\nfix m3 all property/global coefficientRestitution peratomtypepair 1 0.3\nfix m4 all property/global "
       "coefficientFriction peratomtypepair 1 0.5\npair_style gran model hertz tangential history\npair_coeff * *\n"
       "timestep 1e-5\ninclude " +
-      include + "\nfix d all particledistribution/discrete 15485867 " + std::to_string(arm.model.groups.size());
-  for (const SphereGroup& group : arm.model.groups) {
-    std::string name = group.name;
-    std::replace(name.begin(), name.end(), ' ', '_');
-    script += " " + name + " 0.1";
-  }
+      include + "\nfix d all particledistribution/discrete 15485867 " + std::to_string(count) + templates;
   write_file(arm.here / "in.arm",
              script +
                  "\nfix i all insert/pack seed 32452867 distributiontemplate d maxattempt 100 insert_every once "

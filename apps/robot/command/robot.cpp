@@ -124,14 +124,25 @@ void fit(const RobotCommand& command, const Progress& progress, Made& made) {
   }
 }
 
-void take(const RobotCommand& command, const Progress& progress, Made& made) {
+// The spheres of --from on the robot's links.
+std::vector<SphereGroup> read_groups(const RobotCommand& command, Made& made) {
   SphereFile file = read_sphere_file(command.from);
-  for (std::string& note : place_in_links(made.robot, file, command.from)) made.notes.push_back(std::move(note));
+  for (std::string& note : robot::place_in_links(made.robot, file, command.from)) made.notes.push_back(std::move(note));
   std::erase_if(file.groups, [](const SphereGroup& group) { return group.spheres.empty(); });
   if (file.groups.empty())
     throw InputError(fmt::format("{}: no sphere is on a link of {}", command.from.string(), command.urdf.string()));
-  made.rows = audit_links(made.robot, made.shapes, file.groups, progress);
-  made.model.groups = std::move(file.groups);
+  return std::move(file.groups);
+}
+
+// What can be wrong with options and files beside the robot, before the long work.
+void check_robot(const RobotCommand& command, Made& made) {
+  fit_options(command, made.robot);
+  robot::joint_values(made.robot, parse_joints(command.joints));
+  if (!command.trajectory.empty()) read_trajectory(command.trajectory, made.robot);
+  for (const std::string& link : command.tool_frames)
+    if (!made.robot.find_link(link))
+      throw InputError(fmt::format("--tool-frame {}: {} has no such link", link, command.urdf.string()));
+  if (!command.from.empty()) made.model.groups = read_groups(command, made);
 }
 
 // Shapes whose links have spheres, and these.
@@ -161,20 +172,16 @@ std::string promise_of(const RobotCommand& command, const Made& made) {
 Made make(const RobotCommand& command, const Provenance& provenance, const Progress& progress) {
   Made made;
   made.robot = robot::read_urdf(command.urdf, urdf_options(command.reading));
-  fit_options(command, made.robot);  // refuses wrong names before the long work
-  robot::joint_values(made.robot, parse_joints(command.joints));
-  for (const std::string& link : command.tool_frames)
-    if (!made.robot.find_link(link))
-      throw InputError(fmt::format("--tool-frame {}: {} has no such link", link, command.urdf.string()));
+  check_robot(command, made);
   made.shapes = robot::link_shapes(made.robot, shape_options(command.reading, command.wrap), progress);
   if (made.shapes.empty())
     throw InputError(fmt::format("{}: no link has {} geometry", command.urdf.string(),
                                  command.reading.visual ? "visual" : "collision"));
-  made.notes = notes_of(made.robot, made.shapes);
+  for (std::string& note : notes_of(made.robot, made.shapes)) made.notes.push_back(std::move(note));
   if (command.from.empty())
     fit(command, progress, made);
   else
-    take(command, progress, made);
+    made.rows = audit_links(made.robot, made.shapes, made.model.groups, progress);
   made.model.robot = &made.robot;
   sample(command, progress, made);
   made.model.buffer = command.buffer;
