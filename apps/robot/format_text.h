@@ -11,8 +11,7 @@ namespace orchard::robot {
 std::string float_text(double value);
 std::string point_text(const Point& point, const char* between);
 
-// A link's name in a file's name: other than letters, digits, '-', '_', '.' and blanks become '_'. Different for each
-// group.
+// A link's name in a file's name: slashes and control characters become '_'. Different for each group.
 std::vector<std::string> file_stems(const SphereModel& model);
 
 // "head" as comments, each line behind `mark`.

@@ -131,7 +131,7 @@ std::vector<std::string> file_stems(const SphereModel& model) {
   for (const apps::SphereGroup& group : model.groups) {
     std::string stem = group.name;
     for (char& c : stem)
-      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && std::string("-_. ").find(c) == std::string::npos) c = '_';
+      if (c == '/' || c == '\\' || std::iscntrl(static_cast<unsigned char>(c)) != 0) c = '_';
     while (!taken.insert(stem).second) stem += "x";
     stems.push_back(stem);
   }

@@ -38,7 +38,9 @@ struct SphereFile {
 //     deepest counts, {centers, radii} and masses if there are any, or one of these for each link by name; what VAMP's
 //     generator reads, which names a URDF: the spheres of that;
 //   - .yml .yaml .xrdf: robots of cuRobo and of Isaac, with their buffers;
-//   - .urdf: the spheres among a link's collision geometry, in the link's frame;
+//   - .urdf: the spheres among a link's collision geometry, in the link's frame, and those of links LINK_sphereK that
+//   are
+//     fixed to it, as MorphIt writes them;
 //   - .srdf: link_sphere_approximation, in the frame of the link's first collision element;
 //   - .xml: MJCF, the spheres of each body;
 //   - .mol: molecules of LAMMPS; .py: clumps of YADE;

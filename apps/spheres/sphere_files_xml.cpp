@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <map>
+#include <string_view>
 
 #include "input/xml_file.h"
 #include "orchard/geometry/error.h"
+#include "robot/urdf_values.h"
 #include "spheres/sphere_files.h"
 
 namespace orchard::apps {
@@ -45,6 +48,35 @@ SphereGroup spheres_of_link(const XMLElement& link, const fs::path& file) {
   return group;
 }
 
+// The name before "_sphere" and digits; empty: the name is none of those.
+std::string carrier_of(const std::string& name) {
+  constexpr std::string_view kMark = "_sphere";
+  const std::size_t at = name.rfind(kMark);
+  if (at == std::string::npos || at == 0 || at + kMark.size() == name.size()) return {};
+  const bool digits = name.find_first_not_of("0123456789", at + kMark.size()) == std::string::npos;
+  return digits ? name.substr(0, at) : std::string();
+}
+
+// MorphIt's robots have a link LINK_sphereK for each sphere, which hangs on LINK by a fixed joint: its sphere is one of
+// LINK.
+void join_carried(const XMLElement& robot, const fs::path& file, std::vector<SphereGroup>& groups) {
+  std::map<std::string, std::size_t> places;
+  for (std::size_t g = 0; g < groups.size(); ++g) places[groups[g].name] = g;
+  for (const XMLElement* joint : children_of(robot, "joint")) {
+    const XMLElement *parent = joint->FirstChildElement("parent"), *child = joint->FirstChildElement("child");
+    const char* type = joint->Attribute("type");
+    if (parent == nullptr || child == nullptr || type == nullptr || std::strcmp(type, "fixed") != 0) continue;
+    const std::string link = attribute(*parent, "link", file), carried = attribute(*child, "link", file);
+    if (carrier_of(carried) != link || !places.contains(link) || !places.contains(carried)) continue;
+    SphereGroup &whole = groups[places[link]], &one = groups[places[carried]];
+    const robot::Motion origin = robot::read_origin(*joint, file);
+    for (const Sphere& sphere : one.spheres) whole.spheres.push_back({origin * sphere.center, sphere.radius});
+    whole.switched_off += one.switched_off;
+    one.spheres.clear();
+    one.switched_off = 0;
+  }
+}
+
 // Spheres of a body and of those within it.
 void add_bodies(SphereFile& result, const XMLElement& parent, const fs::path& file) {
   for (const XMLElement* body : children_of(parent, "body")) {
@@ -69,8 +101,9 @@ void add_bodies(SphereFile& result, const XMLElement& parent, const fs::path& fi
 SphereFile read_urdf_spheres(const fs::path& file) {
   XMLDocument document;
   SphereFile result{"URDF", {}};
-  for (const XMLElement* link : children_of(parse_xml(file, document, "robot", "URDF"), "link"))
-    result.groups.push_back(spheres_of_link(*link, file));
+  const XMLElement& robot = parse_xml(file, document, "robot", "URDF");
+  for (const XMLElement* link : children_of(robot, "link")) result.groups.push_back(spheres_of_link(*link, file));
+  join_carried(robot, file, result.groups);
   return result;
 }
 

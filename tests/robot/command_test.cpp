@@ -53,8 +53,9 @@ TEST(RobotCommand, MakesClosedSpheresInEveryFormatThatAuditReads) {
   EXPECT_TRUE(files.contains("desk-arm-tree-upper arm.orchard"));
   EXPECT_TRUE(has(files.at("desk-arm.srdf"), "reason=\"Adjacent\""));
   EXPECT_TRUE(has(files.at("desk-arm.srdf"), "200 joint states"));
-  if (is_there("check_urdf"))
+  if (is_there("check_urdf")) {
     EXPECT_EQ(std::system(("check_urdf '" + folder + "/desk-arm-spheres.urdf' > /dev/null").c_str()), 0);
+  }
 }
 
 TEST(RobotCommand, GivesTheSameBytesForTheSameInput) {
@@ -79,7 +80,9 @@ TEST(RobotCommand, SharesTheBudgetAsAskedFor) {
   const json report = json::parse(run.out);
   EXPECT_EQ(report["whole"]["spheres"], 20);
   for (const json& link : report["links"]) {
-    if (link["link"] == "gripper") EXPECT_EQ(link["spheres"], 4);
+    if (link["link"] == "gripper") {
+      EXPECT_EQ(link["spheres"], 4);
+    }
     EXPECT_EQ(link["fit"], link["link"] == "base" ? "balanced" : "cover");
   }
 }
@@ -121,7 +124,7 @@ TEST(RobotCommand, RefusesBadInputInOneLineAndLeavesNothingBehind) {
       {quick(kArm, folder, {"--trajectory", csv}), "t.csv, line 1"},
       {quick(kArm, folder, {"--from", csv}), "--effort has no effect"},
       {{"audit", csv, kArm}, "t.csv"},
-      {{"audit", kArm, kArm}, "no sphere"},
+      {{"audit", here.add("u.csv", "x,y,z,r,link\n0,0,0,1,elsewhere\n"), kArm}, "no sphere is on a link"},
       {{"audit", here.add("w.txt", "0 0 0 1\n"), here.add("box.obj", test::box(Point(0, 0, 0), Point(1, 1, 1))),
         "--visual"},
        "--visual has no effect"}};

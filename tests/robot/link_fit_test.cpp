@@ -34,7 +34,7 @@ TEST(RoundedSpheres, HoldOrLieInTheSphereHoweverReadersHoldThem) {
     ASSERT_LT(out.radius, sphere.radius + 1e-6 * (1 + scale));
     if (in.radius == 0) continue;
     ASSERT_TRUE(holds(sphere, in));
-    ASSERT_TRUE(holds(sphere, as_float(in)));
+    ASSERT_TRUE(holds(sphere, as_float(in))) << sphere.radius << " " << in.radius << " " << sphere.center.transpose();
   }
 }
 

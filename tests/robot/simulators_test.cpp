@@ -32,7 +32,8 @@ struct Arm {
       if (link.collision.empty()) continue;
       SphereGroup group;
       group.name = link.name;
-      for (int i = 0; i < (link.name == "wrist" ? 1 : 3); ++i) group.spheres.push_back({Point(0.1 * i, 0.01 * i * i, -0.03), 0.0712345 + 0.01 * i});
+      for (int i = 0; i < (link.name == "wrist" ? 1 : 3); ++i)
+        group.spheres.push_back({Point(0.1 * i, 0.01 * i * i, -0.03), 0.0712345 + 0.01 * i});
       model.groups.push_back(group);
       model.bodies.push_back(body_of(link, nullptr, group.spheres));
     }
@@ -56,9 +57,8 @@ TEST(Simulators, MujocoHoldsEveryBallOfTheMjcf) {
 #ifdef ORCHARD_MJCF_BALLS
   const Arm arm;
   const std::string file = arm.write("mjcf");
-  ASSERT_EQ(arm.run(ORCHARD_MJCF_BALLS " " + file + " && (echo x,y,z,r,link; cat log.txt) > balls.csv"), 0)
-      << arm.log();
-  const apps::SphereFile read = apps::read_sphere_file(arm.here / "balls.csv");
+  ASSERT_EQ(arm.run(ORCHARD_MJCF_BALLS " " + file), 0) << arm.log();
+  const apps::SphereFile read = apps::read_sphere_file(arm.here.add("balls.csv", "x,y,z,r,link\n" + arm.log()));
   ASSERT_EQ(read.groups.size(), arm.model.groups.size());
   for (const SphereGroup& group : arm.model.groups) {
     const SphereGroup& held = apps::group_named(read, "balls.csv", group.name);
@@ -111,10 +111,12 @@ TEST(ParticleSimulators, LammpsTakesTheMolecules) {
   arm.write("lammps");
   std::string script = "units si\natom_style sphere\nregion box block -5 5 -5 5 -5 5\ncreate_box 1 box\n";
   int number = 0;
-  for (const auto& [name, text] : arm.here.files("."))
-    if (name.ends_with(".mol"))
-      script += "molecule m" + std::to_string(++number) + " \"" + name + "\"\ncreate_atoms 0 single 0 0 " +
-                std::to_string(number % 5) + " mol m" + std::to_string(number) + " 4711\n";
+  for (const auto& [name, text] : arm.here.files(".")) {
+    if (!name.ends_with(".mol")) continue;
+    const std::string id = "m" + std::to_string(++number);
+    script += "molecule " + id + " \"" + name + "\"\ncreate_atoms 0 single 0 0 " + std::to_string(number % 5) +
+              " mol " + id + " 4711\n";
+  }
   write_file(arm.here / "in.arm", script);
   EXPECT_EQ(arm.run("lmp -in in.arm"), 0) << arm.log();
   EXPECT_EQ(number, static_cast<int>(arm.model.groups.size()));
