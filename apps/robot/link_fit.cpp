@@ -24,7 +24,11 @@ const SphereAuditOptions kFinalAudit{.surface_samples = 4000, .sphere_samples = 
 
 double to_digits(double value) { return std::round(value * kDigits) / kDigits; }
 
-double as_float(double value) { return static_cast<double>(static_cast<float>(value)); }
+// GCC 12 leaves both conversions out where it makes them for two coordinates at once; volatile keeps them.
+double as_float(double value) {
+  const volatile float held = static_cast<float>(value);
+  return static_cast<double>(held);
+}
 
 // As its reader in float holds it.
 Sphere in_floats(const Sphere& sphere) {
