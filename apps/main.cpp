@@ -7,12 +7,18 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "command_line/add_commands.h"
 #include "command_line/command_line.h"
 #include "command_line/freed_memory.h"
+#include "command_line/help.h"
 #include "command_line/interrupt.h"
+#include "command_line/renamed_options.h"
 #include "command_line/standard_streams.h"
 #include "command_line/usage_error.h"
 #include "orchard/geometry/error.h"
@@ -35,6 +41,11 @@ int printed(int code) {
   return code == kSucceeded || code == kPromiseNotKept ? fail(kFailed, "standard output: " + reason) : code;
 }
 
+// Without the program's name, the last first, as the parser takes them.
+std::vector<std::string> reversed_arguments(const std::vector<std::string>& words) {
+  return {words.rbegin(), words.empty() ? words.rend() : words.rend() - 1};
+}
+
 int run(Request& request) {
   std::optional<tbb::global_control> limit;
   if (request.threads > 0)
@@ -49,17 +60,26 @@ int main(int argc, char** argv) {
   keep_freed_memory();
   catch_interrupts();
   occupy_standard_streams();
-  CLI::App app{"orchard: from a triangle mesh to its medial axis, its sphere-tree and collision answers", "orchard"};
+  CLI::App app{"Turn triangle meshes into medial axes, certified sphere-trees, sphere sets and collision answers",
+               "orchard"};
+  app.formatter(std::make_shared<HelpFormatter>());
   app.require_subcommand(1);
   app.set_version_flag("--version", ORCHARD_VERSION);
-  app.footer("Example:\n  orchard build data/lamp.obj -o out/lamp\n\"orchard COMMAND --help\" explains a command.");
+  app.footer(
+      "Examples:\n  orchard medial data/lamp.obj -o out/lamp\n  orchard build data/lamp.obj -o out/lamp\n"
+      "  orchard spheres data/lamp.obj -o out/lamp -n 20\n\"orchard COMMAND --help\" explains a command.");
   Request request;
   request.typed = app.get_name();
   for (int i = 1; i < argc; ++i) request.typed += std::string(" ") + argv[i];
+  argc = take_worker_words(argc, argv, request);
   add_commands(app, request);
-  if (const std::string fault = unknown_word(app, argc, argv); !fault.empty()) return fail(kBadInput, fault);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words(argv, argv + argc);
+    for (const std::string& warning : rename_options(words)) fmt::print(stderr, "orchard: warning: {}\n", warning);
+    if (const std::string fault = unknown_word(app, words); !fault.empty()) return fail(kBadInput, fault);
+    app.parse(reversed_arguments(words));
+  } catch (const orchard::InputError& error) {
+    return fail(kBadInput, error.what());
   } catch (const CLI::Success& asked) {  // --help, --version
     return printed(app.exit(asked));
   } catch (const CLI::ParseError& error) {

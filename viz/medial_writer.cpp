@@ -72,7 +72,7 @@ void add_point_arrays(const MedialAxis& axis, const MedialSegments& segments, co
   const std::vector<double> angles = contact_angles(axis);
   const auto row = [&](std::size_t i) { return axis.forming_points[static_cast<Index>(i)]; };
   add_doubles(data, "radius", count, [&](std::size_t i) { return axis.radii[i]; });
-  add_doubles(data, "contact_angle", count, [&](std::size_t i) { return angles[i]; });
+  add_doubles(data, "contact_angle", count, [&](std::size_t i) { return in_degrees(angles[i]); });
   add_ints(data, "component", count, [&](std::size_t i) { return as_int(components[i]); });
   add_ints(data, "segment", count, [&](std::size_t i) { return as_int(segments.of_vertex[i]); });
   add_ints(data, "added", count, [&](std::size_t i) {
@@ -99,7 +99,7 @@ void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, con
   add_ints(data, "sheet", count, [&](std::size_t i) { return segments.segments[cells[i].segment].sheet ? 1 : 0; });
   add_ints(data, "trunk", count, [&](std::size_t i) { return segments.segments[cells[i].segment].trunk ? 1 : 0; });
   add_ints(data, "wall", count, [&](std::size_t i) { return cells[i].wall ? 1 : 0; });
-  add_doubles(data, "contact_angle", count, [&](std::size_t i) { return cells[i].angle; });
+  add_doubles(data, "contact_angle", count, [&](std::size_t i) { return in_degrees(cells[i].angle); });
   add_ints(data, "point_a", count, [&](std::size_t i) { return as_int(cells[i].point_a); });
   add_ints(data, "point_b", count, [&](std::size_t i) { return as_int(cells[i].point_b); });
   add_ints(data, "added", count,

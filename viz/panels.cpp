@@ -16,7 +16,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kMinAngle = 0.9;  // radians
+constexpr double kMinAngle = 52;  // degrees
 constexpr int kLevelsShown = 3;
 
 Panel mesh_panel(vtkPolyData* mesh, double size, double line_width) {

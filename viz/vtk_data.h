@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string>
 
@@ -24,6 +25,9 @@
 
 // What the writers share: values into VTK's containers, and those into files.
 namespace orchard::detail {
+
+// Files have angles in degrees, the library has them in radians.
+inline double in_degrees(double radians) { return radians * (180 / std::numbers::pi); }
 
 // No value, in arrays of numbers: colour scales leave it out, where -1 or infinity would spoil them.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();

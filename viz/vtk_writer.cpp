@@ -33,7 +33,7 @@ vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis, const ViewArr
   vtkPointData* arrays = data->GetPointData();
   add_doubles(arrays, "radius", count, [&](std::size_t i) { return axis.radii[i]; });
   const std::vector<double> angles = contact_angles(axis);
-  add_doubles(arrays, "contact_angle", count, [&](std::size_t i) { return angles[i]; });
+  add_doubles(arrays, "contact_angle", count, [&](std::size_t i) { return in_degrees(angles[i]); });
   add_ints(arrays, "component", count, [&](std::size_t i) { return as_int(component[i]); });
   add_ints(arrays, "valence", count,
            [&](std::size_t i) { return static_cast<int>(axis.neighbors[static_cast<Index>(i)].size()); });
@@ -76,6 +76,8 @@ void write_mesh(const std::filesystem::path& vtp, const Surface& surface) {
   add_ints(data->GetCellData(), "cluster", mesh.triangles.size(),
            [&](std::size_t i) { return as_int(surface.clusters().of_triangle[i]); });
   add_doubles(data->GetFieldData(), "bounding_radius", 1, [&](std::size_t) { return surface.bounding_radius(); });
+  add_doubles(data->GetFieldData(), "diagonal", 1,
+              [&](std::size_t) { return surface.bounding_box().diagonal().norm(); });
   write(vtp, data);
 }
 
@@ -121,7 +123,7 @@ void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& ax
   add_ints(faces->GetCellData(), "point_a", count, [&](std::size_t i) { return as_int(axis.face_points[i][0]); });
   add_ints(faces->GetCellData(), "point_b", count, [&](std::size_t i) { return as_int(axis.face_points[i][1]); });
   add_doubles(faces->GetCellData(), "contact_angle", count, [&](std::size_t i) {
-    return separation_angle(axis, axis.faces[static_cast<Index>(i)], axis.face_points[i]);
+    return in_degrees(separation_angle(axis, axis.faces[static_cast<Index>(i)], axis.face_points[i]));
   });
   add_all(faces->GetCellData(), of_faces, count);
   write(with_ending(prefix, "-faces.vtp"), faces);

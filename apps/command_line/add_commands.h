@@ -28,4 +28,10 @@ void add_robot(CLI::App& app, Request& request);
 // How a robot is read, for each command that reads one; returns the options.
 std::vector<CLI::Option*> add_robot_reading(CLI::App& command, RobotReading& reading);
 
+// batch_commands.cpp
+void add_batch(CLI::App& app, Request& request);
+// How many of the program's words are its own: those behind -- of a batch are the command that it runs, and are taken
+// from them into the request.
+int take_worker_words(int argc, const char* const* argv, Request& request);
+
 }  // namespace orchard::apps

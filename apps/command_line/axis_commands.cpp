@@ -22,23 +22,29 @@ Relaxation relaxation_named(const std::string& name) {
 }
 
 void add_sampling_options(CLI::App& command, SampleCommand& sample) {
-  command.add_option("--samples", sample.samples, "Points in all")
+  command.add_option("--samples", sample.samples, "Total number of surface points")
       ->check(CLI::Range(20, 10'000'000))
       ->capture_default_str();
-  command.add_option("--edge-samples", sample.edge_samples, "Of them on edges (default: a fifth)")
+  command.add_option("--edge-samples", sample.edge_samples, "Number of these points on edges (default: a fifth)")
       ->check(CLI::Range(0, 10'000'000));
-  command.add_option("--iterations", sample.iterations, "Of relaxation")
+  command
+      .add_option("--iterations", sample.iterations, "Rounds of relaxation. More rounds space the points more evenly")
       ->check(CLI::Range(0, 10'000))
       ->capture_default_str();
   command
       .add_option_function<std::string>(
           "--relaxation", [&sample](const std::string& name) { sample.relaxation = relaxation_named(name); },
-          "Points keep apart within coplanar clusters, from neighbors across faces, or as fits the mesh (automatic)")
+          "Between which points to relax: within coplanar clusters (clusters, for designed parts), across faces "
+          "(neighbors, for scans), or as fits the mesh (automatic, default)")
       ->check(CLI::IsMember({"automatic", "clusters", "neighbors"}));
   command
-      .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
+      .add_option("--cluster-angle", sample.cluster_degrees,
+                  "Largest angle in degrees between the normals of one cluster (default: 0.0057). Higher values treat "
+                  "curved regions as one")
       ->check(NumberValidator(CLI::Range(0.0, 90.0)));
-  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [28.6]")
+  command
+      .add_option("--crease-angle", sample.crease_degrees,
+                  "Smallest angle in degrees at which a scan has an edge that gets edge points [28.6]")
       ->check(NumberValidator(CLI::Range(0.0, 180.0)));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
   add_join(command, sample.join);
@@ -55,51 +61,56 @@ void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
           [wanted](const std::string& method) {
             wanted().method = method == "merging" ? TreeMethod::merging : TreeMethod::tightened;
           },
-          "With --sweep: build this tree from each axis too, and say how tight it is: tightened or merging")
+          "With --sweep: also build this kind of sphere-tree from each axis and report how tight it is")
       ->check(CLI::IsMember({"tightened", "merging"}));
   command
       .add_option_function<Index>(
-          "--tree-depth", [wanted](Index depth) { wanted().depth = depth; }, "Levels of that tree below the root [3]")
+          "--tree-depth", [wanted](Index depth) { wanted().depth = depth; },
+          "Levels below the root of the tree of --tree [3]")
       ->check(CLI::Range(1, 10));
 }
 
 void add_sweep(CLI::App& command, MedialCommand& medial) {
   command
-      .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
+      .add_option("--sweep", medial.sweep,
+                  "NAME=A,B,..: build once for each value of a tuning option and compare. May be repeated")
       ->allow_extra_args(false);
   command
-      .add_option(
-          "--best", medial.best,
-          "Of a --sweep: the measure by which its rows are printed, the best first; right topologies before wrong")
+      .add_option("--sort-by", medial.best,
+                  "Measure by which the rows of --sweep are sorted, best first. Rows with the right topology come "
+                  "before the others")
       ->capture_default_str();
   add_sweep_tree(command, medial.tree);
 }
 
 void add_other_axis(CLI::App& command, MedialCommand& medial) {
   CLI::Option* axis = command.add_option("--axis", medial.axis,
-                                         "Build nothing; measure this axis of any system: .ma, .obj, .ply, .off, .sph, "
-                                         ".swc or text (docs/reference/formats.md)");
+                                         "Measure or convert this axis instead of building one (.ma, .obj, .ply, .off, "
+                                         ".sph, .swc or text; docs/reference/formats.md)");
   command
       .add_flag("--connect", medial.connect,
-                "With --axis: connect balls without cells by their power diagram within the solid")
+                "With --axis: connect balls that have no cells by their power diagram within the solid")
       ->needs(axis);
   add_list(command, "--export", medial.exports,
-           "Write the axis in these formats as well: MODEL-axis.npz, ..; with --axis AXIS-converted.npz, ..",
+           "Also write the axis in these formats, as MODEL-axis.npz and so on; with --axis, as AXIS-converted.npz",
            axis_export_kinds());
 }
 
 void add_features(CLI::App& command, MedialCommand& medial) {
   command.add_option("--features", medial.features,
-                     "Your own feature edges, which sheets reach to: lines of an .obj file along edges of the mesh");
+                     "Feature edges to which sheets extend, in place of those that orchard finds: lines of an .obj "
+                     "file along edges of the mesh");
 }
 
 void add_side(CLI::App& command, MedialCommand& medial) {
   CLI::Option* side = command
                           .add_option_function<std::string>(
                               "--side", [&medial](const std::string& name) { medial.outside = name == "outside"; },
-                              "Of which space: inside the solid, or outside, within a sphere around it [inside]")
+                              "Build the axis of the solid (inside, default) or of the space around it (outside)")
                           ->check(CLI::IsMember({"inside", "outside"}));
-  command.add_option("--outside-radius", medial.outside_radius, "Of that sphere, in bounding radii")
+  command
+      .add_option("--outside-radius", medial.outside_radius,
+                  "Radius of the sphere that bounds the outside, in bounding radii")
       ->check(NumberValidator(CLI::Range(1.1, 1000.0)))
       ->needs(side)
       ->capture_default_str();
@@ -109,30 +120,29 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
   CLI::Option* vertices =
       command
           .add_option("--vertices", medial.few_vertices,
-                      "Write the axis in so many balls at most as well: MODEL-simplified.ma, .ply and .obj")
+                      "Also write the axis simplified to at most this many balls: MODEL-simplified.ma, .ply and .obj")
           ->check(CLI::Range(1, 100'000'000));
   command
       .add_option("--error", medial.few_error,
-                  "The same, in as few balls as are this near: percent of the diagonal, two-sided distance between the "
-                  "surface and what the balls stand for, as measured at the end")
+                  "Also write the axis simplified to the fewest balls within this error: the two-sided distance "
+                  "between the surface and the envelope of the balls, in percent of the diagonal")
       ->check(NumberValidator(CLI::Range(1e-4, 100.0)))
       ->excludes(vertices);
   command
-      .add_option(
-          "--balls", medial.few_kind,
-          "What these balls may be: medial (centres in the solid, radii as far as the surface is, to the error; "
-          "the volume is kept) or free, which may come nearer where they are too few")
+      .add_option("--balls", medial.few_kind,
+                  "Balls of the simplified axis: medial (default; centres lie in the solid, each radius is the "
+                  "distance to the surface up to the error, and the volume is kept) or free (nearer to the surface "
+                  "where there are too few balls)")
       ->check(CLI::IsMember({"medial", "free"}))
       ->capture_default_str();
-  command.add_flag("--curve", medial.curve, "Write how far off ever fewer balls are: MODEL-curve.csv and .svg");
-  CLI::Option* envelope = command.add_option(
-      "--envelope", medial.envelope,
-      "Write the surface of what the balls stand for, those of --vertices or --error if given: an .obj");
+  command.add_flag("--curve", medial.curve, "Write the error of ever fewer balls: MODEL-curve.csv and .svg");
+  CLI::Option* envelope =
+      command.add_option("--envelope", medial.envelope,
+                         "Write the envelope of the balls, or of those of --vertices or --error, to this .obj file");
   command
-      .add_option(
-          "--envelope-cell", medial.envelope_cell,
-          "Edge of the cells that surface is cut from, in percent of the diagonal: what is thinner may be lost; "
-          "time and size grow with the square of its inverse")
+      .add_option("--envelope-cell", medial.envelope_cell,
+                  "Size of the grid cells of --envelope, in percent of the diagonal. Thinner parts may be lost; "
+                  "halving it takes four times as long")
       ->check(NumberValidator(CLI::Range(0.01, 50.0)))
       ->needs(envelope)
       ->capture_default_str();
@@ -152,30 +162,36 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
           [&thickness](const std::string& name) {
             thickness.options.definition = name == "ray" ? ThicknessDefinition::ray : ThicknessDefinition::ball;
           },
-          "The diameter of the largest ball in the solid that touches the place, or the way of a ray inward [ball]")
+          "Thickness as the diameter of the largest ball in the solid that touches the place (ball, default) or as the "
+          "length of a ray inward (ray)")
       ->check(CLI::IsMember({"ball", "ray"}));
-  add_angle(
-      command, "--facing", thickness.options.facing,
-      "Degrees from which the two ends of a diameter face each other; with less, the place has no thickness [120]",
-      180);
+  add_angle(command, "--facing", thickness.options.facing,
+            "Smallest angle in degrees under which the centre of the ball sees its contacts on two facing sides [120]. "
+            "At places with a smaller angle, thickness is not defined",
+            180);
   add_angle(command, "--smooth", thickness.options.smooth,
-            "Degrees: edges that turn by less are those of a smooth surface, not edges where balls vanish [40]", 90);
+            "Largest angle in degrees at which an edge counts as part of a smooth surface [40]. Balls shrink to zero "
+            "at sharper convex edges",
+            90);
   command
       .add_option("--samples", thickness.options.samples,
-                  "Triangles that the surface is divided into, about; at their middles and corners it is measured")
+                  "Approximate number of triangles into which the surface is divided. Thickness is measured at their "
+                  "centres and corners")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
   const auto add_limit = [&](const char* option, std::optional<double>& limit, const char* help) {
     return command.add_option(option, limit, help)->check(NumberValidator(CLI::Range(0.0, kMaxCoordinate)));
   };
-  CLI::Option* below = add_limit("--below", thickness.below,
-                                 "Say what area is thinner than this, in mesh units, in which places, and how thin");
-  add_limit("--fail-below", thickness.fail_below, "The same, and exit with 4 if anything is")->excludes(below);
-  command.add_option("--bins", thickness.bins, "Of the histogram")
+  CLI::Option* below =
+      add_limit("--below", thickness.below,
+                "Report the area that is thinner than this, in mesh units, with its places and their thickness");
+  add_limit("--fail-below", thickness.fail_below, "The same as --below, and exit with 4 if any place is thinner")
+      ->excludes(below);
+  command.add_option("--bins", thickness.bins, "Number of bins of the histogram")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   command
-      .add_option("--unit", thickness.unit, "The name of the mesh's unit, such as mm, for what is printed and written")
+      .add_option("--unit", thickness.unit, "Name of the mesh's unit, such as mm, to print and write beside lengths")
       ->check(CLI::Validator(
           [](std::string& name) {
             const bool word = !name.empty() && name.size() <= 16 && std::all_of(name.begin(), name.end(), [](char c) {
@@ -189,16 +205,18 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
 }  // namespace
 
 void add_sample(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("sample", "Spread points evenly over a mesh");
+  CLI::App& command = *app.add_subcommand("sample", "Sample a mesh with evenly spaced surface points");
   SampleCommand& sample = request.sample;
   add_mesh(command, sample.mesh);
-  command.add_option("-o,--output", sample.folder, "Folder for the points")->required();
+  command.add_option("-o,--output", sample.folder, "Folder that receives the points")->required();
   add_sampling_options(command, sample);
   add_threads(command, request);
-  command.add_flag("!--no-views", sample.views, "Write no files for ParaView");
+  command.add_flag("!--no-views", sample.views, "Do not write files for ParaView");
   add_force(command, sample.output);
   add_output_flags(command, sample.output);
-  command.footer("Example:\n  orchard sample data/lamp.obj -o out/lamp --samples 20000");
+  command.footer(
+      "Examples:\n  orchard sample data/lamp.obj -o out/lamp\n  orchard sample data/lamp.obj -o out/lamp --samples "
+      "20000\n  orchard sample data/faucet.obj -o out/faucet --relaxation neighbors --seed 7");
   command.callback([&request, &command] {
     request.sample.output.run = invocation_of(command, request.typed);
     request.run = [&request] { orchard::apps::sample(request.sample); };
@@ -206,7 +224,7 @@ void add_sample(CLI::App& app, Request& request) {
 }
 
 void add_voronoi(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("voronoi", "Build the Voronoi diagram of points and say how good it is");
+  CLI::App& command = *app.add_subcommand("voronoi", "Build the Voronoi diagram of points and measure its accuracy");
   VoronoiCommand& voronoi = request.voronoi;
   command
       .add_option("input", voronoi.input,
@@ -217,14 +235,20 @@ void add_voronoi(CLI::App& app, Request& request) {
           .add_option_function<std::string>(
               "--algorithm",
               [&voronoi](const std::string& name) { voronoi.algorithm = *orchard::voronoi_algorithm_named(name); },
-              "bowyer, inagaki, highest-first (default) or exact")
+              "Algorithm (default: highest-first). exact uses exact arithmetic throughout; bowyer and inagaki are the "
+              "dissertation's, for comparison")
           ->check(CLI::IsMember({"bowyer", "inagaki", "highest-first", "exact"}));
-  command.add_flag("--compare", voronoi.compare, "Run all four algorithms on the same points")->excludes(algorithm);
+  command
+      .add_flag("--compare", voronoi.compare,
+                "Run all four algorithms on the same points and compare their accuracy and time")
+      ->excludes(algorithm);
   auto* folder = command.add_option("-o,--output", voronoi.folder,
-                                    "Folder for the cells, for ParaView, and for the points of a mesh");
-  add_list(command, "--cells", voronoi.cells, "Write the cells of these points alone, counted from 0: 3,14,15")
+                                    "Folder that receives the cells for ParaView and the points of a mesh");
+  add_list(command, "--cells", voronoi.cells, "Write only the cells of these points, counted from 0, such as 3,14,15")
       ->needs(folder);
-  command.add_option("--box", voronoi.box, "Clip the cells to this box: x y z of its lower and upper corner")
+  command
+      .add_option("--box", voronoi.box,
+                  "Clip the cells to this box: x y z of its lower corner, then of its upper corner")
       ->expected(6)
       ->needs(folder);
   const auto others = static_cast<std::ptrdiff_t>(command.get_options().size());
@@ -234,7 +258,9 @@ void add_voronoi(CLI::App& app, Request& request) {
   add_threads(command, request);
   add_force(command, voronoi.output)->needs(folder);
   add_output_flags(command, voronoi.output);
-  command.footer("Example:\n  orchard voronoi data/faucet.obj --compare -o out/faucet");
+  command.footer(
+      "Examples:\n  orchard voronoi data/faucet.obj --compare\n  orchard voronoi data/lamp.obj --samples 2000 -o "
+      "out/lamp --cells 3,14,15\n  orchard voronoi points.xyz --algorithm exact");
   command.callback([&request, &command, sampling] {
     request.voronoi.output.run = invocation_of(command, request.typed);
     request.voronoi.sampling_given = given_of(sampling);
@@ -243,25 +269,24 @@ void add_voronoi(CLI::App& app, Request& request) {
 }
 
 void add_medial(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("medial", "Build the medial axis of a mesh, or judge one");
+  CLI::App& command = *app.add_subcommand("medial", "Build, measure or simplify the medial axis of a mesh");
   MedialCommand& medial = request.medial;
   add_mesh(command, medial.mesh);
-  command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
+  command.add_option("-o,--output", medial.folder, "Folder that receives the axis and the reports")->required();
+  medial.reading.unite = true;  // an axis is that of the solid, not of what lies within
   add_mesh_options(command, medial.reading);
   add_side(command, medial);
   add_features(command, medial);
-  command.add_flag("--report", medial.report,
-                   "Measure the quality of what was built (docs/reference/medial-measures.md)");
-  command
-      .add_option("--beside", medial.beside,
-                  "The axis of any system to measure with the same instrument, beside this axis; again for another one")
+  command.add_flag("--report", medial.report, "Measure the quality of the axis (docs/reference/medial-measures.md)");
+  command.add_option("--beside", medial.beside, "Measure this axis of another system beside this one. May be repeated")
       ->allow_extra_args(false);
   CLI::Option* picture = command.add_flag("--picture", medial.picture,
-                                          "With --report or --axis: draw where the axis is worst, places numbered");
+                                          "With --report or --axis: draw the places where the axis is worst, numbered");
   add_up(command, medial.up)->needs(picture);
   command
-      .add_option("--quality-samples", medial.quality_samples,
-                  "Surface points to measure at: fewer are faster and miss more of the largest errors")
+      .add_option(
+          "--quality-samples", medial.quality_samples,
+          "Number of surface points at which to measure. Lower values are faster and miss more of the largest errors")
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
   add_other_axis(command, medial);
@@ -272,10 +297,10 @@ void add_medial(CLI::App& app, Request& request) {
   command
       .add_flag(
           "--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
-          "The axis as the Voronoi diagram has it, the dissertation's: the same as --refine no")
+          "Keep the axis of the Voronoi diagram, the dissertation's. The same as --refine no")
       ->excludes(command.get_option("--refine"));
   add_threads(command, request);
-  command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
+  command.add_flag("!--no-views", medial.views, "Do not write files for ParaView");
   add_accept(command, medial.accept);
   add_force(command, medial.output);
   add_output_flags(command, medial.output);
@@ -284,7 +309,7 @@ void add_medial(CLI::App& app, Request& request) {
       "  orchard medial data/lamp.obj -o out/lamp --report --beside other.ma --beside older.ma --picture\n"
       "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
       "  orchard medial data/lamp.obj -o out/lamp --vertices 200 --envelope out/lamp/envelope.obj\n"
-      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
+      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000 --sweep prune-angle=0,20");
   command.callback([&request, &command] {
     request.medial.output.run = invocation_of(command, request.typed);
     request.medial.given = given_of(command);
@@ -293,30 +318,39 @@ void add_medial(CLI::App& app, Request& request) {
 }
 
 void add_leaderboard(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand(
-      "leaderboard", "Measure the medial axes of all systems in a folder, and orchard's beside them");
+  CLI::App& command =
+      *app.add_subcommand("leaderboard", "Measure the medial axes of several systems in a folder beside orchard's own");
   LeaderboardCommand& leaderboard = request.leaderboard;
   command
-      .add_option("folder", leaderboard.input,
-                  "Meshes, and axes MODEL-SYSTEM-N.ma (.obj, .ply, ..) beside them or in its folder results")
+      .add_option(
+          "folder", leaderboard.input,
+          "Folder of meshes, with axes MODEL-SYSTEM-N.ma (.obj, .ply, ..) beside them or in its subfolder results")
       ->required();
-  command.add_option("-o,--output", leaderboard.folder, "Folder for the table, and for what a later run need not redo")
+  command
+      .add_option("-o,--output", leaderboard.folder,
+                  "Folder that receives the table and the state that a later run continues from")
       ->required();
   add_list(command, "--builders", leaderboard.builders,
-           "Of orchard, in as few balls: refined axes, raw ones (default both)", {"refined", "raw"});
-  add_list(command, "--vertices", leaderboard.vertices, "Numbers of balls to build besides those of the axes", 1);
+           "Which axes of orchard to measure with as few balls as the others: refined, raw (default: both)",
+           {"refined", "raw"});
+  add_list(command, "--vertices", leaderboard.vertices, "Numbers of balls to build in addition to those of the axes",
+           1);
   command.add_flag("--connect", leaderboard.connect,
-                   "Connect balls without cells by their power diagram within the solid");
-  command.add_option("--quality-samples", leaderboard.quality_samples, "Surface points that each axis is measured at")
+                   "Connect balls that have no cells by their power diagram within the solid");
+  command
+      .add_option("--quality-samples", leaderboard.quality_samples,
+                  "Number of surface points at which each axis is measured")
       ->capture_default_str()
       ->check(CLI::Range(100, 10'000'000));
-  command.add_option("--samples", leaderboard.samples, "Surface points that orchard's axes are built from")
+  command.add_option("--samples", leaderboard.samples, "Number of surface points from which orchard's axes are built")
       ->capture_default_str()
       ->check(CLI::Range(10, 10'000'000));
-  command.add_option("--seed", leaderboard.seed, "Of all random choices")->capture_default_str();
+  command.add_option("--seed", leaderboard.seed, "Seed of all random choices")->capture_default_str();
   add_force(command, leaderboard.output);
   add_output_flags(command, leaderboard.output);
-  command.footer("Example:\n  orchard leaderboard results -o out/leaderboard --vertices 50,100,300");
+  command.footer(
+      "Examples:\n  orchard leaderboard results -o out/leaderboard\n  orchard leaderboard results -o out/leaderboard "
+      "--vertices 50,100,300\n  orchard leaderboard results -o out/leaderboard --builders refined --connect");
   command.callback([&request, &command] {
     request.leaderboard.output.run = invocation_of(command, request.typed);
     request.run = [&request] { orchard::apps::leaderboard(request.leaderboard); };
@@ -325,20 +359,24 @@ void add_leaderboard(CLI::App& app, Request& request) {
 
 void add_thickness(CLI::App& app, Request& request) {
   CLI::App& command =
-      *app.add_subcommand("thickness", "Measure how thick a solid is everywhere, and say where it is too thin");
+      *app.add_subcommand("thickness", "Measure the local thickness of a solid and report where it is too thin");
   ThicknessCommand& thickness = request.thickness;
   add_mesh(command, thickness.mesh);
-  command.add_option("-o,--output", thickness.folder, "Folder for the mesh with its thickness, histogram and report")
+  command
+      .add_option("-o,--output", thickness.folder,
+                  "Folder that receives the mesh with its thickness, the histogram and the report")
       ->required();
   add_thickness_options(command, thickness);
+  thickness.reading.unite = true;
   add_mesh_options(command, thickness.reading);
   add_threads(command, request);
-  command.add_flag("!--no-views", thickness.views, "Write no files for ParaView");
+  command.add_flag("!--no-views", thickness.views, "Do not write files for ParaView");
   add_force(command, thickness.output);
   add_output_flags(command, thickness.output);
   command.footer(
       "Examples:\n  orchard thickness data/lamp.obj -o out/lamp --below 0.1\n"
-      "  orchard thickness data/lamp.obj -o out/lamp --fail-below 0.01 --unit mm");
+      "  orchard thickness data/lamp.obj -o out/lamp --fail-below 0.01 --unit mm\n"
+      "  orchard thickness data/ship.obj -o out/ship --definition ray --samples 100000");
   command.callback([&request, &command] {
     request.thickness.output.run = invocation_of(command, request.typed);
     request.run = [&request] { request.exit_code = orchard::apps::thickness(request.thickness); };

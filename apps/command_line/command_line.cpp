@@ -6,6 +6,7 @@
 
 #include "command_line/add_commands.h"
 #include "command_line/command_list.h"
+#include "command_line/help.h"
 #include "command_line/list_option.h"
 #include "command_line/number_validator.h"
 #include "command_line/shared_options.h"
@@ -15,19 +16,21 @@ namespace {
 
 void add_inspect(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand(
-      "inspect", "Say what a mesh, tree, axis, sphere set or point file holds and what is wrong with it");
+      "inspect", "Report what a mesh, tree, axis, sphere set or point file contains and what is wrong with it");
   InspectCommand& inspect = request.inspect;
   command
       .add_option("file", inspect.file,
-                  "A mesh (.obj, .ply, .stl, .off), a tree (.orchard, .sph), an axis (.ma, ..), spheres (.txt, .csv, "
-                  ".json, ..) or points")
+                  "Mesh (.obj, .ply, .stl, .off), sphere-tree (.orchard, .sph), medial axis (.ma, ..), sphere set "
+                  "(.txt, .csv, .json, ..) or points")
       ->required();
   add_join(command, inspect.join);
-  command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
+  command.add_flag("--full", inspect.full, "Search meshes of more than 500,000 triangles for self-intersections, too");
   command.add_option("--unit", inspect.unit,
-                     "The name of the file's unit, such as mm, for what is printed and written");
+                     "Name of the file's unit, such as mm, to print beside lengths, areas and volumes");
   add_output_flags(command, inspect.output);
-  command.footer("Example:\n  orchard inspect data/lamp.obj --unit cm");
+  command.footer(
+      "Examples:\n  orchard inspect data/lamp.obj --unit cm\n  orchard inspect out/lamp/lamp.orchard\n  orchard "
+      "inspect scan.stl --json");
   command.callback([&request, &command] {
     request.inspect.output.run = invocation_of(command, request.typed);
     request.run = [&request] { orchard::apps::inspect(request.inspect); };
@@ -35,55 +38,65 @@ void add_inspect(CLI::App& app, Request& request) {
 }
 
 void add_figure(CLI::App& command, ViewCommand& view) {
-  CLI::Option* color = command.add_option(
-      "--color", view.color,
-      "Colour by an array: radius, structure of axes; radius, error, inaccuracy, level of trees; any of .vtp files");
-  command.add_option("--range", view.range, "A,B: of these colours (default: of all values)")->needs(color);
-  CLI::Option* place = command.add_option("--look-at", view.look_at, "X,Y,Z: the middle of the picture");
-  command.add_option("--width", view.width, "Of what is seen around it, in mesh units (default: everything)")
+  CLI::Option* color = command.add_option("--color", view.color,
+                                          "Colour by an array: radius or structure of axes; radius, error, inaccuracy "
+                                          "or level of trees; any array of .vtp files");
+  command
+      .add_option("--range", view.range,
+                  "A,B: values at the ends of the colour bar (default: the smallest and largest value)")
+      ->needs(color);
+  CLI::Option* place = command.add_option("--look-at", view.look_at, "X,Y,Z: point in the middle of the picture");
+  command
+      .add_option("--width", view.width,
+                  "Width of the region around --look-at that fills the picture, in mesh units (default: everything)")
       ->needs(place)
       ->check(CLI::PositiveNumber);
-  command.add_option("--clip", view.clip, "A,B,C,D: cut away what has A x + B y + C z > D");
+  command.add_option("--clip", view.clip, "A,B,C,D: cut away all points with A x + B y + C z > D");
   command.add_flag("--edges", view.edges,
-                   "Lines at borders (dark) and seams (orange) of axes, and at feature edges of .vtp files");
-  command.add_flag("--balls", view.balls, "The balls of axes, not their sheets");
+                   "Draw the borders (dark) and seams (orange) of axes and the feature edges of .vtp files");
+  command.add_flag("--balls", view.balls, "Draw the balls of axes in place of their sheets");
   command
-      .add_option("--layout", view.layout, "Files over each other, or each beside the others with the meshes around it")
+      .add_option("--layout", view.layout,
+                  "Draw the files over each other, or beside each other with the meshes around each")
       ->capture_default_str()
       ->check(CLI::IsMember({"over", "beside"}));
-  command.add_flag("--captions", view.captions, "Names and figures below the pictures");
-  command.add_flag("--transparent", view.transparent, "No white ground");
-  command.add_option("--turn", view.turn, "So many pictures from all around: PICTURE-001.png ..")
+  command.add_flag("--captions", view.captions, "Write names and figures below the pictures");
+  command.add_flag("--transparent", view.transparent, "Make the background transparent");
+  command.add_option("--turn", view.turn, "Draw this many pictures of a full turn: PICTURE-001.png ..")
       ->check(CLI::Range(2, 3600));
 }
 
 void add_view(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("view", "Draw files, one in the other, or look at them in a window");
+  CLI::App& command =
+      *app.add_subcommand("view", "Render meshes, medial axes and sphere-trees to a picture or an interactive window");
   ViewCommand& view = request.view;
   command
-      .add_option(
-          "files", view.files,
-          "Trees (.orchard, .sph), medial axes (.ma), Voronoi diagrams (.vor), meshes (.obj, .ply, .stl, .off), "
-          "points (.xyz)")
+      .add_option("files", view.files,
+                  "Sphere-trees (.orchard, .sph), medial axes (.ma), Voronoi diagrams (.vor), meshes (.obj, .ply, "
+                  ".stl, .off), points (.xyz) or views (.vtp)")
       ->required();
-  command.add_option("-o,--output", view.picture, "The picture, a .png file; with --window, where the key s saves to");
-  add_list(command, "--level", view.levels,
-           "Level of the trees, 0 for the root; several, such as 1,2,3, make a panel each (default: the deepest)", 0,
-           1'000'000);
-  command.add_option("--camera", view.camera,
-                     "Where the eye is: degrees from the front to the right, and upward (default: 34,23)");
-  command.add_option("--up", view.up, "The axis that points up")
+  command.add_option("-o,--output", view.picture, "Picture to write (.png). With --window, the key s saves it");
+  add_list(
+      command, "--level", view.levels,
+      "Level of the trees to draw, 0 for the root. Several, such as 1,2,3, make a panel each (default: the deepest)", 0,
+      1'000'000);
+  command.add_option(
+      "--camera", view.camera,
+      "A,B: direction of view, A degrees from the front to the right and B degrees upward (default: 34,23)");
+  command.add_option("--up", view.up, "Axis that points up")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: as the model needs; a window 1000x800)");
-  command.add_option("--opacity", view.opacity, "Of meshes, where there is something else to see: 0 to 1")
+  command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: fits the model; 1000x800 for a window)");
+  command
+      .add_option("--opacity", view.opacity,
+                  "Opacity of meshes that are drawn around something else. 0 hides them, 1 hides what is inside")
       ->check(NumberValidator(CLI::Range(0.0, 1.0)))
       ->capture_default_str();
   add_figure(command, view);
   command.add_flag("--window", view.window,
-                   "Open a window: up, down and digits choose the level, o and O the opacity of meshes; a click on a "
-                   "sphere prints its record, s saves what is seen, r shows all again, q closes");
-  command.add_flag("--quiet", view.quiet, "Print nothing but errors");
+                   "Open a window. Keys: up, down and digits choose the level, o and O change the opacity of meshes, s "
+                   "saves the picture, r resets the view, q closes. A click on a sphere prints its record");
+  command.add_flag("--quiet", view.quiet, "Print errors only");
   command.footer(
       "Examples:\n  orchard view out/lamp/lamp.orchard data/lamp.obj -o out/lamp/view.png --level 1,2,3\n"
       "  orchard view out/lamp/lamp.orchard --window");
@@ -94,8 +107,10 @@ void add_view(CLI::App& app, Request& request) {
 }
 
 void add_completion(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("completion", "Print a script that completes commands in a shell");
-  command.add_option("shell", request.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  CLI::App& command = *app.add_subcommand("completion", "Print a completion script for a shell");
+  command.add_option("shell", request.shell, "Shell to make the script for")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh"}));
   command.footer(
       "Examples:\n  orchard completion bash > ~/.local/share/bash-completion/completions/orchard\n"
       "  orchard completion zsh > /usr/local/share/zsh/site-functions/_orchard");
@@ -109,7 +124,7 @@ void add_completion(CLI::App& app, Request& request) {
 // What packages and pages are made with; --help does not list it.
 void add_reference(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("reference", "Print all commands and options")->group("");
-  command.add_option("format", request.format, "markdown or man")
+  command.add_option("format", request.format, "Format to print")
       ->required()
       ->check(CLI::IsMember({"markdown", "man"}));
   command.callback([&app, &request] {
@@ -149,7 +164,9 @@ void add_commands(CLI::App& app, Request& request) {
   add_reference(app, request);
   add_profile(app, request);
   add_simulate(app, request);
+  add_batch(app, request);
   refuse_empty_values(app);
+  group_options(app);
 }
 
 }  // namespace orchard::apps

@@ -27,8 +27,10 @@ struct Request {
   std::string shell, format;  // of completion and reference
   ProfileCommand profile;
   SimulateCommand simulate;
-  std::string typed;  // the whole command line
-  int threads = 0;    // 0: as many as the machine has
+  BatchCommand batch;
+  std::string misbehavior;  // of misbehave
+  std::string typed;        // the whole command line
+  int threads = 0;          // 0: as many as the machine has
   std::function<void()> run;
   int exit_code = kSucceeded;  // set by a command whose result is not what was asked for
 };

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
+
+#include "command_line/text.h"
 
 namespace orchard::apps {
 namespace {
@@ -31,7 +34,8 @@ std::vector<std::string> choices_in(const std::string& type) {
 std::string range_in(const std::string& type) {
   for (const auto& [open, close] : {std::pair{'{', '}'}, {'[', ']'}}) {
     const std::size_t begin = type.find(open), end = type.find(close, begin);
-    if (begin != std::string::npos && end != std::string::npos) return type.substr(begin + 1, end - begin - 1);
+    if (begin == std::string::npos || end == std::string::npos) continue;
+    return replaced(type.substr(begin + 1, end - begin - 1), " - ", " to ");
   }
   return {};
 }
@@ -44,13 +48,24 @@ bool takes_file(const CLI::Option& option) {
   return std::find(named.begin(), named.end(), option.get_lnames().front()) != named.end();
 }
 
+std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
+  std::vector<std::string> names;
+  names.reserve(options.size());
+  for (const CLI::Option* option : options) names.push_back(option->get_name());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 OptionEntry entry_of(const CLI::Option& option) {
   OptionEntry entry;
-  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
   entry.positional = entry.names.empty();
   if (entry.positional) entry.names.push_back(option.get_name(true));
   entry.help = option.get_description();
+  entry.group = option.get_group();
+  entry.needs = names_of(option.get_needs());
+  entry.excludes = names_of(option.get_excludes());
   entry.flag = option.get_expected_min() == 0 && !entry.positional;
   entry.required = option.get_required();
   entry.repeats = option.get_expected_max() > 1;
@@ -76,6 +91,37 @@ CommandEntry entry_of(const CLI::App& command) {
 }
 
 }  // namespace
+
+bool has_range(const OptionEntry& option) { return option.value.find(" to ") != std::string::npos; }
+
+std::string placeholder_of(const OptionEntry& option) {
+  if (option.flag) return {};
+  if (!option.choices.empty()) return joined(option.choices, "|");
+  if (option.file) return "FILE";
+  const bool number = option.value == "UINT" || option.value == "INT" || option.value == "FLOAT" || has_range(option);
+  return number ? "N" : "VALUE";
+}
+
+std::string notes_of(const OptionEntry& option) {
+  std::string notes;
+  if (has_range(option)) notes += " (" + option.value + ")";
+  if (!option.standard.empty()) notes += " [" + option.standard + "]";
+  if (!option.needs.empty()) notes += " (needs " + joined(option.needs, ", ") + ")";
+  if (!option.excludes.empty()) notes += " (not with " + joined(option.excludes, ", ") + ")";
+  return notes;
+}
+
+std::string synopsis(const std::string& program, const CommandEntry& command) {
+  std::string text = program + " " + command.name;
+  for (const OptionEntry& option : command.options) {
+    if (option.positional) {
+      text += " " + option.names.front() + (option.repeats ? ".." : "");
+    } else if (option.required) {
+      text += " " + option.names.front() + " " + placeholder_of(option);
+    }
+  }
+  return text + " [options]";
+}
 
 std::vector<CommandEntry> command_list(const CLI::App& app) {
   std::vector<CommandEntry> commands;

@@ -47,6 +47,8 @@ struct BuildCommand {
   Output output;
 };
 ExitCode build(const BuildCommand& command);
+// What can be refused whatever the mesh is; so below. Throws InputError.
+void check_options(const BuildCommand& command);
 
 struct CollideCommand {
   std::filesystem::path a, b;
@@ -126,6 +128,7 @@ struct SpheresCommand {
   Output output;
 };
 ExitCode spheres(const SpheresCommand& command);
+void check_options(const SpheresCommand& command);
 
 struct SampleCommand {
   std::filesystem::path mesh, folder;
@@ -190,6 +193,7 @@ struct MedialCommand {
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line
 ExitCode medial(const MedialCommand& command);
+void check_options(const MedialCommand& command);
 
 struct LeaderboardCommand {
   std::filesystem::path input, folder;  // of meshes and axes; for the table
@@ -248,6 +252,21 @@ struct ThicknessCommand {
   Output output;
 };
 ExitCode thickness(const ThicknessCommand& command);
+
+struct BatchCommand {
+  std::vector<std::string> sources;  // a folder of meshes or a manifest; or "merge" and folders of batches
+  std::filesystem::path folder;
+  std::string shard = "1/1";
+  int jobs = 0;              // meshes at a time; 0: as many as there are processors
+  double timeout = 0;        // seconds for each mesh; 0: none
+  std::uint64_t memory = 0;  // MiB of each mesh; 0: no limit
+  bool resume = false, cost = false;
+  std::vector<std::string> worker;  // what to do with each mesh: the words behind --
+  std::vector<std::string> faults;  // KIND=MESH, for tests
+  std::vector<std::string> given;   // as of BuildCommand
+  Output output;
+};
+ExitCode batch(const BatchCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;

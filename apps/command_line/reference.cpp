@@ -7,25 +7,6 @@
 namespace orchard::apps {
 namespace {
 
-std::string value_of(const OptionEntry& option) {
-  if (!option.choices.empty()) return joined(option.choices, "|");
-  if (option.file) return "FILE";
-  return option.value;
-}
-
-// "orchard build mesh -o FILE [options]".
-std::string synopsis(const std::string& program, const CommandEntry& command) {
-  std::string text = program + " " + command.name;
-  for (const OptionEntry& option : command.options) {
-    if (option.positional) {
-      text += " " + option.names.front() + (option.repeats ? ".." : "");
-    } else if (option.required) {
-      text += " " + option.names.back() + " " + value_of(option);
-    }
-  }
-  return text + " [options]";
-}
-
 std::string cell(const std::string& text) { return replaced(replaced(text, "|", "\\|"), "<", "&lt;"); }
 
 // The lines of a footer that are commands.
@@ -61,10 +42,9 @@ std::string markdown_reference(const CLI::App& app) {
     text += fmt::format("\n## {0} {1}\n\n{2}.\n\n```text\n{3}\n```\n\n| Option | Value | |\n|---|---|---|\n",
                         app.get_name(), command.name, command.help, synopsis(app.get_name(), command));
     for (const OptionEntry& option : command.options) {
-      const std::string standard = option.standard.empty() ? "" : " [" + option.standard + "]";
-      const std::string value = value_of(option);
-      text += fmt::format("| `{}` | {} | {}{} |\n", joined(option.names, "`, `"),
-                          value.empty() ? "" : "`" + cell(value) + "`", cell(option.help), standard);
+      const std::string value = placeholder_of(option);
+      text += fmt::format("| `{}` | {} | {} |\n", joined(option.names, "`, `"),
+                          value.empty() ? "" : "`" + cell(value) + "`", cell(option.help + "." + notes_of(option)));
     }
     const std::vector<std::string> lines = examples(command);
     if (!lines.empty()) text += "\n```sh\n" + joined(lines, "\n") + "\n```\n";
@@ -82,10 +62,9 @@ std::string manual_page(const CLI::App& app, const std::string& version) {
     text += fmt::format(".SH {} {}\n{}.\n.PP\n.B {}\n", name, command.name, roff(command.help),
                         roff(synopsis(name, command)));
     for (const OptionEntry& option : command.options) {
-      const std::string value = value_of(option);
-      text += fmt::format(".TP\n.B {}{}\n{}{}\n", roff(joined(option.names, ", ")),
-                          value.empty() ? "" : " \\fR" + roff(value), roff(option.help),
-                          option.standard.empty() ? "" : roff(" [" + option.standard + "]"));
+      const std::string value = placeholder_of(option);
+      text += fmt::format(".TP\n.B {}{}\n{}\n", roff(joined(option.names, ", ")),
+                          value.empty() ? "" : " \\fR" + roff(value), roff(option.help + "." + notes_of(option)));
     }
     for (const std::string& line : examples(command)) text += ".PP\n.RS\n.B " + roff(line) + "\n.RE\n";
   }

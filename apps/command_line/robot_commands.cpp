@@ -16,24 +16,25 @@ void add_fit_options(CLI::App& command, RobotCommand& robot) {
   command
       .add_option(
           "--spheres", robot.spheres,
-          "How many, of all links together: each link gets one, and the next one goes to the link whose spheres "
+          "Make this many for all links together. Each link gets one, and the next one goes to the link whose spheres "
           "stick out farthest")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   command
-      .add_option("--link", robot.links, "NAME=NUMBER: so many for a link; may be repeated. They count among --spheres")
+      .add_option("--link", robot.links,
+                  "Make this many for a link, as NAME=NUMBER; they count among --spheres. May be repeated")
       ->allow_extra_args(false);
   command
       .add_option("--fit", robot.fit,
-                  "The promise for each link: cover (hold the whole surface), inside (lie in the solid) or balanced "
+                  "Promise for each link: cover (hold the whole surface), inside (lie in the solid) or balanced "
                   "(the solid's volume)")
       ->check(CLI::IsMember({"cover", "inside", "balanced"}))
       ->capture_default_str();
-  command.add_option("--fit-link", robot.link_fits, "NAME=FIT: another one for a link; may be repeated")
+  command.add_option("--fit-link", robot.link_fits, "Use another fit for a link, as NAME=FIT. May be repeated")
       ->allow_extra_args(false);
   command
       .add_option("--padding", robot.padding,
-                  "A cover of every point up to this far from the surface, in metres: added to all radii")
+                  "Cover every point up to this far from the surface, in metres: added to all radii")
       ->check(NumberValidator(CLI::Range(0.0, 1e3)))
       ->capture_default_str();
   command
@@ -42,20 +43,19 @@ void add_fit_options(CLI::App& command, RobotCommand& robot) {
           [&robot](const std::string& name) {
             robot.effort = name == "low" ? Effort::low : name == "high" ? Effort::high : Effort::standard;
           },
-          "How long to search: low, standard (default) or high")
+          "Search effort: low, standard (default) or high")
       ->check(CLI::IsMember({"low", "standard", "high"}));
   command.add_option("--from", robot.from,
-                     "Make no spheres, but take those of this file or folder, as audit reads them, and write them in "
+                     "Make no spheres. Take those of this file or folder, as audit reads them, and write them in "
                      "other formats");
-  command.add_flag(
-      "!--no-wrap", robot.wrap,
-      "Refuse links that are no solids even after repair; without it they are wrapped, and a line says so");
+  command.add_flag("!--no-wrap", robot.wrap,
+                   "Refuse links that are no solids even after repair, in place of wrapping them");
 }
 
 // That say what files hold.
 void add_file_options(CLI::App& command, RobotCommand& robot) {
   std::vector<std::string> names;
-  std::string help = "Which formats to write";
+  std::string help = "Write these formats";
   for (const robot::Format& format : robot::formats()) {
     names.emplace_back(format.name);
     help += fmt::format("{} {} ({})", names.size() == 1 ? ":" : ",", format.name, format.description);
@@ -63,34 +63,34 @@ void add_file_options(CLI::App& command, RobotCommand& robot) {
   help += fmt::format("; default: {}", fmt::join(kUsualFormats, ","));
   add_list(command, "--export", robot.exports, help, names);
   command
-      .add_option(
-          "--tool-frame", robot.tool_frames,
-          "A link that cuRobo, XRDF and VAMP are to take for the tool; may be repeated (default: the end of the "
-          "longest chain)")
-      ->allow_extra_args(false);
-  command
-      .add_option("--joints", robot.joints,
-                  "NAME=VALUE: where a joint rests in files, views and the picture, in radians or metres; may be "
-                  "repeated (default: 0, or as near as its limits allow)")
+      .add_option("--tool-frame", robot.tool_frames,
+                  "Link that cuRobo, XRDF and VAMP take for the tool; may be repeated (default: the end of the "
+                  "longest chain)")
       ->allow_extra_args(false);
   command
       .add_option(
-          "--acceleration", robot.acceleration,
-          "The limit of all joints' accelerations in XRDF and cuRobo's files, which URDF does not have; without "
-          "it there is a marked placeholder")
+          "--joints", robot.joints,
+          "Position at which a joint rests in files, views and the picture, as NAME=VALUE in radians or metres; may be "
+          "repeated (default: 0, or as near as its limits allow)")
+      ->allow_extra_args(false);
+  command
+      .add_option("--acceleration", robot.acceleration,
+                  "Limit of all joints' accelerations in XRDF and cuRobo's files, which URDF does not have; without "
+                  "it there is a marked placeholder")
       ->check(NumberValidator(CLI::Range(1e-6, 1e9)));
-  command.add_option("--jerk", robot.jerk, "Likewise of their jerks")->check(NumberValidator(CLI::Range(1e-6, 1e9)));
+  command.add_option("--jerk", robot.jerk, "Limit of all joints' jerks, likewise")
+      ->check(NumberValidator(CLI::Range(1e-6, 1e9)));
   command
       .add_option("--buffer", robot.buffer,
-                  "What cuRobo and XRDF are to add to all radii, in metres: a number in their files")
+                  "Length that cuRobo and XRDF add to all radii, in metres: a number in their files")
       ->check(NumberValidator(CLI::Range(-1e3, 1e3)))
       ->capture_default_str();
-  command.add_option("--resolution", robot.resolution, "Of VAMP's motion checks")
+  command.add_option("--resolution", robot.resolution, "Resolution of VAMP's motion checks")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   command
       .add_option("--density", robot.density,
-                  "Of links whose URDF has no usable inertia, in kg/m^3, for formats that have masses")
+                  "Density of links whose URDF has no usable inertia, in kg/m^3, for formats that have masses")
       ->check(NumberValidator(CLI::Range(1e-9, 1e9)))
       ->capture_default_str();
 }
@@ -118,21 +118,22 @@ void add_robot(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand(
       "robot", "Make spheres for every link of a URDF, proven, in the formats of planners and simulators");
   RobotCommand& robot = request.robot;
-  command.add_option("urdf", robot.urdf, "The robot, a .urdf file; meshes may be .stl, .obj, .ply, .off and .dae")
+  command.add_option("urdf", robot.urdf, "Robot to read, a .urdf file; meshes may be .stl, .obj, .ply, .off and .dae")
       ->required();
-  command.add_option("-o,--output", robot.folder, "Folder for all files")->required();
+  command.add_option("-o,--output", robot.folder, "Folder that receives all files")->required();
   add_fit_options(command, robot);
   add_robot_reading(command, robot.reading);
   add_file_options(command, robot);
   command
       .add_option("--states", robot.states,
-                  "Joint states to sample for the pairs of links that need no test; 0: no such list")
+                  "Sample this many joint states to find the pairs of links that need no test. 0 makes no such list")
       ->check(CLI::Range(0, 10'000'000))
       ->capture_default_str();
-  command.add_option("--seed", robot.seed, "Of all random choices")->capture_default_str();
+  command.add_option("--seed", robot.seed, "Seed of all random choices")->capture_default_str();
   command.add_flag("--trees", robot.trees, "Write a sphere-tree for each link, an .orchard file for the run-time");
   command.add_option("--trajectory", robot.trajectory,
-                     "A table of joint values, .csv with the joints' names and perhaps time as its header: the robot "
+                     "Table of joint values to play in ParaView, .csv with the joints' names and perhaps time as its "
+                     "header: the robot "
                      "along it, for ParaView");
   command.add_flag("!--no-views", robot.views, "Write no files for ParaView");
   command.add_flag("!--no-picture", robot.picture, "Draw no picture of the robot with its spheres");

@@ -19,7 +19,9 @@ namespace {
 // That say what a set is to be.
 void add_set_options(CLI::App& command, SpheresCommand& spheres) {
   SphereSetOptions& options = spheres.options;
-  command.add_option("-n,--spheres", options.spheres, "How many: exactly so many, or with an error at most")
+  command
+      .add_option("-n,--spheres", options.spheres,
+                  "Number of spheres: exactly this many, or at most with --error or --volume-error")
       ->check(CLI::Range(1, static_cast<int>(kMaxSetSpheres)))
       ->capture_default_str();
   command
@@ -31,27 +33,28 @@ void add_set_options(CLI::App& command, SpheresCommand& spheres) {
                           : name == "particles" ? SphereFit::particles
                                                 : SphereFit::cover;
           },
-          "The promise: cover (hold the whole surface, the default), inside (lie in the solid), balanced (the solid's "
-          "volume, and a boundary near its surface) or particles (in the solid, overlaps, mass and inertia as stated)")
+          "What the set promises: cover (default; the spheres contain the whole surface), inside (they lie in the "
+          "solid), balanced (their union has the solid's volume and a boundary near its surface) or particles (they "
+          "lie in the solid with the stated overlap, mass and inertia)")
       ->check(CLI::IsMember({"cover", "inside", "balanced", "particles"}));
   command
       .add_option(
           "--error", spheres.error,
-          "The fewest spheres with this error, in percent of the diagonal: how far a cover sticks out, how far the "
-          "surface is from spheres inside or particles, the mean two-sided distance of balanced ones")
+          "Use the fewest spheres within this error, in percent of the diagonal: how far a cover protrudes, how far "
+          "the surface is from spheres inside or particles, the mean two-sided distance of a balanced set")
       ->check(NumberValidator(CLI::Range(1e-4, 100.0)));
   command
       .add_option("--volume-error", spheres.volume_error,
-                  "The same by volume, in percent of the solid's: what of a cover lies outside, what spheres inside or "
-                  "particles leave out")
+                  "Use the fewest spheres within this error of volume, in percent of the solid's: the part of a cover "
+                  "outside, or the part of the solid that spheres inside or particles leave out")
       ->check(NumberValidator(CLI::Range(1e-3, 1000.0)));
-  command.add_flag("--solid", options.solid, "A cover of the whole solid, not of its surface alone");
+  command.add_flag("--solid", options.solid, "Cover the whole solid, not only its surface");
   command
       .add_option("--padding", options.padding,
-                  "A cover of every point up to this far from the surface, in mesh units: added to all radii")
+                  "Cover every point up to this distance from the surface, in mesh units, by adding it to all radii")
       ->check(NumberValidator(CLI::Range(0.0, 1e15)))
       ->capture_default_str();
-  command.add_option("--min-radius", options.min_radius, "No sphere is smaller, in mesh units")
+  command.add_option("--min-radius", options.min_radius, "Smallest radius, in mesh units")
       ->check(NumberValidator(CLI::Range(0.0, 1e15)))
       ->capture_default_str();
   command
@@ -60,20 +63,20 @@ void add_set_options(CLI::App& command, SpheresCommand& spheres) {
           [&options](const std::string& name) {
             options.effort = name == "low" ? Effort::low : name == "high" ? Effort::high : Effort::standard;
           },
-          "How long to search: low, standard (default) or high")
+          "How long to search (default: standard). high takes about three times as long and is a little tighter")
       ->check(CLI::IsMember({"low", "standard", "high"}));
-  command.add_option("--seed", options.seed, "Of all random choices")->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of all random choices")->capture_default_str();
   add_list(command, "--curve", spheres.curve,
-           "Make sets of these numbers of spheres as well, and write how far off each is: MODEL-set-curve.csv and .svg",
-           1, kMaxSetSpheres);
+           "Also fit sets of these numbers of spheres and write the error of each: MODEL-set-curve.csv and .svg", 1,
+           kMaxSetSpheres);
 }
 
 // That say which part of the mesh counts, and where it counts more.
 void add_place_options(CLI::App& command, SpheresCommand& spheres) {
   command
       .add_option("--clip", spheres.clip,
-                  "Only the part of the solid where NX x + NY y + NZ z is D or more, closed where the plane cuts it: "
-                  "NX NY NZ D")
+                  "NX NY NZ D: fit only the part of the solid where NX x + NY y + NZ z is at least D. The cut is "
+                  "closed by the plane")
       ->expected(4);
   SetWeights& weights = spheres.options.weights;
   command
@@ -82,10 +85,10 @@ void add_place_options(CLI::App& command, SpheresCommand& spheres) {
           [&weights](const std::vector<std::string>& regions) {
             for (const std::string& region : regions) weights.regions.push_back(parse_weight(region));
           },
-          "Where looseness counts F times: x,y,z,r=F in a ball, x,y,z,x,y,z=F in a box; may be repeated")
+          "Weigh looseness F times in a ball (x,y,z,r=F) or in a box (x,y,z,x,y,z=F of two corners). May be repeated")
       ->allow_extra_args(false);
   command.add_option("--vertex-weights", spheres.vertex_weights,
-                     "The same for what is near each vertex: a file of a number a line, in the mesh's order");
+                     "Weigh looseness near each vertex: a file with one weight a line, in the order of the mesh");
 }
 
 // For `--fit particles` alone.
@@ -93,11 +96,12 @@ void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
   ParticleOptions& options = spheres.options.particles;
   command
       .add_option("--overlap", spheres.overlap,
-                  "Particles: how much of the smaller of two spheres may lie in the other, in percent of its volume")
+                  "particles: largest share of the smaller of two spheres that lies in the other, in percent of its "
+                  "volume. 0 allows none")
       ->check(NumberValidator(CLI::Range(0.0, 100.0)))
       ->capture_default_str();
-  command.add_flag("--equal", options.equal_radii, "Particles: all radii are equal");
-  command.add_option("--density", options.density, "Particles: mass over volume, in any unit")
+  command.add_flag("--equal", options.equal_radii, "particles: make all radii equal");
+  command.add_option("--density", options.density, "particles: mass per volume, in any unit")
       ->check(NumberValidator(CLI::Range(1e-15, 1e15)))
       ->capture_default_str();
   command
@@ -107,19 +111,20 @@ void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
             options.density_of =
                 name == "balls" ? ParticleOptions::DensityOf::balls : ParticleOptions::DensityOf::solid;
           },
-          "Particles: the density is that of the solid, whose mass the spheres share (solid, the default), or of each "
-          "sphere (balls)")
+          "particles: whose density --density is, the solid's, whose mass the spheres share (solid, default), or each "
+          "sphere's (balls)")
       ->check(CLI::IsMember({"solid", "balls"}));
-  command.add_flag("--masses", options.own_masses,
-                   "Particles: each has a mass of its own, so that centre of mass and inertia are the solid's");
+  command.add_flag(
+      "--masses", options.own_masses,
+      "particles: give each sphere a mass of its own, so that centre of mass and inertia are those of the solid");
   command
       .add_option("--center-error", spheres.center_error,
-                  "Particles: how far off the centre of mass may be, in percent of the diagonal")
+                  "particles: largest error of the centre of mass, in percent of the diagonal")
       ->check(NumberValidator(CLI::Range(1e-6, 100.0)))
       ->capture_default_str();
   command
       .add_option("--inertia-error", spheres.inertia_error,
-                  "Particles: how far off the inertia tensor may be at equal mass, in percent")
+                  "particles: largest error of the inertia tensor at equal mass, in percent")
       ->check(NumberValidator(CLI::Range(1e-6, 1000.0)))
       ->capture_default_str();
 }
@@ -127,31 +132,29 @@ void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
 }  // namespace
 
 void add_spheres(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("spheres", "Make a set of spheres for a mesh, with a promise and its proof");
+  CLI::App& command = *app.add_subcommand("spheres", "Fit a set of spheres to a mesh and prove what the set promises");
   SpheresCommand& spheres = request.spheres;
   command
-      .add_option(
-          "mesh", spheres.mesh,
-          "The mesh; or spheres that are there already, as audit reads them, to be written in other formats and "
-          "as a tree")
+      .add_option("mesh", spheres.mesh,
+                  "Triangle mesh to fit, or a sphere set that audit reads, to convert it to other formats or to a tree")
       ->required();
-  command.add_option("-o,--output", spheres.folder, "Folder for the spheres, the views and the report")->required();
+  command.add_option("-o,--output", spheres.folder, "Folder that receives the spheres, the views and the report")
+      ->required();
   add_set_options(command, spheres);
   add_place_options(command, spheres);
   add_particle_options(command, spheres);
   add_mesh_options(command, spheres.reading);
   add_list(command, "--export", spheres.exports,
-           "The spheres in further formats: json, csv, urdf (a link's collision geometry), yaml (cuRobo's)",
+           "Also write the spheres as json, csv, urdf (collision geometry of a link) or yaml (cuRobo's format)",
            {"json", "csv", "urdf", "yaml"});
   command.add_option(
       "--link", spheres.link,
-      "The link's name in urdf and yaml (default: the mesh's); of a file of spheres for several, which one");
-  command.add_flag(
-      "--tree", spheres.tree,
-      "Write an .orchard file over the spheres, for the run-time: of a cover it holds the surface, otherwise "
-      "the union of the spheres is the object");
-  command.add_flag("!--no-views", spheres.views, "Write no files for ParaView");
-  command.add_flag("--picture", spheres.picture, "Draw the spheres");
+      "Name of the link in urdf and yaml (default: that of the mesh), or the link to read from a file of several");
+  command.add_flag("--tree", spheres.tree,
+                   "Also write a sphere-tree (.orchard) over the spheres, for the run-time. Over a cover it bounds the "
+                   "surface, otherwise the union of the spheres");
+  command.add_flag("!--no-views", spheres.views, "Do not write files for ParaView");
+  command.add_flag("--picture", spheres.picture, "Also draw the spheres to a .png file");
   add_up(command, spheres.up);
   add_threads(command, request);
   add_accept(command, spheres.accept);
@@ -172,40 +175,42 @@ void add_spheres(CLI::App& app, Request& request) {
 
 void add_audit(CLI::App& app, Request& request) {
   CLI::App& command =
-      *app.add_subcommand("audit", "Prove what a set of spheres of any origin leaves open of a mesh, and measure it");
+      *app.add_subcommand("audit", "Measure any set of spheres against a mesh and prove what it leaves open");
   AuditCommand& audit = request.audit;
   command
-      .add_option(
-          "spheres", audit.spheres,
-          "The spheres, in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .urdf, "
-          ".srdf, .xml (MJCF), .mol (LAMMPS), .py (YADE), .ply with radii, .sph, .orchard; of a robot also a folder of "
-          "MorphIt's files")
+      .add_option("spheres", audit.spheres,
+                  "Sphere set in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .urdf, "
+                  ".srdf, .xml (MJCF), .mol (LAMMPS), .py (YADE), .ply with radii, .sph or .orchard; of a robot also a "
+                  "folder of MorphIt's files")
       ->required();
   command
-      .add_option("mesh", audit.mesh,
-                  "The mesh: .obj, .ply, .stl or .off; or a robot's .urdf, with all of whose links the spheres are "
-                  "compared")
+      .add_option(
+          "mesh", audit.mesh,
+          "Triangle mesh (.obj, .ply, .stl or .off), or a robot's .urdf, with all of whose links the spheres are "
+          "compared")
       ->required();
-  command.add_option("--link", audit.link, "The link, where a file has several");
+  command.add_option("--link", audit.link, "Link to audit, if the file has several");
   command
       .add_option("--buffer", audit.buffer,
-                  "Audit the spheres with this much on every radius, too, in place of the file's own buffer")
+                  "Also audit the spheres with this added to every radius, in place of the buffer that the file states")
       ->check(NumberValidator(CLI::Range(-1e15, 1e15)));
   add_join(command, audit.join);
   add_robot_reading(command, audit.reading);
-  command.add_flag("--wrap", audit.wrap,
-                   "Of a robot: links that are no solids are compared as closed skins around them, otherwise by their "
-                   "surface alone");
-  auto* folder = command.add_option("-o,--output", audit.folder, "Folder for the views and the report");
+  command.add_flag(
+      "--wrap", audit.wrap,
+      "Of a robot: compare links that are no solids as closed skins around them, not by their surface alone");
+  auto* folder = command.add_option("-o,--output", audit.folder, "Folder that receives the views and the report");
   auto* picture =
-      command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres stick out")
+      command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres protrude")
           ->needs(folder);
   add_up(command, audit.up)->needs(picture);
   add_force(command, audit.output)->needs(folder);
   add_output_flags(command, audit.output);
   command.footer(
       "Exit code 3 if some of the surface is open.\n"
-      "Examples:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit\n"
+      "Examples:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj\n"
+      "  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit --picture\n"
+      "  orchard audit robot.yml link.stl --link forearm --buffer 0.01\n"
       "  orchard audit out/desk-arm/desk-arm-curobo.yml data/desk-arm.urdf");
   command.callback([&request, &command] {
     request.audit.output.run = invocation_of(command, request.typed);

@@ -81,32 +81,35 @@ Refinement::Region parse_region(const std::string& text) {
 // The numbers of dissertation 5.3.1, in place of the effort's.
 void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
   AnnealingTuning& tuning = options.annealing;
-  constexpr const char* group = "Annealing, in place of what --effort stands for [as in the dissertation]";
+  constexpr const char* group = "Annealing schedule (in place of --effort; defaults are the dissertation's)";
   const auto share = NumberValidator(CLI::Range(1e-6, 1 - 1e-6));
   const auto count = CLI::Range(1, 1'000'000);
   const auto add = [&](const char* option, auto& value, const char* what, const auto& check) {
     command.add_option(option, value, what)->check(check)->group(group);
   };
   add_choice(command, "--anneal-distance", kDistances, options.distance,
-             "How loose a sphere is: by Lemma 5.1 (lemma, the default), at 20 points (samples), or there and corrected "
+             "Looseness of a sphere: by Lemma 5.1 (lemma, default), at 20 points (samples), or at these and corrected "
              "(corrected-samples)")
       ->group(group);
-  add("--anneal-move", tuning.move, "Longest translation of a change, in radii of the parent [0.035]",
+  add("--anneal-move", tuning.move, "Longest translation of one change, in radii of the parent [0.035]",
       NumberValidator(CLI::Range(0.0, 1.0)));
-  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]",
+  add("--anneal-min-scale", tuning.min_scale, "Smallest factor of one change of a radius [0.95]",
       NumberValidator(CLI::Range(0.01, 1.0)));
-  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]",
+  add("--anneal-max-scale", tuning.max_scale, "Largest factor of one change of a radius [1.053]",
       NumberValidator(CLI::Range(1.0, 100.0)));
-  add("--anneal-first-trials", tuning.first_trials, "Changes that the first temperature is found by [40]", count);
-  add("--anneal-first-acceptance", tuning.first_acceptance, "Probability of a mean rise at the first temperature [0.9]",
-      share);
-  add("--anneal-max-accepted", tuning.max_accepted, "Accepted changes at one temperature, at most [200]", count);
-  add("--anneal-max-rejected", tuning.max_rejected, "Rejected changes at one temperature, at most [200]", count);
+  add("--anneal-first-trials", tuning.first_trials, "Changes from which the first temperature is estimated [40]",
+      count);
+  add("--anneal-first-acceptance", tuning.first_acceptance,
+      "Probability that a rise of average size is accepted at the first temperature [0.9]", share);
+  add("--anneal-max-accepted", tuning.max_accepted, "Largest number of accepted changes at one temperature [200]",
+      count);
+  add("--anneal-max-rejected", tuning.max_rejected, "Largest number of rejected changes at one temperature [200]",
+      count);
   add("--anneal-max-uncovering", tuning.max_uncovering,
-      "Changes at one temperature that uncover the surface and are tried again, at most [20000]", count);
+      "Largest number of changes at one temperature that uncover the surface and are retried [20000]", count);
   add("--anneal-cooling", tuning.cooling, "Factor from one temperature to the next [0.9]", share);
-  add("--anneal-first-iterations", tuning.iterations_first, "Temperatures on the first level [100]", count);
-  add("--anneal-iterations", tuning.iterations, "Temperatures on the levels below [50]", count);
+  add("--anneal-first-iterations", tuning.iterations_first, "Number of temperatures on the first level [100]", count);
+  add("--anneal-iterations", tuning.iterations, "Number of temperatures on each level below [50]", count);
 }
 
 }  // namespace
@@ -117,46 +120,51 @@ const char* name(Objective objective) { return key_of(kObjectives, objective); }
 const char* name(Selection selection) { return key_of(kSelections, selection); }
 
 void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
-  add_choice(
-      command, "--method", kMethods, options.method,
-      "How to build: tightened (default), the tightest; merging along the medial axis; simulated annealing; octree");
-  auto* depth = command.add_option("--depth", options.depth, "Levels below the root at most")
-                    ->check(CLI::Range(1, 20))
-                    ->capture_default_str();
+  add_choice(command, "--method", kMethods, options.method,
+             "Construction method: tightened (default, the tightest trees), merging (along the medial axis), annealing "
+             "(the dissertation's) or octree (the fastest)");
+  auto* depth =
+      command
+          .add_option("--depth", options.depth,
+                      "Largest number of levels below the root. Each level costs about --branching times the one above")
+          ->check(CLI::Range(1, 20))
+          ->capture_default_str();
   auto* branching = command
                         .add_option("--branching", options.branching,
-                                    "Children of a sphere at most; on average with tightened, where a sphere has as "
-                                    "many as it is worth, and merging, up to three times as many; "
-                                    "above 64 for tightened only")
+                                    "Children per sphere: the average for tightened and merging, which give more where "
+                                    "they help, and the most for the others. Above 64 for tightened only")
                         ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
                         ->capture_default_str();
   add_list(command, "--spheres", options.spheres,
-           "tightened: N1,N2,.. spheres on each level at most, in place of --depth and --branching; children go where "
-           "they help, up to 64 to a sphere")
+           "tightened: largest number of spheres of each level, N1,N2,.., in place of --depth and --branching")
       ->excludes(depth)
       ->excludes(branching);
-  add_choice(
-      command, "--effort", kEfforts, options.effort,
-      "How long to search: tightened, about 1 : 2 : 6; annealing, about 1 : 3 : 17, high as in the dissertation");
+  add_choice(command, "--effort", kEfforts, options.effort,
+             "How long to search. Times are about 1 : 2 : 6 for tightened and 1 : 3 : 17 for annealing, where high is "
+             "the dissertation's schedule");
   add_choice(command, "--objective", kObjectives, options.objective,
-             "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
+             "tightened: what to minimise, the maximum inaccuracy, the mean inaccuracy, the outside volume or a "
+             "balance of them (default)");
   add_choice(command, "--closing", kClosings, options.closing,
-             "merging: how spheres come to cover what their points miss: fitted again to it (default), or grown by a "
-             "tenth at a time, as in the dissertation");
-  add_choice(command, "--energy", kEnergies, options.energy,
-             "annealing: what makes a set of siblings loose, its loosest (default) or all together");
-  add_annealing_options(command, options);
+             "merging: how spheres are closed over the surface, fitted again (refit, default) or grown by a tenth at a "
+             "time (growth, the dissertation's)");
   add_choice(
-      command, "--redundant", kSelections, options.redundancy,
-      "Which spheres that others make needless are left out: all that can be (exhaustive, the default), chains of "
-      "them without cycles (acyclic), or only those that no other of them rests on, as in the dissertation "
-      "(independent)");
-  command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
+      command, "--energy", kEnergies, options.energy,
+      "annealing: looseness of a set of siblings, that of the loosest (maximum, default) or of all together (sum)");
+  add_annealing_options(command, options);
+  add_choice(command, "--redundant", kSelections, options.redundancy,
+             "Which redundant spheres to remove: all that can be (exhaustive, default), chains without cycles "
+             "(acyclic), or only those on which no other removal depends (independent, the dissertation's)");
+  command
+      .add_option("--descent", options.descent,
+                  "Trials per sphere of a random descent that follows any method. More trials tighten the tree a "
+                  "little and take longer")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
   command
-      .add_option("--error", options.refinement.error,
-                  "No children for a sphere whose inaccuracy is this or less, in mesh units (0: down to --depth)")
+      .add_option(
+          "--error", options.refinement.error,
+          "Do not refine spheres whose inaccuracy is at most this, in mesh units (default: refine all down to --depth)")
       ->check(NumberValidator(CLI::NonNegativeNumber));
   command
       .add_option_function<std::vector<std::string>>(
@@ -164,7 +172,7 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
           [&options](const std::vector<std::string>& regions) {
             for (const std::string& region : regions) options.refinement.regions.push_back(parse_region(region));
           },
-          "x,y,z,r=E: the same, for spheres that meet this ball, in place of --error; may be repeated")
+          "x,y,z,r=E: use E in place of --error for spheres that meet this ball. May be repeated")
       ->allow_extra_args(false);
 }
 

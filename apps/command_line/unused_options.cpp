@@ -118,7 +118,7 @@ void refuse_unused_options(const MedialCommand& command) {
   if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
     throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
   if (!command.exports.empty() && sweeps) throw InputError("--export has no effect with --sweep, which writes no axis");
-  if (among("best", command.given) && !sweeps) throw InputError("--best has no effect without --sweep");
+  if (among("sort-by", command.given) && !sweeps) throw InputError("--sort-by has no effect without --sweep");
   if (command.picture && (sweeps || (!command.report && !judges)))
     throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
   const Names swept = swept_flags(command);

@@ -45,13 +45,14 @@ std::string help_of(const CLI::App& app, const std::string& command) {
 }
 
 // The first of the words from `begin` on that begins like an option and is none of the command's.
-std::string unknown_option(const CLI::App& app, const CLI::App& command, int begin, int argc, const char* const* argv) {
+std::string unknown_option(const CLI::App& app, const CLI::App& command, std::size_t begin,
+                           const std::vector<std::string>& words) {
   std::vector<std::string> options;
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   const std::string name = &app == &command ? std::string() : command.get_name();
-  for (int i = begin; i < argc && std::string_view(argv[i]) != "--"; ++i) {
-    const std::string typed = argv[i], word = typed.substr(0, typed.find('='));
+  for (std::size_t i = begin; i < words.size() && words[i] != "--"; ++i) {
+    const std::string word = words[i].substr(0, words[i].find('='));
     if (!word.starts_with("--") || std::find(options.begin(), options.end(), word) != options.end()) continue;
     std::string message = app.get_name();
     if (!name.empty()) message += " " + name;
@@ -64,17 +65,17 @@ std::string unknown_option(const CLI::App& app, const CLI::App& command, int beg
 
 }  // namespace
 
-std::string unknown_word(const CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2) return {};
-  if (argv[1][0] == '-') return unknown_option(app, app, 1, 2, argv);
-  const std::string command = argv[1];
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.size() < 2) return {};
+  const std::string& command = words[1];
+  if (command.starts_with("-")) return unknown_option(app, app, 1, {words[0], words[1]});
   const CLI::App* chosen = nullptr;
   std::vector<std::string> commands;
   for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; })) {
     commands.push_back(one->get_name());
     if (one->get_name() == command) chosen = one;
   }
-  if (chosen != nullptr) return unknown_option(app, *chosen, 2, argc, argv);
+  if (chosen != nullptr) return unknown_option(app, *chosen, 2, words);
   const std::string meant = suggestion(command, commands);
   return "there is no command \"" + command + "\"" +
          (meant.empty() ? "; " + help_of(app, "") + " lists them all" : meant);

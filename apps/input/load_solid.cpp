@@ -9,6 +9,7 @@
 #include "input/reading_report.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/unite.h"
 
 namespace orchard::apps {
 namespace {
@@ -83,6 +84,15 @@ SolidMesh repaired(const std::string& name, TriangleMesh mesh, const MeshOptions
   return solid;
 }
 
+// Replaces parts that cut each other by their union, where there is one.
+void unite(SolidMesh& solid, BoundingBall ball, const Progress& progress) {
+  std::optional<UnitedMesh> united = unite_parts(solid.surface.mesh(), progress);
+  if (!united) return;
+  solid.united = UnionResult{.parts = united->parts, .cut_before = united->cut_before, .cut_left = united->cut_left};
+  solid.self_intersections = united->cut_left;
+  solid.surface = Surface(std::move(united->mesh), ball);
+}
+
 json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
 
 }  // namespace
@@ -127,6 +137,8 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
       options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options, progress);
   if (solid.surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     solid.self_intersections = solid.surface.self_intersections().size();
+  if (options.unite && !options.strict && solid.self_intersections.value_or(0) > 0)
+    unite(solid, options.ball, progress);
   solid.reading = std::move(reading);
   return solid;
 }
@@ -152,6 +164,9 @@ void print_repair(const std::filesystem::path& file, const MeshRepairReport& rep
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
   print_reading(file, solid.reading);
   print_repair(file, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
+  if (solid.united)
+    fmt::print("{}: {} parts that cut each other in {} pairs of triangles were replaced by their union\n",
+               file.string(), solid.united->parts, solid.united->cut_before);
   if (solid.self_intersections.value_or(0) > 0)
     fmt::print(
         "{}: {} pair{} of triangles cut or touch each other; inside is what the surface winds around; --wrap makes one "
@@ -176,9 +191,9 @@ std::string certificate(const SolidMesh& solid, const std::filesystem::path& wri
         "mesh farther than {:.6g} ({:.5f}) from the wrap",
         solid.wrap->to_input.upper, solid.wrap->to_input.upper / radius, solid.wrap->from_input.upper,
         solid.wrap->from_input.upper / radius);
-  } else if (solid.repair.changed()) {
-    subject = "the repaired mesh, " + written.string() + ",";
-    distance = "; " + in_words(solid.repair_distance, radius);
+  } else if (solid.changed()) {
+    subject = std::string(solid.united ? "the union of the parts, " : "the repaired mesh, ") + written.string() + ",";
+    if (solid.repair.changed()) distance = "; " + in_words(solid.repair_distance, radius);
   }
   return "conservative: every point of " + subject + " is certified to lie in all spheres of a root-to-leaf path" +
          distance;
@@ -215,6 +230,9 @@ void add_solid_json(const SolidMesh& solid, json& report) {
   if (!solid.wrap) {
     report["repair"] = to_json(solid.repair, solid.repair_distance, solid.surface.bounding_radius());
     report["self_intersections"] = solid.self_intersections ? json(*solid.self_intersections) : json();
+    report["union"] =
+        !solid.united ? json()
+                      : json{{"parts", solid.united->parts}, {"self_intersections_before", solid.united->cut_before}};
     return;
   }
   report["wrap"] = {{"alpha_over_diagonal", solid.wrap->options.alpha},

@@ -21,6 +21,7 @@ struct MeshOptions {
   double wrap_alpha = WrapOptions{}.alpha;
   std::optional<double> join;        // corners up to this far apart, in bounding radii; else as repair.h says
   std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
+  bool unite = false;                // parts that cut each other become one
   BoundingBall ball = BoundingBall::minimal;
 };
 inline const std::string kDefaultWrap = "0.002";
@@ -33,6 +34,11 @@ struct WrapResult {
   double distance() const { return to_input.upper; }
 };
 
+// The parts of a mesh that were replaced by their union.
+struct UnionResult {
+  Index parts = 0, cut_before = 0, cut_left = 0;  // as in UnitedMesh
+};
+
 struct SolidMesh {
   Surface surface;
   MeshReadReport reading;
@@ -42,12 +48,17 @@ struct SolidMesh {
   // Pairs of triangles that cut or touch each other: parts of the surface lie inside there, or stick out inside out.
   // Not counted for a wrap, which has none, and beyond kMaxForSelfIntersections.
   std::optional<std::size_t> self_intersections;
+  std::optional<UnionResult> united = {};  // then `surface` is the union
+
+  // Whether `surface` is neither the file's nor a wrap.
+  bool changed() const { return repair.changed() || united.has_value(); }
 };
 
 inline constexpr std::size_t kMaxForSelfIntersections = 500'000;  // triangles: a few seconds
 
-// Reads a mesh and makes a solid of it: wraps it if that is asked for, else repairs what is safe to repair. Throws
-// InputError, with the way out, if that gives no solid.
+// Reads a mesh and makes a solid of it: wraps it if that is asked for, else repairs what is safe to repair, and unites
+// parts that cut each other if that is asked for and possible. Throws InputError, with the way out, if that gives no
+// solid.
 SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress = {});
 
 struct RepairedMesh {
@@ -75,7 +86,7 @@ void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
 // build ends with.
 std::string certificate(const SolidMesh& solid, const std::filesystem::path& written);
 nlohmann::json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
-// Sets "reading", and "repair" and "self_intersections", or "wrap" and "wrap_distance".
+// Sets "reading", and "repair", "self_intersections" and "union", or "wrap" and "wrap_distance".
 void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
 
 }  // namespace orchard::apps

@@ -23,6 +23,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
 #include "orchard/medial/read_axis.h"
+#include "output/json_values.h"
 #include "output/outputs.h"
 #include "output/promises.h"
 #include "output/report.h"
@@ -74,16 +75,9 @@ std::string report_name(const MedialCommand& command) {
 
 // What can be refused before anything is built; then where the files go.
 Destination check(const MedialCommand& command) {
+  check_options(command);
   std::vector<fs::path> inputs = command.source.files();
   if (!command.axis.empty()) inputs.push_back(command.axis);
-  if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
-  if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
-  check_side(command);
-  check_axis_exports(command);
-  if (command.tree && command.sweep.empty())
-    throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
-  refuse_unused_options(command);
-  check_sweep(command);  // without a sweep, that of the one combination that there is
   inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
   if (!command.features.empty()) inputs.push_back(command.features);
   inputs.insert(command.axis.empty() ? inputs.begin() : inputs.begin() + 1, command.mesh);
@@ -167,7 +161,7 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
   report["diagonal"] = first.judgement.quality.diagonal;
   if (!beside.empty()) report["beside"] = std::move(others);
   report["worst_places"] = to_json(places);
-  for (const auto& [stage, time] : seconds) report["report_seconds"][stage] = time;
+  report["report_seconds"] = seconds_json(seconds);
   if (command.output.quiet || command.output.json) return;
   print_table(axes, {"stability_max", "economy_spheres"});
   print(places);
@@ -342,6 +336,19 @@ MedialJudgement judge_beside(const MedialCommand& command, const Surface& surfac
     *length /= diagonal;
   judgement.distance = distance;
   return judgement;
+}
+
+void check_options(const MedialCommand& command) {
+  std::vector<fs::path> inputs = command.source.files();
+  if (!command.axis.empty()) inputs.push_back(command.axis);
+  if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
+  if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  check_side(command);
+  check_axis_exports(command);
+  if (command.tree && command.sweep.empty())
+    throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
+  refuse_unused_options(command);
+  check_sweep(command);  // without a sweep, that of the one combination that there is
 }
 
 ExitCode medial(const MedialCommand& command) {

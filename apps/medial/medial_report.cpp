@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "output/json_values.h"
+
 namespace orchard::apps {
 namespace {
 
@@ -54,12 +56,9 @@ json to_json(const RefineReport& report) {
 }
 
 json to_json(const MedialBuild& build) {
-  json seconds = json::object();
+  json seconds = seconds_json(build.seconds);
   double whole = 0;
-  for (const auto& [stage, time] : build.seconds) {
-    seconds[stage] = time;
-    whole += time;
-  }
+  for (const auto& [stage, time] : build.seconds) whole += time;
   seconds["whole"] = whole;
   const double points = std::max<double>(build.points, 1);
   const double gained = static_cast<double>(build.sampling.size()) - build.points;

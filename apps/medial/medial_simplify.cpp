@@ -10,6 +10,7 @@
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/medial/medial_mesh_formats.h"
 #include "orchard/medial/structure.h"
+#include "output/json_values.h"
 #include "output/stamp.h"
 #include "svg_plot.h"
 #ifdef ORCHARD_HAS_VIZ
@@ -200,7 +201,7 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
     report["envelope"] = {
         {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}, {"balls_lost", lost}};
   }
-  for (const auto& [stage, time] : few.seconds) report["seconds_of_few_balls"][stage] = time;
+  if (!few.seconds.empty()) report["few_balls_seconds"] = seconds_json(few.seconds);
   if (!command.output.quiet && !command.output.json) print(few);
 }
 

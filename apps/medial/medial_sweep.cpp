@@ -158,7 +158,8 @@ std::size_t best_column(const MedialCommand& command, const std::vector<Column>&
     if (columns[m].name == command.best) return m;
     names += (names.empty() ? "" : ", ") + columns[m].name;
   }
-  throw InputError(fmt::format("--best: {} is no measure that is better or worse; there are {}", command.best, names));
+  throw InputError(
+      fmt::format("--sort-by: {} is no measure that is better or worse; there are {}", command.best, names));
 }
 
 std::size_t column_of(const std::vector<Column>& columns, const char* name) {

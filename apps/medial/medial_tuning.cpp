@@ -73,108 +73,123 @@ std::string no_thinning(const T& t) {
 std::string no_refining(const T& t) { return t.refine ? "" : "--refine no (--raw)"; }
 
 std::vector<TuningFlag> point_flags() {
-  return {
-      whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
-            [](T& t, double x) { t.samples = static_cast<Index>(x); }),
-      whole("edge-samples", "a fifth", 0, 1e7,
-            "Of them along edges: more make sheets reach sharp edges, fewer resolve the faces better",
-            [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
-      choice("relaxation", {"automatic", "clusters", "neighbors"},
-             "Points keep apart within flat clusters (designed parts) or across faces (scans)", set_relaxation),
-      whole("iterations", "40", 0, 1000, "Of relaxation: more even points give smoother sheets",
-            [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
-      real("cluster-angle", "0.0057", 0, 90,
-           "Degrees that a cluster may turn: more treats curved parts as one face without edges",
-           [](T& t, double x) { t.cluster_degrees = x; }),
-      unused_where(real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
-                        [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
-                   no_creases),
-      whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
-            [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
+  return {whole("samples", "5000", 20, 1e7,
+                "Number of surface points. More points follow the shape more closely and take longer",
+                [](T& t, double x) { t.samples = static_cast<Index>(x); }),
+          whole("edge-samples", "a fifth", 0, 1e7,
+                "Number of these points along edges. More points make sheets reach sharp edges, fewer resolve the "
+                "faces better",
+                [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
+          choice("relaxation", {"automatic", "clusters", "neighbors"},
+                 "Between which points to relax: within flat clusters (clusters, for designed parts), across faces "
+                 "(neighbors, for scans), or as fits the mesh (automatic)",
+                 set_relaxation),
+          whole("iterations", "40", 0, 1000,
+                "Rounds of relaxation. More rounds space the points more evenly and give smoother sheets",
+                [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
+          real("cluster-angle", "0.0057", 0, 90,
+               "Largest angle in degrees between the normals of one cluster. Higher values treat curved regions as one "
+               "face without edges",
+               [](T& t, double x) { t.cluster_degrees = x; }),
+          unused_where(real("crease-angle", "28.6", 0, 180,
+                            "Smallest angle in degrees at which a scan has an edge that gets edge points",
+                            [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
+                       no_creases),
+          whole("seed", "1", 0, 4294967295.0,
+                "Seed of the random points. Another seed gives another sample of the same density",
+                [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
 }
 
 std::vector<TuningFlag> diagram_flags() {
-  return {
-      choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
-             "Of the Voronoi diagram; inagaki and bowyer are for comparison, and need well-spread points",
-             [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }),
-      choice("gaps", {"connected", "loose", "strict", "none"},
-             "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts",
-             set_gaps),
-      unused_where(real("joined-radius", "0", 0, 1000,
-                        "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
-                        [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
-                   no_repair),
-      unused_where(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
-                         [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
-                   no_repair),
-      unused_where(choice("thin", {"no", "yes"},
-                          "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
-                          [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }),
-                   no_thinning)};
+  return {choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
+                 "Algorithm of the Voronoi diagram. inagaki and bowyer are the dissertation's, for comparison, and "
+                 "need well-spread points",
+                 [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }),
+          choice("gaps", {"connected", "loose", "strict", "none"},
+                 "Which gaps to repair: connected (default), loose (misses some), strict (adds most points) or none "
+                 "(breaks thin parts)",
+                 set_gaps),
+          unused_where(real("joined-radius", "0", 0, 1000,
+                            "Ignore gap crossings whose sides are connected within this many point distances. Higher "
+                            "values add fewer points and give up the guarantee",
+                            [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
+                       no_repair),
+          unused_where(
+              whole("max-passes", "20", 0, 1000, "Largest number of passes of gap repair. Lower values may leave gaps",
+                    [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
+              no_repair),
+          unused_where(choice("thin", {"no", "yes"},
+                              "Remove pairs of facing points that gap repair crowded into thin parts. Gives fewer "
+                              "points and a coarser axis there",
+                              [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }),
+                       no_thinning)};
 }
 
 std::vector<TuningFlag> axis_flags() {
   return {real("coalesce", "1e-7", 1e-12, 0.01,
-               "Vertices nearer than this, in bounding radii, become one: more loses detail and may lose loops",
+               "Merge vertices nearer than this, in bounding radii. Higher values lose detail and may lose loops",
                [](T& t, double x) { t.options.axis.coalesce = x; }),
           choice("topology", {"keep", "free"},
-                 "Whether single edges may stand for faces where gaps that cannot be mended spoil the topology",
+                 "keep replaces faces by single edges where gaps that cannot be repaired would change the topology; "
+                 "free leaves the faces",
                  [](T& t, const std::string& text) { t.keep_topology = text == "keep"; })};
 }
 
 std::vector<TuningFlag> pruning_flags() {
   return {real("prune-angle", "0", 0, 180,
-               "Degrees: cuts spurs whose two contacts are nearer in angle; more loses sheets into shallow edges",
+               "Remove spurs whose contacts are seen under less than this angle, in degrees. Higher values lose sheets "
+               "that run into shallow edges",
                [](T& t, double x) { t.prune_degrees = x; }),
           real("prune-scale", "1", 1, 10,
-               "Cuts balls that others hold when all are so many times larger; more loses small features",
+               "Remove balls that lie in others when all are scaled by this factor. Higher values lose small features",
                [](T& t, double x) { t.options.prune.scale = x; })};
 }
 
 std::vector<TuningFlag> refining_flags() {
   return {
-      choice("refine", {"yes", "no"},
-             "Whether balls are made exact and sheets end smoothly, or the axis stays as the diagram has it (--raw)",
-             [](T& t, const std::string& text) { t.refine = text == "yes"; }),
-      unused_where(
-          real("border-loss", "0.1", 0, 100,
-               "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
-               [](T& t, double x) { t.refinement.border_loss = x / 100; }),
-          no_refining),
+      choice(
+          "refine", {"yes", "no"},
+          "yes makes every ball exact and meshes the sheets evenly; no keeps the axis of the Voronoi diagram (--raw)",
+          [](T& t, const std::string& text) { t.refine = text == "yes"; }),
+      unused_where(real("border-loss", "0.1", 0, 100,
+                        "How much of the surface the border of a sheet may lose, in percent of the diagonal. Higher "
+                        "values remove more spurs",
+                        [](T& t, double x) { t.refinement.border_loss = x / 100; }),
+                   no_refining),
       unused_where(real("linear-error", "0.05", 1e-4, 100,
-                        "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
+                        "Largest error of balls that are interpolated between two vertices, in percent of the "
+                        "diagonal. Lower values make more vertices",
                         [](T& t, double x) { t.refinement.tolerance = x / 100; }),
                    no_refining),
-      unused_where(
-          whole("reach-rounds", "9", 0, 100,
-                "Times that sheets reach for what they leave open by more than 1.65 border losses: 0 leaves out blunt "
-                "edges and ridges that no point shows",
-                [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
-          no_refining),
+      unused_where(whole("reach-rounds", "9", 0, 100,
+                         "Rounds in which sheets extend to places that they leave open by more than 1.65 border "
+                         "losses. 0 leaves out blunt edges and ridges without surface points",
+                         [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
+                   no_refining),
       unused_where(real("feature-loss", "0.165", 1e-4, 100,
-                        "Percent of the diagonal: sheets reach to convex edges beyond which so much is lost otherwise",
+                        "Extend sheets to convex edges where more than this is lost otherwise, in percent of the "
+                        "diagonal. Lower values give more sheets",
                         [](T& t, double x) { t.refinement.feature_loss = x / 100; }),
                    no_refining),
-      unused_where(
-          real("edge-length", "3", 0.05, 100,
-               "Percent of the diagonal that edges of the axis are long: less makes more and smaller triangles",
-               [](T& t, double x) { t.refinement.edge_length = x / 100; }),
-          no_refining)};
+      unused_where(real("edge-length", "3", 0.05, 100,
+                        "Target length of the edges of the axis, in percent of the diagonal. Lower values make more "
+                        "and smaller triangles",
+                        [](T& t, double x) { t.refinement.edge_length = x / 100; }),
+                   no_refining)};
 }
 
 std::vector<TuningFlag> open_place_flags() {
-  return {
-      unused_where(whole("open-rounds", "1", 0, 20,
-                         "Times that points are added where the surface is left open, and everything is rebuilt: more "
-                         "resolve thin parts, and take longer",
-                         [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
-                   no_refining)};
+  return {unused_where(whole("open-rounds", "1", 0, 20,
+                             "Rounds in which points are added where the surface is left open and the axis is rebuilt. "
+                             "More rounds resolve thin parts and take longer",
+                             [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
+                       no_refining)};
 }
 
 std::vector<TuningFlag> report_flags() {
   return {real("segment-angle", "60", 0, 180,
-               "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
+               "Smallest angle in degrees between the contacts of faces that divide sheets into segments. Higher "
+               "values make fewer segments",
                [](T& t, double x) { t.segment_degrees = x; })};
 }
 

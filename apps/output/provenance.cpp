@@ -65,6 +65,7 @@ std::string line_of(const Provenance& provenance) {
 
 json to_json(const Provenance& provenance) {
   json result = decisive_json(provenance);
+  result["schema_version"] = kSchemaVersion;
   json paths = json::array();
   for (const ProvenanceInput& input : provenance.inputs) paths.push_back(input.path.string());
   result["run"] = {{"typed", provenance.run.typed}, {"paths", std::move(paths)}};

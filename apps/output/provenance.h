@@ -17,6 +17,10 @@ class App;
 // (.json), which hold times anyway, say where the inputs were and what exactly was typed.
 namespace orchard::apps {
 
+// Version of the keys of reports. It rises when a key is renamed, removed or changes its meaning;
+// docs/reference/reports.schema.json describes this version.
+inline constexpr int kSchemaVersion = 2;
+
 // What the user asked for.
 struct Invocation {
   std::string typed;         // the whole command line
@@ -45,7 +49,7 @@ Provenance provenance_of(const Invocation& run, std::span<const std::filesystem:
 std::string line_of(const Provenance& provenance);
 // The same as an object.
 nlohmann::json decisive_json(const Provenance& provenance);
-// What reports say: besides, under "run", the inputs' paths and what was typed.
+// The provenance of reports: also the schema version and, under "run", the inputs' paths and what was typed.
 nlohmann::json to_json(const Provenance& provenance);
 
 // What an earlier run's report says about itself.

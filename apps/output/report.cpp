@@ -7,6 +7,7 @@
 #include "command_line/tree_options.h"
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/spheretree/outside_volume.h"
+#include "output/json_values.h"
 #include "output/sphere_lists.h"
 
 namespace orchard::apps {
@@ -197,7 +198,7 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
   report["nodes_with_weakened_bounds"] = result.bounds_weakened;
   report["bytes_per_node"] =
       static_cast<double>(packed_bytes(result.packed)) / static_cast<double>(result.packed.node_count);
-  for (const auto& [stage, seconds] : result.seconds) report["seconds"][stage] = seconds;
+  report["seconds"] = seconds_json(result.seconds);
   return report;
 }
 

@@ -13,7 +13,7 @@
 #include "orchard/geometry/clip.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
-#include "output/outputs.h"
+#include "output/json_values.h"
 #include "spheres/audit_report.h"
 #include "spheres/particle_report.h"
 #include "spheres/set_files.h"
@@ -58,16 +58,7 @@ void clip(const SpheresCommand& command, SolidMesh& solid) {
 // What can be refused before anything is built; then where the files go.
 Destination check(const SpheresCommand& command) {
   check_input(command.mesh);
-  const SphereSetOptions options = options_of(command);
-  require_usable(options);
-  for (const char* option : {"overlap", "equal", "density", "density-of", "masses", "center-error", "inertia-error"})
-    if (options.fit != SphereFit::particles && among(option, command.given))
-      throw InputError(fmt::format("--{} belongs to --fit particles", option));
-  if (!command.vertex_weights.empty() && !command.clip.empty())
-    throw InputError("--vertex-weights has no effect with --clip, which changes the vertices: give --weight");
-  const bool by_error = options.error > 0 || options.volume_error > 0;
-  if (by_error && !command.curve.empty())
-    throw InputError("--curve has no effect with --error or --volume-error, which choose the number of spheres");
+  check_options(command);
   std::vector<fs::path> inputs{command.mesh};
   if (!command.vertex_weights.empty()) {
     check_input(command.vertex_weights);
@@ -126,16 +117,30 @@ json report_of(const SpheresCommand& command, const SolidMesh& solid, const Sphe
   report["promise"] = {{"text", promise_in_words(options, set)}, {"kept", broken.none()}, {"broken", broken.what}};
   report["enough_spheres"] = broken.none() ? json(set.spheres.size()) : set.enough ? json(*set.enough) : json();
   if (set.particles) report["particles"] = to_json(*set.particles, solid.surface.bounding_box().diagonal().norm());
-  for (const auto& [stage, seconds] : set.seconds) report["seconds"][stage] = seconds;
+  report["seconds"] = seconds_json(set.seconds);
   add_solid_json(solid, report);
-  report["certified_mesh"] = !command.clip.empty()    ? json(named(command.mesh, kClippedEnding))
-                             : solid.wrap             ? json(named(command.mesh, kWrapEnding))
-                             : solid.repair.changed() ? json(named(command.mesh, kRepairedEnding))
-                                                      : json();
+  report["mesh"] = mesh_json(solid.surface);
+  report["certified_mesh"] = !command.clip.empty() ? json(named(command.mesh, kClippedEnding))
+                             : solid.wrap          ? json(named(command.mesh, kWrapEnding))
+                             : solid.changed()     ? json(named(command.mesh, kRepairedEnding))
+                                                   : json();
   return report;
 }
 
 }  // namespace
+
+void check_options(const SpheresCommand& command) {
+  const SphereSetOptions options = options_of(command);
+  require_usable(options);
+  for (const char* option : {"overlap", "equal", "density", "density-of", "masses", "center-error", "inertia-error"})
+    if (options.fit != SphereFit::particles && among(option, command.given))
+      throw InputError(fmt::format("--{} belongs to --fit particles", option));
+  if (!command.vertex_weights.empty() && !command.clip.empty())
+    throw InputError("--vertex-weights has no effect with --clip, which changes the vertices: give --weight");
+  const bool by_error = options.error > 0 || options.volume_error > 0;
+  if (by_error && !command.curve.empty())
+    throw InputError("--curve has no effect with --error or --volume-error, which choose the number of spheres");
+}
 
 ExitCode spheres(const SpheresCommand& command) {
   if (names_spheres(command.mesh)) return spheres_of_file(command);

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <numbers>
 
 #include "command_line/commands.h"
 #include "command_line/console.h"
@@ -31,10 +32,15 @@ struct Names {
         report(named(mesh, "-thickness.json")) {}
 };
 
+std::vector<double> in_degrees(std::vector<double> angles) {
+  for (double& angle : angles) angle *= 180 / std::numbers::pi;
+  return angles;
+}
+
 std::vector<MeshArray> arrays_of(const ThicknessValues& values) {
   return {{"ball_diameter", values.ball_diameter},
           {"thickness", values.thickness},
-          {"contact_angle", values.contact_angle},
+          {"contact_angle", in_degrees(values.contact_angle)},
           {"error", values.error}};
 }
 

@@ -52,7 +52,8 @@ json number(double value) { return std::isnan(value) ? json() : json(value); }
 
 const char* name_of(ThicknessDefinition definition) { return definition == ThicknessDefinition::ray ? "ray" : "ball"; }
 
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+// Without what conversion there and back adds: 120, not 119.99999999999999.
+double degrees(double radians) { return std::round(radians * 180 / std::numbers::pi * 1e9) / 1e9; }
 
 }  // namespace
 

@@ -92,21 +92,8 @@ SphereTreeOptions tree_options(const BuildCommand& command) {
 // What can be refused before anything is built; then where the files go.
 Destination check(const BuildCommand& command) {
   check_input(command.mesh);
-  if (command.export_level) {
-    const auto& exports = command.exports;
-    if (std::find(exports.begin(), exports.end(), "urdf") == exports.end())
-      throw InputError("--export-level: only a urdf has one level's spheres; add --export urdf");
-    if (*command.export_level > command.options.depth)
-      throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
-                                   *command.export_level, command.options.depth, command.options.depth));
-  }
-  if (is_given(command, "up") && !command.views && !command.picture && !command.page)
-    throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
+  check_options(command);
   std::vector<fs::path> inputs = command.source.files();
-  if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
-  refuse_unused_options(command);
-  require_sizes(command.options);
-  tree_options(command);  // whether the numbers fit together
   for (const fs::path& file : inputs) check_input(file);
   inputs.insert(inputs.begin(), command.mesh);
   Destination destination{.folder = command.folder,
@@ -142,7 +129,7 @@ void write_trees(const BuildCommand& command, const Provenance& provenance, cons
 
 // The mesh that everything else was built on, where that is not the file's.
 const char* ending_of(const SolidMesh& solid) {
-  return solid.wrap ? kWrapEnding : solid.repair.changed() ? kRepairedEnding : nullptr;
+  return solid.wrap ? kWrapEnding : solid.changed() ? kRepairedEnding : nullptr;
 }
 
 void write_solid(const BuildCommand& command, const SolidMesh& solid, Outputs& outputs) {
@@ -196,12 +183,12 @@ void write_page(const BuildCommand& command, BuildPage page, const std::string& 
              to_html(page));
 }
 
-BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, const Surface& surface) {
+BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, double triangles) {
   const auto& sampling = options.medial.sampling;
   const double points = samples_surface(options.method) && command.source.axis.empty()
                             ? static_cast<double>(sampling.face_points) + static_cast<double>(sampling.edge_points)
                             : 0;
-  return estimated_cost(options, points, static_cast<double>(surface.mesh().triangles.size()));
+  return estimated_cost(options, points, triangles);
 }
 
 // Before a long wait, or in place of it.
@@ -230,6 +217,27 @@ void print_result(const BuildCommand& command, const SolidMesh& solid, const Sph
 
 }  // namespace
 
+void check_options(const BuildCommand& command) {
+  if (command.export_level) {
+    const auto& exports = command.exports;
+    if (std::find(exports.begin(), exports.end(), "urdf") == exports.end())
+      throw InputError("--export-level: only a urdf has one level's spheres; add --export urdf");
+    if (*command.export_level > command.options.depth)
+      throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
+                                   *command.export_level, command.options.depth, command.options.depth));
+  }
+  if (is_given(command, "up") && !command.views && !command.picture && !command.page)
+    throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
+  if (command.source.files().size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
+  refuse_unused_options(command);
+  require_sizes(command.options);
+  tree_options(command);  // whether the numbers fit together
+}
+
+BuildCost expected_cost(const BuildCommand& command, double triangles) {
+  return cost_of(command, tree_options(command), triangles);
+}
+
 ExitCode build(const BuildCommand& command) {
   const Destination destination = check(command);
   const bool talk = !command.output.quiet && !command.output.json;
@@ -246,7 +254,7 @@ ExitCode build(const BuildCommand& command) {
   const SphereTreeOptions options = tree_options(command);
   OwnInput own = read_axis_source(command.source, surface);
   if (talk) print_reading(command.source.points, own.reading);
-  const BuildCost cost = cost_of(command, options, surface);
+  const BuildCost cost = cost_of(command, options, static_cast<double>(surface.mesh().triangles.size()));
   if (talk) print_cost(command, options, cost);
   if (command.cost && command.output.json) {
     nlohmann::json estimate = to_json(cost);

@@ -6,6 +6,8 @@
 
 namespace orchard::apps {
 
+struct BuildCommand;
+
 // What a build will take, from what others took (docs/results/build-cost.md): tightened and merged trees within a
 // factor of two there, on a processor of the 2020s; octrees and annealing differ more among meshes.
 struct BuildCost {
@@ -17,6 +19,9 @@ struct BuildCost {
 
 // points: surface points that the medial axis is made from; 0: none is. triangles: of the mesh.
 BuildCost estimated_cost(const SphereTreeOptions& options, double points, double triangles);
+
+// Of a command on a mesh of so many triangles.
+BuildCost expected_cost(const BuildCommand& command, double triangles);
 
 // A line on what is coming and what would be cheaper; empty where it is a matter of seconds, unless `always`.
 std::string in_words(const BuildCost& cost, const SphereTreeOptions& options, bool always = false);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "command_line/text.h"
 #include "orchard/geometry/base64.h"
 #include "orchard/geometry/xml_escaped.h"
 
@@ -72,7 +73,7 @@ std::string timings(const json& seconds) {
   }
   std::string rows;
   for (const auto& [stage, value] : seconds.items())
-    rows += row({xml_escaped(stage), fmt::format("{:.2f} s", value.get<double>()),
+    rows += row({xml_escaped(replaced(stage, "_", " ")), fmt::format("{:.2f} s", value.get<double>()),
                  fmt::format("<span class=\"bar\" style=\"width:{:.1f}em\"></span>",
                              longest > 0 ? 20 * value.get<double>() / longest : 0)},
                 "td");

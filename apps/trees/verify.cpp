@@ -209,7 +209,7 @@ void print(const fs::path& mesh, const Verification& result, const Subject& subj
 
 bool verify(const VerifyCommand& command) {
   if (command.box_centered && command.tree.extension() != ".sph")
-    throw InputError("--bbox-centre has no effect on an .orchard file; it is for .sph files");
+    throw InputError("--bbox-center has no effect on an .orchard file; it is for .sph files");
   check_input(command.tree);
   check_input(command.mesh);
   const Provenance provenance = provenance_of(command.output.run, std::array{command.tree, command.mesh});

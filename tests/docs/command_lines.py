@@ -38,6 +38,10 @@ def lines_of(page):
 
 
 def faults(words, commands):
+    if "--" in words:  # what a batch runs
+        at = words.index("--")
+        yield from faults(["orchard", *words[at + 1:]], commands)
+        words = words[:at]
     if words[1] not in commands:
         yield f"there is no command {words[1]}"
         return

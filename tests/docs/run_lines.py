@@ -48,6 +48,13 @@ NOT_RUN = {
         "cd web ..": "needs what the line before it builds; web/test/pack.test.mjs does it",
         "cd ../../my-project ..": "is the reader's own; web/test/pack.test.mjs does the same",
     },
+    "docs/guide/batch.md": {
+        "python3 ..": "needs Dask; apps.BatchEngines.dask runs it",
+        "snakemake ..": "needs Snakemake; apps.BatchEngines.snakemake runs it",
+        "sbatch ..": "needs Slurm; apps.BatchEngines.slurm and slurm-node run the script",
+        "orchard batch merge out/slurm ..": "needs what the line before it makes",
+        "examples/batch/parallel.sh ..": "is in the repository; apps.BatchEngines.parallel runs it",
+    },
     "docs/design/voronoi.md": {"paraview ..": "needs a screen"},
 }
 

@@ -42,6 +42,7 @@ struct Rule {
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> kRules{
       {"bounding_radius", {Unit::length}},
+      {"diagonal", {Unit::length}},
       {"radius", {Unit::length}},
       {"medial_radius", {Unit::length}},
       {"thickness", {Unit::length}},
@@ -150,7 +151,7 @@ double max_of(const Rule& rule, double diagonal, const Views& views) {
     case Unit::length:
       return 100 * diagonal;  // the lines of a skeleton wind
     case Unit::angle:
-      return std::numbers::pi + 1e-9;
+      return 180 + 1e-9;
     case Unit::percent:
       return 100;
     case Unit::direction:

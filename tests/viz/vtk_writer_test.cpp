@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "values.h"
@@ -140,7 +141,7 @@ TEST(WriteMedialAxis, HasALinePerPairOfNeighboursAndAPolygonPerFace) {
   // From (1/6, 1/6, 0) the points (0, 0, 1) and (0, 0, -1).
   const auto angle = values(faces->GetCellData(), "contact_angle");
   ASSERT_EQ(angle.size(), 1u);
-  EXPECT_NEAR(angle[0], 2 * std::atan(1 / (std::sqrt(2.0) / 6)), 1e-12);
+  EXPECT_NEAR(angle[0], 2 * std::atan(1 / (std::sqrt(2.0) / 6)) * 180 / std::numbers::pi, 1e-10);
 }
 
 // The ancestor of a node, or the node itself, that stands for it on a level.

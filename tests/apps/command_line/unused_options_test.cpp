@@ -132,7 +132,7 @@ TEST(UnusedOptions, AFlagForOtherKindsOfFilesIsRefused) {
   ASSERT_EQ(here.run(test::quick_build(ball, trees)).exit_code, 0);
   expect_refused(here, {"inspect", trees + "/ball.orchard"}, {{{"--full"}, "--full has no effect on "}});
   expect_refused(here, {"inspect", trees + "/ball.sph"}, {{{"--full"}, "--full has no effect on "}});
-  expect_refused(here, {"verify", trees + "/ball.orchard", ball}, {{{"--bbox-centre"}, "it is for .sph files"}});
+  expect_refused(here, {"verify", trees + "/ball.orchard", ball}, {{{"--bbox-center"}, "it is for .sph files"}});
   expect_refused(here, {"compare", ball, trees + "/ball.sph"}, {{{"--wrap-alpha", "0.02"}, "requires --wrap"}});
 }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include <nlohmann/json.hpp>
 
 #include <sstream>
@@ -49,15 +51,11 @@ TEST(Usage, ErrorsAreOneLineAndNameTheHelp) {
   }
 }
 
-// The option of a row "| `--name` | `0 - 100` | .."; empty where the row is another, or its option has no range.
+// The option of a row "| `--name` | `N` | .. (0 to 100) .. |"; empty where the row is another, or has no range.
 std::string option_with_range(const std::string& row) {
-  if (!row.starts_with("| `--")) return {};
-  const std::size_t end = row.find('`', 3), range = row.find("| `", end), range_end = row.find('`', range + 3);
-  if (range_end == std::string::npos) return {};
-  const std::string values = row.substr(range + 3, range_end - range - 3);
-  const std::size_t dash = values.find(" - ");
-  if (dash == std::string::npos || values.find_first_not_of("-+.e0123456789 ") != std::string::npos) return {};
-  return row.substr(3, end - 3);
+  static const std::regex pattern(R"(\| `(?:-\w`, `)?(--[a-z-]+)` \| `N` \|.*\([-+.e0-9]+ to [-+.e0-9]+\).*)");
+  std::smatch parts;
+  return std::regex_match(row, parts, pattern) ? parts[1].str() : std::string();
 }
 
 // All options with a range, from the page of all options.

@@ -256,14 +256,10 @@ TEST(Medial, EveryTuningFlagIsOnThePageOfTuning) {
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   std::istringstream tuning(help.out.substr(help.out.find("Tuning:")));
   int flags = 0;
-  for (std::string word; tuning >> word;) {
-    if (!word.starts_with("--")) continue;
-    std::string follows;
-    const auto at = tuning.tellg();
-    tuning >> follows;
-    tuning.seekg(at);
-    if (!follows.starts_with("TEXT:")) continue;  // a mention in some other flag's text
+  for (std::string line; std::getline(tuning, line) && !line.empty();) {
+    if (!line.starts_with("  --")) continue;
     ++flags;
+    const std::string word = line.substr(2, line.find(' ', 2) - 2);
     EXPECT_NE(page.find("| `" + word + "`"), std::string::npos) << word;
   }
   EXPECT_GT(flags, 15);
@@ -284,21 +280,21 @@ TEST(Medial, SweepsShowTheirBestRowsFirst) {
   EXPECT_EQ(report["best_by"], "hausdorff_max");
   for (std::size_t i = 1; i < 3; ++i)
     EXPECT_LE(report["runs"][i - 1]["hausdorff_max"], report["runs"][i]["hausdorff_max"]);
-  report = json::parse(sweep({"--json", "--best", "balls"}).out);
+  report = json::parse(sweep({"--json", "--sort-by", "balls"}).out);
   EXPECT_EQ(report["best_by"], "balls");
   EXPECT_EQ(report["runs"][0]["samples"], "200");
   EXPECT_EQ(report["runs"][2]["samples"], "800");
   // The file keeps the order of the sweep.
   const std::string csv = here.files("out").at("l-sweep.csv");
   EXPECT_LT(csv.find("\n800,"), csv.find("\n400,"));
-  const Finished printed = sweep({"--best", "balls"});
+  const Finished printed = sweep({"--sort-by", "balls"});
   EXPECT_NE(printed.out.find("best first, by balls"), std::string::npos) << printed.out;
   for (const char* measure : {"loops", "nothing"}) {
-    const Finished refused = sweep({"--best", measure});
+    const Finished refused = sweep({"--sort-by", measure});
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
   }
-  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--best", "balls"}).exit_code, 2);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--sort-by", "balls"}).exit_code, 2);
 }
 
 #ifdef ORCHARD_HAS_VIZ
@@ -406,10 +402,25 @@ TriangleMesh crossed_boxes() {
   return test::joined({test::box({0, 0, 0}, {3, 1, 1}), test::box({1.1, -1.2, 0.2}, {1.9, 2.1, 0.8})});
 }
 
+TEST(Medial, UnitesPartsThatCutEachOther) {
+  const Workplace here;
+  const std::string mesh = here.add("crossed.obj", crossed_boxes()), out = (here / "out").string();
+  const Finished run = here.run({"medial", mesh, "-o", out, "--samples", "600", "--no-views"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("were replaced by their union"), std::string::npos) << run.out;
+  const json report = json::parse(here.files("out").at("crossed-medial.json"));
+  EXPECT_EQ(report["union"]["parts"], 2);
+  EXPECT_EQ(report["self_intersections"], 0);
+  EXPECT_EQ(report["mesh"]["components"], 1);
+  EXPECT_EQ(report["topology"], report["topology_of_solid"]);
+}
+
 TEST(Medial, WarnsInOneLineOfAMeshThatCutsItselfAndNamesTheWayOut) {
   const Workplace here;
   const std::string mesh = here.add("crossed.obj", crossed_boxes()), out = (here / "out").string();
-  const std::vector<std::string> arguments{"medial", mesh, "-o", out, "--samples", "600", "--no-views", "--quiet"};
+  const std::vector<std::string> common{"medial", mesh, "-o", out, "--samples", "600", "--no-views", "--quiet"};
+  std::vector<std::string> arguments = common;
+  arguments.insert(arguments.end(), {"--union", "no"});
   const Finished run = here.run(arguments);
   EXPECT_EQ(run.exit_code, 5) << run.err;
   EXPECT_NE(run.err.find("promise not kept"), std::string::npos) << run.err;
@@ -426,7 +437,7 @@ TEST(Medial, WarnsInOneLineOfAMeshThatCutsItselfAndNamesTheWayOut) {
   EXPECT_EQ(as_it_is.exit_code, 0);
   EXPECT_EQ(as_it_is.err, run.err) << "it is said all the same";
 
-  std::vector<std::string> wrapped = arguments;
+  std::vector<std::string> wrapped = common;
   wrapped.push_back("--wrap");
   const Finished skin = here.run(wrapped);
   EXPECT_EQ(skin.exit_code, 0) << skin.err;
