@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "orchard/spheretree/sphere_audit.h"
 #include "robot/link_shape.h"
 #include "robot/self_collision.h"
 #include "spheres/sphere_files.h"
