@@ -14,6 +14,8 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "output/json_values.h"
+#include "output/outputs.h"
+#include "output/report.h"
 #include "spheres/audit_report.h"
 #include "spheres/particle_report.h"
 #include "spheres/set_files.h"
