@@ -44,4 +44,5 @@ PYBIND11_MODULE(_construction, module) {
   bind_medial(module);
   bind_spheretree(module);
   bind_sets(module);
+  bind_robot(module);
 }

@@ -12,6 +12,7 @@
 #include "arrays.h"
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/surface.h"
+#include "orchard/spheretree/sphere_audit.h"
 #include "watch.h"
 
 namespace orchard::python {
@@ -47,6 +48,9 @@ Value named(const char* option, const std::string& name, const std::vector<std::
 }
 
 inline std::vector<Point> to_points(const py::buffer& rows) { return Input<double>(rows, 3).rows<Point>(); }
+// Rows of x y z r.
+std::vector<std::array<double, 4>> sphere_rows(const std::vector<Sphere>& spheres);
+py::dict audit_to_python(const SphereAudit& audit);
 inline std::array<double, 3> to_array(const Point& point) { return {point.x(), point.y(), point.z()}; }
 
 void bind_mesh(py::module_& module);
@@ -55,5 +59,6 @@ void bind_voronoi(py::module_& module);
 void bind_medial(py::module_& module);
 void bind_spheretree(py::module_& module);
 void bind_sets(py::module_& module);
+void bind_robot(py::module_& module);
 
 }  // namespace orchard::python

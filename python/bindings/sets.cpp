@@ -15,13 +15,6 @@ std::vector<Sphere> to_spheres(const py::buffer& rows) {
   return spheres;
 }
 
-std::vector<std::array<double, 4>> to_rows(const std::vector<Sphere>& spheres) {
-  std::vector<std::array<double, 4>> rows;
-  rows.reserve(spheres.size());
-  for (const Sphere& s : spheres) rows.push_back({s.center.x(), s.center.y(), s.center.z(), s.radius});
-  return rows;
-}
-
 py::tuple bounds(const Bounds& bounds) { return py::make_tuple(bounds.lower, bounds.upper); }
 
 py::dict mass(const MassProperties& properties) {
@@ -60,7 +53,16 @@ void add_solid(const SphereAudit::BesideSolid& beside, py::dict& result) {
   result["curobo"] = curobo;
 }
 
-py::dict to_python(const SphereAudit& audit) {
+}  // namespace
+
+std::vector<std::array<double, 4>> sphere_rows(const std::vector<Sphere>& spheres) {
+  std::vector<std::array<double, 4>> rows;
+  rows.reserve(spheres.size());
+  for (const Sphere& s : spheres) rows.push_back({s.center.x(), s.center.y(), s.center.z(), s.radius});
+  return rows;
+}
+
+py::dict audit_to_python(const SphereAudit& audit) {
   py::dict result;
   result["spheres"] = audit.spheres;
   result["covered"] = audit.covered;
@@ -73,6 +75,8 @@ py::dict to_python(const SphereAudit& audit) {
   if (audit.beside_solid) add_solid(*audit.beside_solid, result);
   return result;
 }
+
+namespace {
 
 Effort effort_named(const std::string& name) {
   return named<Effort>("effort", name, {{"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}});
@@ -149,18 +153,18 @@ py::dict build(const SurfacePointer& surface, const py::dict& given, const py::d
   const SphereSetBuild found =
       watched(std::move(progress), [&](const Progress& watch) { return build_sphere_set(*surface, options, watch); });
   py::dict result;
-  result["spheres"] = own_rows<double>(to_rows(found.spheres));
+  result["spheres"] = own_rows<double>(sphere_rows(found.spheres));
   result["kept"] = found.kept;
   result["error_reached"] = found.error_reached;
   result["enough"] = found.enough ? py::cast(*found.enough) : py::none();
   result["particles"] = found.particles ? py::object(to_python(*found.particles)) : py::none();
-  result["audit"] = to_python(found.audit);
+  result["audit"] = audit_to_python(found.audit);
   return result;
 }
 
 py::dict audit(const SurfacePointer& surface, const py::buffer& rows, std::uint64_t seed, py::object progress) {
   const std::vector<Sphere> spheres = to_spheres(rows);
-  return to_python(watched(std::move(progress), [&](const Progress& watch) {
+  return audit_to_python(watched(std::move(progress), [&](const Progress& watch) {
     return audit_spheres(*surface, spheres, {.seed = seed}, watch);
   }));
 }

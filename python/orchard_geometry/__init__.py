@@ -25,6 +25,7 @@ if typing.TYPE_CHECKING:
     from ._mesh import (Mesh, closest_points, contains, inspect, load, repair, sample_surface, set_threads,
                         signed_distance, wrap)
     from ._sets import Audit, Particles, SphereSet, audit, sphere_set
+    from ._robot import LinkSpheres, RobotSpheres, robot
     from ._spheretree import Certificate, SphereTree, sphere_tree
     from ._thickness import LocalThickness, Thickness, local_thickness, thickness
     from ._voronoi import Voronoi, voronoi
@@ -38,17 +39,19 @@ _CONSTRUCTION = {
     "_medial": ("MedialAxis", "Quality", "Skeleton", "Structure", "box_mesh", "medial_axis", "tuning_options"),
     "_thickness": ("LocalThickness", "Thickness", "local_thickness", "thickness"),
     "_spheretree": ("Certificate", "SphereTree", "sphere_tree"),
+    "_robot": ("LinkSpheres", "RobotSpheres", "robot"),
     "_sets": ("Audit", "Particles", "SphereSet", "audit", "sphere_set"),
 }
 _HOME = {name: module for module, names in _CONSTRUCTION.items() for name in names}
 
 __all__ = [
-    "Answer", "Audit", "BroadPhase", "Cancelled", "Certificate", "Detector", "LocalThickness", "MedialAxis", "Mesh",
-    "MeshError", "OrchardError", "Quality", "RepairWarning", "Skeleton", "SphereSet", "SphereTree", "Structure",
-    "Thickness", "Tree", "Voronoi", "audit", "box_mesh", "cast_rays", "closer_than", "closest_points", "collide",
-    "contacts", "contains", "distance", "inspect", "load", "local_thickness", "medial_axis", "nearest_points", "repair",
-    "runtime", "sample_surface", "set_threads", "signed_distance", "sphere_set", "sphere_tree", "thickness",
-    "time_of_impact", "tuning_options", "voronoi", "wrap",
+    "Answer", "Audit", "BroadPhase", "Cancelled", "Certificate", "Detector", "LinkSpheres", "LocalThickness",
+    "MedialAxis", "Mesh", "MeshError", "OrchardError", "Particles", "Quality", "RepairWarning", "RobotSpheres",
+    "Skeleton", "SphereSet", "SphereTree", "Structure", "Thickness", "Tree", "Voronoi", "audit", "box_mesh",
+    "cast_rays", "closer_than", "closest_points", "collide", "contacts", "contains", "distance", "inspect", "load",
+    "local_thickness", "medial_axis", "nearest_points", "repair", "robot", "runtime", "sample_surface",
+    "set_threads", "signed_distance", "sphere_set", "sphere_tree", "thickness", "time_of_impact", "tuning_options",
+    "voronoi", "wrap",
 ]
 
 
