@@ -8,9 +8,9 @@
 // The report of the incremental Voronoi algorithms.
 namespace orchard {
 
-// How the points were inserted, and what is certified of the diagram. Every inserted point counts under exactly one of
-// the four kinds of insertions, and points without a doubtful decision under the first. All insertions of
-// inagaki_voronoi() are constrained ones, and all of bowyer_voronoi() certified ones.
+// How the points were inserted, and what is certified of the diagram. Every inserted point after the first four counts
+// under exactly one of the four kinds of insertions. All insertions of inagaki_voronoi() are constrained ones, and all
+// of bowyer_voronoi() certified ones.
 struct InsertionReport {
   // The dimension that the points span. If it is below 3, the diagram has no vertices.
   int dimension = 0;
@@ -27,8 +27,7 @@ struct InsertionReport {
   bool exact_signs = false;
   // The certified bound, over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the
   // hull.
-  double certified_intrusion =
-      0;  // over the bounding radius: no point lies deeper in a sphere or farther beyond the hull
+  double certified_intrusion = 0;
   // Circumcentres that were approximated by the position of a neighbour.
   std::uint64_t coplanar_centers = 0;
   // Pairs of a point that was left out and the point that it coincides with, ascending.

@@ -9,11 +9,10 @@
 //   for (const VoronoiFace& face : faces(diagram)) for (Index vertex : face) ...
 namespace orchard {
 
-// An edge of a diagram: two neighbouring vertices, of which at most one is at infinity, and the three points whose
-// cells meet along the edge.
+// An edge of a diagram: two neighbouring vertices, and the three points whose cells meet along the edge.
 struct VoronoiEdge {
   std::array<Index, 2> vertices;  // The lower index comes first.
-  // The points contain kInfinitePoint if both vertices are at infinity.
+  // If both vertices are at infinity, one of the points is kInfinitePoint.
   std::array<Index, 3> points;
 };
 
