@@ -20,7 +20,7 @@ struct MeshReport {
   // Components that are oriented against the rest and cannot be cavities, since no other component could contain them.
   Index inside_out_components = 0;
   std::array<Index, 2> first_boundary_edge{kNone, kNone}, first_non_manifold_edge{kNone, kNone},
-      first_misoriented_edge{kNone, kNone};  // vertices
+      first_misoriented_edge{kNone, kNone};  // Each edge as two vertices.
   Index first_non_manifold_vertex = kNone;
   Index first_degenerate_triangle = kNone, first_inside_out_triangle = kNone;
   double area = 0, volume = 0;  // The volume is below 0 if the mesh is inside out.
