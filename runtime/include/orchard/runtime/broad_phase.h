@@ -132,8 +132,8 @@ struct BroadPhaseOptions {
 // would blur the steps.
 inline constexpr double kMaxSteps = 0x1p40;
 
-// Returns whether options are valid: time_step is from 1e-20 to 1e20, position_slack from 0 to kMaxNumber, and start is
-// finite and within kMaxSteps time steps. A BroadPhase with other options refuses all bodies and all times.
+// Returns whether time_step is in 1e-20..1e20, position_slack in 0..kMaxNumber, and start finite and within kMaxSteps
+// steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
 // The number of units of work between two readings of the clock. A unit of a Budget's work is a motion that is asked
@@ -149,19 +149,16 @@ struct Advance {
   // The time of the step that the pairs belong to. Without pairs, nothing touches at any step before this time, and
   // earlier calls are unnecessary.
   double time;
-  // In ascending order; valid until the next call of any other member.
-  std::span<const BodyPair> pairs;
+  std::span<const BodyPair> pairs;  // In ascending order; valid until the next call of any other member.
   // If the step was interrupted, pairs with a body of this importance class or a higher one may be missing. kNoClass:
   // no pair is missing.
   unsigned incomplete_from = kNoClass;
-  // The number of bodies and pairs that the budget left untested; 0: nothing is missing.
-  std::size_t left_over = 0;
+  std::size_t left_over = 0;  // Bodies and pairs that the budget left untested; 0: nothing is missing.
   // Bodies whose motions were not valid at a step that this call processed; they were in no pair there. In ascending
   // order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
-  // Nothing was done: t_now is NaN, infinite or too far away (kMaxSteps), or the call came from a callback.
-  bool time_refused = false;
-  std::uint64_t work = 0;  // Units of the last step that was processed within a budget.
+  bool time_refused = false;  // Nothing was done: t_now is not finite or beyond kMaxSteps, or a callback called.
+  std::uint64_t work = 0;     // Units of the last step that was processed within a budget.
 };
 
 // What the broad phase already knows of a future step (8.2: predicted load).

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <limits>
 
+// Budgets of calls, and executors of parallel work.
 namespace orchard::runtime {
 
-// Limits of one call. The call stops at the first limit that it reaches. What a unit of work is, and by how much a call
-// may exceed its budget, depends on what is asked: NarrowPhase counts tests of nodes and triangles, BroadPhase counts
+// Limits of one call. The call stops at the first limit that it reaches. The unit of work, and the amount by which a
+// call may exceed its budget, depend on the query: NarrowPhase counts tests of nodes and triangles, BroadPhase counts
 // motions that it asks for, and Detector counts both.
 struct Budget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
