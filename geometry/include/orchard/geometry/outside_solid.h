@@ -7,9 +7,6 @@
 // also work on the outside. The boundary is the surface turned inside out, within a sphere around its bounding ball.
 namespace orchard {
 
-// The space around a solid as a solid of its own, so that all that is made for the inside, such as the medial axis, is
-// made for the outside, too: the surface turned inside out, within a sphere around its bounding ball.
-
 // Returns the boundary of the space around a solid: the triangles of `solid`, with the same numbers and two corners
 // exchanged, followed by those of a sphere around the middle of its bounding ball. The sphere is an icosphere of 1280
 // triangles whose vertices lie on it; `radius` is its radius in bounding radii, above 1.1 and finite. A cavity of the

@@ -10,9 +10,8 @@ namespace orchard {
 // The names of the stages of a run in their order, each with its duration in seconds.
 using StageTimes = std::vector<std::pair<std::string, double>>;
 
-// Calls the function, and notes how long that took.
+// Calls a function and appends its duration, in seconds, to `times`.
 template <class Function>
-// Calls a function and appends its duration to `times`.
 void time_stage(StageTimes& times, const char* name, Function&& function) {
   const auto start = std::chrono::steady_clock::now();
   function();

@@ -27,10 +27,11 @@ struct ThicknessOptions {
   // wedges, which measure the distance to an edge. The default is 120 degrees.
   double facing = 2.0943951023931953;
   // An angle in radians, in (0, pi / 2]. A mesh that turns by less than this around a place stands for a smooth surface
-  // there. Contacts that the ball sees at less than this angle from the place do not stop its growth. The ball may also
-  // be up to a quarter smaller than the one that ends at a contact that faces the place, in proportion to how much the
-  // facets turn there. Where the mesh turns by more, it has edges, at which balls vanish. The default is 40 degrees.
-  // With values near 0, the balls are those of the polyhedron itself.
+  // there. Contacts that the ball sees at less than this angle from the place do not stop its growth. A place whose
+  // ball is smaller than the ball that ends at a contact facing the place still has a thickness if the difference is at
+  // most a quarter; the allowed difference is proportional to how much the facets turn there. Where the mesh turns by
+  // more than this angle, it has edges, at which balls vanish. The default is 40 degrees. With values near 0, the balls
+  // are those of the polyhedron itself.
   double smooth = 0.6981317007977318;
   // The approximate number of triangles after dividing edges. The result has values at the corners and middles of these
   // triangles. Larger meshes are not coarsened.

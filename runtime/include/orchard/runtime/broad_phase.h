@@ -217,8 +217,7 @@ class BroadPhase {
   // Adds a body that does not move. Only the position and the radius of `place` count, and the body is never asked for.
   // Returns kNoBody also if the motion is not valid.
   BodyId add_static(const Motion& place, std::uint8_t importance = 0, const BodyFilter& filter = {});
-  // Removes a body. This function and the following ones change nothing and return false if there is no such body (any
-  // more).
+  // Removes a body. This function and the following ones change nothing and return false if there is no such body.
   bool remove(BodyId body);
   // Cancels the last bounds of the body; they are asked for again at the next step (4.4).
   bool cancel(BodyId body);

@@ -53,7 +53,7 @@ inline bool spheres_touch(const Motion& a, const Motion& b) noexcept {
 // lies below it, and solves a quadratic; two or three rounds suffice.
 double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution, double slack = 0) noexcept;
 
-// A Motion is a promise. These tell whether it was kept.
+// A Motion is a promise. The following functions decide whether it was kept.
 
 // By how much a motion exceeds each bound of an earlier promise; 0 if that bound holds. s is the time between the two
 // in seconds, and d is the promised half-space with length 1.

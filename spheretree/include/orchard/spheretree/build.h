@@ -60,7 +60,8 @@ struct SphereTreeOptions {
   bool samples_by_need = true;
 };
 
-// Returns whether the method starts from points of the surface or from a medial axis built from them.
+// Returns true if the method starts from points of the surface or from a medial axis built from them, as tightened and
+// merging do.
 bool samples_surface(TreeMethod method);
 
 // Returns the parameters that the annealing runs with: with high effort the dissertation's schedule, with lower effort
