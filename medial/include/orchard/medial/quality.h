@@ -22,7 +22,8 @@ struct QualityOptions {
   // The maximum number of parts in which the largest dent and the largest protrusion are searched.
   Index search = 250'000;
   Index contact_cells = 10'000;  // Vertices whose second contact is searched.
-  // Half the opening angle of the cone around the first contact, in radians; 30 degrees by default.
+  // The second contact of a ball is the nearest surface point that is seen from its centre at this angle or more from
+  // the nearest one; in radians, 30 degrees by default.
   double contact_angle = 0.5235987755982988;
   double economy_error = 0.01;  // The error that the greedy cover of `economy` may have, over D.
   Index economy_candidates = 20'000, economy_samples = 20'000;
@@ -36,9 +37,10 @@ struct Spread {
   double max = 0, mean = 0;
 };
 
-// How many spheres a greedy cover of the surface needs.
+// How many balls of the mesh a greedy cover of the surface needs. A ball is admissible if it protrudes by at most
+// QualityOptions::economy_error.
 struct Economy {
-  Index spheres = 0;     // The number of spheres of the cover.
+  Index spheres = 0;     // The number of balls of the cover.
   double uncovered = 0;  // The fraction of the samples that no admissible ball reaches.
 };
 

@@ -85,7 +85,6 @@ struct RefinedAxis {
 // `sampling` holds the points of `axis`. In the result, the radius of a vertex is the distance from its centre to the
 // surface, up to rounding. Throws InputError unless surface.solid(), or if an option is out of range. Takes O(n log n)
 // for n vertices, and several nearest-point queries for each vertex. The result is deterministic; the work is parallel.
-//
 RefinedAxis refine_axis(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis,
                         const RefineOptions& options = {}, const Progress& progress = {});
 

@@ -14,8 +14,8 @@
 // them in a window. The rules of render.h hold.
 namespace orchard {
 
-template <class Value>
 // A value with its name.
+template <class Value>
 struct Named {
   std::string name;  // The caption.
   Value value;
