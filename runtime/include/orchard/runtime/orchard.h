@@ -133,9 +133,9 @@ int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, co
 /* Does the same with a sign, negative inside the solid, and also stores the direction in which the distance grows. */
 int orchard_signed_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3],
                                  double limit, double* distance, double point[3], double normal[3], uint32_t* triangle);
-/* Return whether a convex solid, its inside included, touches the surface. A box lies around its pose's origin, with
- * half the edges' lengths `half`. A hull consists of corners, three numbers each, and triangles oriented outward
- * around it, three corners each. */
+/* These functions return whether a convex solid, its inside included, touches the surface. A box lies around its
+ * pose's origin, with half the edges' lengths `half`. A hull consists of corners, three numbers each, and triangles
+ * oriented outward around it, three corners each. */
 int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, const double half[3],
                         const orchard_pose* box);
 int orchard_hull_touches(const orchard_tree* tree, const orchard_pose* pose, const double* corners, size_t corner_count,
@@ -146,9 +146,9 @@ int orchard_hull_touches(const orchard_tree* tree, const orchard_pose* pose, con
 double orchard_plane_distance(const orchard_tree* tree, const orchard_pose* pose, const double normal[3],
                               double offset);
 
-/* Build trees of shapes, for queries between trees; close them like others. They return null if there is no memory or,
- * for a hull, if the points, three numbers each, lie in a plane. A sphere or capsule is a point or segment with a
- * margin. */
+/* These functions build trees of shapes, for queries between trees; close them like others. They return null if there
+ * is no memory or, for a hull, if the points, three numbers each, lie in a plane. A sphere or capsule is a point or
+ * segment with a margin. */
 orchard_tree* orchard_point_tree(const double point[3]);
 orchard_tree* orchard_segment_tree(const double p[3], const double q[3]);
 orchard_tree* orchard_box_tree(const double half[3]);
@@ -245,7 +245,8 @@ typedef struct orchard_executor {
 void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
                          const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
                          const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts);
-/* Do the same for orchard_measure(), and for orchard_closer_than() with one margin: closer[i] is 1, 0 or -1. */
+/* These functions do the same for orchard_measure(), and for orchard_closer_than() with one margin: closer[i] is 1, 0
+ * or -1. */
 void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
                          const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
                          const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances);
