@@ -46,7 +46,8 @@ struct GapRepairOptions {
 
 // The counts of one pass.
 struct GapRepairPass {
-  // What is known when the pass begins. Cells that no new point touched, and their faces, are not tested again.
+  // The cells that were tested when the pass began, and those of them that cross. Cells that no new point touched are
+  // not tested again, and neither are their faces.
   Index cells_tested = 0, cells_crossing = 0;
   Index faces_tested = 0, faces_crossing = 0;  // Faces of all cells; a face shared by two cells counts once.
   Index added_by_projection = 0, added_by_snapping = 0, added_at_necks = 0, refused_as_coincident = 0;

@@ -9,7 +9,7 @@ namespace orchard {
 
 // Returns the volume of the part of a union of balls that lies outside the solid, in cubic mesh units. Parallel rays
 // measure it, exactly along each ray, at places of a low-discrepancy sequence (R2) across the box of the union.
-// With the default number of rays, the error is about 0.3 %; with fewer rays, it grows about as their number falls.
+// With the default number of rays, the error is about 0.3 %; it is about inversely proportional to the number of rays.
 // Throws InputError unless surface.solid(). The time is proportional to the number of rays plus the number of
 // intersections of rays with triangles and balls.
 double outside_volume(const Surface& surface, std::span<const Sphere> balls, std::uint64_t rays = 10'000);

@@ -32,8 +32,8 @@ struct UnionVolume {
 
 // Measures a union of balls against a solid by parallel rays, exactly along each ray. Eight independent sets of rays
 // give the standard errors by their differences. With the default number of rays, the errors are about 0.1 % of the
-// volumes; with fewer rays they grow about as their number falls. Throws InputError unless surface.solid(). Takes the
-// time of outside_volume() with as many rays.
+// volumes; they are about inversely proportional to the number of rays. Throws InputError unless surface.solid(). Takes
+// the time of outside_volume() with as many rays.
 UnionVolume union_volume(const Surface& surface, std::span<const Sphere> balls, std::uint64_t rays = 40'000);
 
 // Returns the mass properties of the solid by the divergence theorem. They are exact, except that parts that the
