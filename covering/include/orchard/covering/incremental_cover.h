@@ -6,16 +6,19 @@
 #include "orchard/covering/path_forest.h"
 #include "orchard/geometry/surface.h"
 
+// Keeps the path rule up to date while single balls change.
 namespace orchard {
 
-// The path rule kept up to date while single balls change (dissertation 5.3.3): what builders that move spheres about
-// ask after every step. For each triangle it keeps the leaves that its certificate rests on, and each near ball's
-// circle in the triangle; a change rechecks only triangles that rest on the changed ball, and uncovered ones that it
-// touches. Agrees with surface_coverage(), but for triangles that a ball elsewhere makes uncertain: their certificate
-// without that ball stands. Not for use by several threads at once.
+// The state of the path rule for a surface and balls, for builders that move spheres and check the rule after every
+// step. For each triangle it keeps the leaves that its certificate depends on, and each near ball's circle in the
+// triangle. A change rechecks only the triangles whose certificate depends on the changed ball and the uncovered ones
+// that it touches.
+// The result agrees with surface_coverage(), except for triangles that a ball elsewhere makes uncertain: their
+// certificate without that ball remains valid. An object must not be used by several threads at once. Source:
+// dissertation 5.3.3.
 class IncrementalCover {
  public:
-  // Checks all triangles, or the given ones. Keeps a reference to `surface`. Parallel.
+  // Checks all triangles, or the given ones, in parallel. The object keeps a reference to `surface`.
   IncrementalCover(const Surface& surface, std::span<const PathBall> balls);
   IncrementalCover(const Surface& surface, std::vector<Index> triangles, std::span<const PathBall> balls);
   ~IncrementalCover();
@@ -25,14 +28,15 @@ class IncrementalCover {
   std::span<const PathBall> balls() const;
   bool complete() const { return uncovered_count() == 0; }
   Index uncovered_count() const;
-  std::vector<Index> uncovered() const;  // triangles, ascending
+  std::vector<Index> uncovered() const;  // Returns the uncovered triangles, ascending.
 
-  // Gives the ball another centre and radius.
+  // Replaces the centre and the radius of a ball.
   void change(Index ball, const Sphere& sphere);
-  // The same if every triangle that is covered stays so; otherwise nothing changes. Returns whether it was done.
+  // Does the same if every covered triangle remains covered; otherwise changes nothing. Returns whether the ball
+  // changed.
   bool try_change(Index ball, const Sphere& sphere);
 
-  std::uint64_t triangles_checked() const;  // so far, the first check included
+  std::uint64_t triangles_checked() const;  // Returns the number of checks so far, the first ones included.
 
  private:
   struct Data;

@@ -5,16 +5,17 @@
 
 #include "orchard/covering/boundary_lemma.h"
 
+// Finds the balls of a forest that are near a triangle, a point or a box.
 namespace orchard {
 
-// The balls near one triangle, renumbered; parents within the list.
+// The balls near one triangle, renumbered; parents are indices into this list.
 struct NearBalls {
   std::vector<PathBall> balls;
-  std::vector<Index> original;  // into the forest; ascending on each level
+  std::vector<Index> original;  // The indices in the forest; ascending on each level.
 };
 
 // Balls with their children, so that those near a triangle are found from the roots down. Balls may be changed in
-// place; the parents may not.
+// place; parents may not.
 class PathForest {
  public:
   explicit PathForest(std::span<const PathBall> balls);
@@ -24,15 +25,15 @@ class PathForest {
   std::span<const Index> roots() const { return roots_; }
   std::span<const Index> children(Index i) const { return children_[i]; }
 
-  // Gathers the balls whose whole path comes near the triangle. A ball that is left out does not touch the triangle,
-  // and neither do the path regions below it. `near` is cleared first.
+  // Replaces the contents of `near` by the balls whose whole path is near the triangle. A ball that is left out does
+  // not touch the triangle, and neither do the path regions below it.
   void gather(const std::array<Point, 3>& triangle, NearBalls& near) const;
-  // Only those near the part of the triangle in the sphere, too.
+  // Gathers only those balls that are also near the part of the triangle in the sphere.
   void gather(const std::array<Point, 3>& triangle, const Sphere& where, NearBalls& near) const;
 
-  // path_distance() over all balls, without a look at most of them.
+  // Returns path_distance() over all balls; visits only a few of them.
   double distance(const Point& point) const;
-  // Whether that is at most so much.
+  // Returns whether that distance is at most `limit`.
   bool within(const Point& point, double limit) const;
 
  private:
@@ -44,9 +45,9 @@ class PathForest {
   Rows children_;
 };
 
-// Tells whether one path of balls surely holds a box, and so covers whatever triangles lie in it: cover_of_triangle()
-// says that they are covered. For boxes that lie near each other, one after the other: the last path is tried first.
-// One thread at a time. Keeps a reference to the forest.
+// Decides whether one path of balls is certain to contain a box, and so covers all triangles in it, as
+// cover_of_triangle() would find. Use it for a sequence of boxes near each other, because it tries the last path first.
+// The object keeps a reference to the forest and must not be used by several threads at once.
 class HoldingPath {
  public:
   explicit HoldingPath(const PathForest& forest) : forest_(forest) {}
@@ -56,10 +57,10 @@ class HoldingPath {
   bool descend(Index ball, const Box& box);
 
   const PathForest& forest_;
-  Index last_ = kNone;  // the leaf of the last path that held anything
+  Index last_ = kNone;  // The leaf of the last path that contained a box.
 };
 
-// Whether the ball surely holds the box, with room for all roundings.
+// Returns whether the ball is certain to contain the box, with a margin for all roundings.
 bool surely_holds(const Sphere& ball, const Box& box);
 
 }  // namespace orchard

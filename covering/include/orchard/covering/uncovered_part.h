@@ -5,25 +5,28 @@
 #include "orchard/covering/path_forest.h"
 #include "orchard/geometry/surface.h"
 
+// Measures the part of a surface that the paths of a tree do not cover.
 namespace orchard {
 
-// How much of a surface has no path, and how far off the paths are.
+// The size of the uncovered part, and its distance from the paths.
 struct UncoveredPart {
-  Bounds area;                     // of the points that lie in no path region, in squared mesh units
-  double likely_area = 0;          // the undecided cells counted by their middles
-  Bounds distance;                 // largest path_distance() of a point, at least 0, in mesh units
-  Point farthest = Point::Zero();  // a point at distance.lower
+  Bounds area;  // The area of the points in no path region, in squared mesh units.
+  // The area if each undecided cell counts as covered or not by its middle, in squared mesh units.
+  double likely_area = 0;
+  Bounds distance;                 // The largest path_distance() of a point, at least 0, in mesh units.
+  Point farthest = Point::Zero();  // A point whose distance is distance.lower.
 };
 
+// The options of uncovered_part().
 struct UncoveredPartOptions {
-  double area_tolerance = 0.02;  // of the area itself: upper - lower
+  double area_tolerance = 0.02;  // The largest upper - lower, as a fraction of the area itself.
   DistanceTolerance distance_tolerance;
-  Index max_cells = 100'000;  // of all triangles together; where they run out, the bounds are wider
+  // The maximum number of cells of all triangles together. If it is reached, the bounds are wider.
+  Index max_cells = 100'000;
 };
 
-// Halves the given triangles until the boundary lemma or the distance at a cell's middle, which is
-// 1-Lipschitz, settles what is covered and what is not. Other triangles count as covered. Triangles are taken relative
-// to `origin`, as the balls are.
+// Halves the given triangles until the boundary lemma or the distance at the middle of a cell, which is 1-Lipschitz,
+// decides whether the cell is covered. Other triangles count as covered. Triangles and balls are relative to `origin`.
 UncoveredPart uncovered_part(const Surface& surface, std::span<const Index> triangles, const PathForest& forest,
                              const Point& origin = Point::Zero(), const UncoveredPartOptions& options = {});
 

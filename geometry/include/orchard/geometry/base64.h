@@ -3,9 +3,10 @@
 #include <string>
 #include <string_view>
 
+// Base64 encoding; this header uses the standard library only.
 namespace orchard {
 
-// The bytes as the digits of RFC 4648, padded with "=". The standard library only.
+// Returns the bytes as the digits of RFC 4648, padded with "=".
 inline std::string base64(std::string_view bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

@@ -6,12 +6,14 @@
 
 #include "orchard/geometry/mesh.h"
 
+// Cells of a regular grid, and their hash values.
 namespace orchard {
 
 // A cube of a grid, by its number along each axis.
 using GridCell = std::array<std::int64_t, 3>;
 
-// The cube that holds a place, given from the grid's origin, for cubes of this size (> 0, so that the numbers fit).
+// Returns the cube that contains a place. `from_origin` is the place relative to the origin of the grid. `size` is the
+// edge length of the cubes; it must be above 0 and so large that the numbers fit into 64 bits.
 inline GridCell grid_cell(const Vector& from_origin, double size) {
   GridCell cell;
   for (int axis = 0; axis < 3; ++axis)
@@ -19,7 +21,7 @@ inline GridCell grid_cell(const Vector& from_origin, double size) {
   return cell;
 }
 
-// Cells that are near each other have hashes that are not.
+// Returns a hash value. Cells that are near each other have very different values.
 inline std::uint64_t hash_of(const GridCell& cell) {
   std::uint64_t hash = 0;
   for (const std::int64_t coordinate : cell) {

@@ -5,9 +5,12 @@
 #include <span>
 #include <vector>
 
+// The basic types of orchard's geometry: points, spheres and triangle meshes.
 namespace orchard {
 
-using Index = std::uint32_t;  // into the array that its comment names
+// An index into the array that the comment of a declaration names.
+using Index = std::uint32_t;
+// The index that stands for "none".
 inline constexpr Index kNone = 0xffffffffu;
 using Point = Eigen::Vector3d;
 using Vector = Eigen::Vector3d;
@@ -18,22 +21,22 @@ struct Sphere {
   double radius = 0;
 };
 
-// Vertices and triangles, nothing else. Corners run counter-clockwise seen from outside.
+// A mesh of vertices and triangles. The corners of a triangle run counter-clockwise seen from outside.
 struct TriangleMesh {
   std::vector<Point> vertices;
-  std::vector<std::array<Index, 3>> triangles;  // into vertices
+  std::vector<std::array<Index, 3>> triangles;  // Indices into `vertices`.
 };
 
-// Throws InputError unless all indices are in range, all coordinates finite and there is a triangle at all.
+// Throws InputError unless all indices are in range, all coordinates are finite and there is at least one triangle.
 void validate(const TriangleMesh& mesh);
 
-// The sizes of meshes that all of orchard works with, in mesh units: no coordinate is larger, and the longest side of
-// the bounding box is no shorter. The run-time computes with the squares of lengths in floats; beyond either limit
-// these overflow or lose their digits. read_mesh() checks it.
+// The range of usable mesh sizes, in mesh units: no coordinate is larger than kMaxCoordinate, and the longest side of
+// the bounding box is at least kMinExtent. The run-time computes with the squares of lengths in floats, which overflow
+// or lose their digits beyond these limits. read_mesh() checks them.
 inline constexpr double kMaxCoordinate = 1e15, kMinExtent = 1e-12;
 
-// Throws InputError, naming the limit, unless the mesh has a size in that range. A mesh without extent, which is a
-// fault of another kind, passes. Precondition: validate(mesh) passes.
+// Throws InputError, which names the limit, unless the size of the mesh is in that range. A mesh without extent, which
+// is a fault of another kind, passes. Precondition: validate(mesh) passes.
 void require_usable_size(const TriangleMesh& mesh);
 
 // Rows of different lengths in two flat arrays: row i is items[offsets[i] .. offsets[i + 1]).
@@ -45,7 +48,7 @@ struct Rows {
   std::span<const Index> operator[](Index row) const {
     return {items.data() + offsets[row], items.data() + offsets[row + 1]};
   }
-  // Ends the row that the items pushed since the last call make up.
+  // Ends a row. The row consists of the items that were appended since the last call.
   void close_row() { offsets.push_back(static_cast<Index>(items.size())); }
 };
 

@@ -5,17 +5,18 @@
 
 #include "orchard/geometry/mesh.h"
 
+// Writes meshes with values at their vertices and triangles.
 namespace orchard {
 
-// A number for each vertex, or for each triangle, of a mesh.
+// A number for each vertex or each triangle of a mesh.
 struct MeshArray {
-  std::string name;  // a word
+  std::string name;  // A single word.
   std::vector<double> values;
 };
 
-// The bytes of a binary little-endian PLY file of the mesh, coordinates and values as doubles; arrays are properties of
-// their names of the elements "vertex" and "face", and `comments` are lines of the header. NaN is written as it is. The
-// same bytes for the same values. Precondition: arrays are as long as the mesh has vertices or triangles.
+// Returns a binary little-endian PLY file of a mesh, with coordinates and values as doubles. Each array is a property
+// of the element "vertex" or "face", and `comments` are lines of the header. NaN is written as it is. The same values
+// give the same bytes. Precondition: arrays are as long as the mesh has vertices or triangles.
 std::string to_ply(const TriangleMesh& mesh, std::span<const MeshArray> of_vertices,
                    std::span<const MeshArray> of_triangles, std::span<const std::string> comments = {});
 

@@ -4,12 +4,14 @@
 
 #include "orchard/geometry/error.h"
 
+// The callback by which long stages report their progress.
 namespace orchard {
 
-// Called from the thread that runs a stage, with the stage's name and the fraction done in [0, 1]. Returning false
-// makes the stage throw Cancelled. An empty function reports nothing.
+// A callback that receives the name of a stage and the fraction done, in [0, 1], on the thread that runs the stage. If
+// it returns false, the stage throws Cancelled. An empty function reports nothing.
 using Progress = std::function<bool(std::string_view stage, double fraction)>;
 
+// Calls the callback unless it is empty. Throws Cancelled if it returns false.
 inline void report_progress(const Progress& progress, std::string_view stage, double fraction) {
   if (progress && !progress(stage, fraction)) throw Cancelled();
 }

@@ -1,23 +1,25 @@
 #pragma once
 #include <cstdint>
 
+// Random numbers that do not depend on threads or on the standard library.
 namespace orchard {
 
-// A counter-based generator: item i of a stage draws the same numbers on any thread and in any order. The maps from
-// bits to values are our own, because the standard library's differ between implementations.
+// A counter-based generator: item i of a stage draws the same numbers on any thread and in any order. The conversion
+// from bits to values is orchard's own, because those of standard libraries differ.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t stage, std::uint64_t item = 0)
       : state_(mix(mix(mix(seed) ^ stage) ^ item)) {}
 
+  // Returns the next 64 random bits.
   std::uint64_t bits() {
     state_ += 0x9e3779b97f4a7c15u;
     return mix(state_);
   }
-  // Uniform in [0, 1), a multiple of 2^-53.
+  // Returns a number that is uniform in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  // Uniform in [0, n) up to a bias below n / 2^64. Precondition: n > 0.
+  // Returns a number that is uniform in [0, n), up to a bias below n / 2^64. Precondition: n > 0.
   std::uint64_t below(std::uint64_t n) { return bits() % n; }
 
  private:

@@ -4,12 +4,13 @@
 #include <utility>
 #include <vector>
 
+// Measures how long the stages of a run take.
 namespace orchard {
 
-// The stages of a run in their order, each with the seconds that it took.
+// The names of the stages of a run in their order, each with its duration in seconds.
 using StageTimes = std::vector<std::pair<std::string, double>>;
 
-// Calls the function, and notes how long that took.
+// Calls a function and appends its duration, in seconds, to `times`.
 template <class Function>
 void time_stage(StageTimes& times, const char* name, Function&& function) {
   const auto start = std::chrono::steady_clock::now();

@@ -7,31 +7,38 @@
 
 #include "orchard/geometry/mesh.h"
 
+// Reads small text formats line by line.
 namespace orchard {
 
-// Reads small text formats line by line. Blank lines and lines that start with '#' are skipped, and so is what is left
-// on a line when the next one is asked for. Everything that cannot be read throws InputError, which names file and
-// line. A copy, or what a value is moved to, reads on by itself from where the other was.
+// A reader of lines. Blank lines, lines that start with '#', and the unread rest of a line are skipped. Every failure
+// throws InputError, which names the file and the line. A copy and the target of a move continue from the position of
+// the original, independently of it.
 class TextLines {
  public:
   explicit TextLines(const std::filesystem::path& file);
   TextLines(std::string name, std::string text);
 
-  bool next();                         // goes to the next line that holds anything; false at the end
-  void expect(std::string_view word);  // the next line, which must start with this word
-  Index index();                       // a whole number, 0 or more
+  // Advances to the next line with contents. Returns false at the end.
+  bool next();
+  // Advances to the next line, which must start with `word`.
+  void expect(std::string_view word);
+  Index index();  // Reads a whole number, at least 0.
+  // Reads a whole number of either sign.
   std::int64_t whole();
-  double real(std::string_view what = "a number");  // finite; `what` names it in the message if there is none
-  // The same if there is a number next on the line. Returns whether there is; otherwise the line stays where it is.
+  // Reads a finite number. `what` is the name of the number in the error message.
+  double real(std::string_view what = "a number");
+  // Reads a finite number if the next word is one, and returns whether it is. Otherwise the position does not change.
   bool real_if_any(double& value);
-  // A whole number, 0 or more, on this line or the next one that has anything left.
+  // Reads a whole number, at least 0, from this line or from the next one with contents.
   Index index_on_any_line(std::string_view what);
-  // The next word of the line, which blanks end; empty at the end of the line. Valid as long as this value.
+  // Returns the next word of the line, which ends at a blank; empty at the end of the line. The result is valid as long
+  // as this object.
   std::string_view word();
-  void skip_line() { at_ = line_end_; }  // what is left of it
-  // What is left of the line, if it is nothing but whole numbers and no more of them than `numbers` has room for: how
-  // many they are. Otherwise 0, and the line stays where it is.
+  void skip_line() { at_ = line_end_; }  // Skips the rest of the line.
+  // Reads the rest of the line if it consists of whole numbers only and these fit into `numbers`. Returns how many
+  // there are. Otherwise returns 0, and the position does not change.
   std::size_t whole_numbers_to_the_end(std::span<std::int64_t> numbers);
+  // Throws InputError, which names the file and the line.
   [[noreturn]] void fail(const std::string& fault) const;
 
  private:
@@ -42,12 +49,13 @@ class TextLines {
   [[noreturn]] void fail_to_find(std::string_view what) const;
 
   std::string name_, text_;
-  // Places in text_ rather than views of it, which would stay with the text of the value that a copy was made of.
-  std::size_t next_ = 0, at_ = 0, line_end_ = 0;  // where the next line begins; what is left of this one
+  // Positions in text_. Views would refer to the text of the original after a copy. next_ is the start of the next
+  // line; at_ to line_end_ is the unread rest of this one.
+  std::size_t next_ = 0, at_ = 0, line_end_ = 0;
   std::size_t line_number_ = 0;
 };
 
-// Appends a space and the fewest digits that read back as the same double.
+// Appends a space and the fewest digits that read back as the same value.
 void append_number(std::string& text, double value);
 void append_number(std::string& text, Index value);
 

@@ -1,9 +1,10 @@
 #pragma once
 #include <string>
 
+// Escapes text for XML and HTML; this header uses the standard library only.
 namespace orchard {
 
-// The text as it stands in XML and HTML, between tags or within double quotes. The standard library only.
+// Returns the text with the characters replaced that must not occur between tags or within double quotes.
 inline std::string xml_escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {

@@ -8,56 +8,69 @@
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/diagram.h"
 
+// The medial axis of a solid as a subset of a Voronoi diagram.
 namespace orchard {
 
-// The approximate medial-axis surface of a solid (dissertation 6.2.1): the Voronoi vertices inside it, coincident ones
-// coalesced, and how they hang together.
+// The approximate medial-axis surface of a solid: the Voronoi vertices inside it, with coincident ones merged into one,
+// and their edges and faces. Source: dissertation 6.2.1.
 struct MedialAxis {
-  std::vector<Point> points;    // surface points: what forming points index
-  std::vector<Vector> normals;  // outward unit pseudonormal of the surface at each point
-  std::vector<double> turns;    // radians from that to the surface's own normals there: 0 but at edges and vertices
-  std::vector<PointOrigin> origins;  // of each point: which of them gap repair added
+  std::vector<Point> points;    // The surface points, which forming_points refers to.
+  std::vector<Vector> normals;  // The outward unit pseudonormal of the surface at each point.
+  // For each point, the angle in radians between `normals[i]` and the normals of the adjacent faces; it is 0 except at
+  // edges and vertices.
+  std::vector<double> turns;
+  std::vector<PointOrigin> origins;  // The stage that added each point.
 
-  std::vector<Point> centers;  // medial vertices
-  std::vector<double> radii;   // distance to the forming points
-  std::vector<double> angles;  // radians between the contacts that are seen farthest apart: twice the object angle
-  Rows forming_points;         // of each vertex, ascending; four, or more where vertices were coalesced
-  Rows neighbors;              // vertices joined by a Voronoi edge, ascending; symmetric
+  std::vector<Point> centers;  // The positions of the medial vertices.
+  std::vector<double> radii;   // The distance of each vertex to its forming points, in mesh units.
+  // For each vertex, the angle in radians between the two contacts that are seen farthest apart from it. It is twice
+  // the object angle.
+  std::vector<double> angles;
+  // The forming points of each vertex, ascending: four, or more if vertices were merged.
+  Rows forming_points;
+  Rows neighbors;  // The vertices joined to each vertex by a Voronoi edge, ascending; symmetric.
 
-  // Faces to draw: polygons of the dual of two points, all of whose corners are vertices of the axis, and whose points
-  // do not share a triangle or an edge of the surface.
+  // The two points that each face separates. A face is a Voronoi polygon between two points that do not share a
+  // triangle or an edge of the surface; all corners of the polygon are vertices of the axis. Faces are the sheets to
+  // draw.
   std::vector<std::array<Index, 2>> face_points;
-  Rows faces;  // vertices in order around each face
+  Rows faces;  // The vertices of each face in order around it.
 
-  // The other faces all of whose corners are vertices of the axis: they stand on the surface without reaching it. The
-  // sheets alone have holes where these are; with them, the axis hangs together as the solid does (gap_crossing.h).
+  // The two points that each wall separates. Walls are the other Voronoi polygons all of whose corners are vertices of
+  // the axis: those between two points that share a triangle or an edge of the surface. A wall points at the surface
+  // but does not reach it. The sheets alone have holes where the walls are; with the walls, the axis has the topology
+  // of the solid (gap_crossing.h).
   std::vector<std::array<Index, 2>> wall_points;
-  Rows walls;
+  Rows walls;  // The vertices of each wall in order around it.
 
-  // By AxisOptions::keep_topology: vertices that are joined by one edge alone, without faces; edges that are none of
-  // the diagram's; and interior vertices dropped.
+  // Three counts of AxisOptions::keep_topology: vertices that are joined by one edge alone and have no faces, edges
+  // that do not exist in the diagram, and interior vertices that were dropped.
   Index stems = 0, bridges = 0, left_out = 0;
 
   Index size() const { return static_cast<Index>(centers.size()); }
 };
 
+// The options of medial_axis().
 struct AxisOptions {
-  double coalesce = tolerance::kCoalesce;  // Voronoi vertices nearer than this, in bounding radii, become one
-  // Where crossings that could not be mended (of a surface that cuts itself, say) leave an axis with other components
-  // or another Euler characteristic than the solid, and the solid's components are balls: keep only as many vertices as
-  // can be taken in one after the other, largest balls first, without a change of topology; then the others, by one
-  // edge each.
+  // Adjacent Voronoi vertices that are nearer than this, as a fraction of the bounding radius, become one vertex.
+  double coalesce = tolerance::kCoalesce;
+  // Whether the axis is forced to the topology of the solid. Gap crossings that could not be repaired, for example
+  // those of a surface that cuts itself, may give the axis another number of components or another Euler characteristic
+  // than the solid. If so, and if the components of the solid are balls, the axis keeps only those vertices that can be
+  // added one after the other, the largest balls first, without a change of topology. Each of the other vertices is
+  // then added by one edge.
   bool keep_topology = false;
 };
 
-// Precondition: diagram.points equals sampling.points. Throws InputError unless surface.solid().
+// Extracts the medial axis from a Voronoi diagram of surface points. Precondition: diagram.points equals
+// sampling.points. Throws InputError unless surface.solid().
 MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
                        const AxisOptions& options = {}, const Progress& progress = {});
 
-// Numbers the connected components of the vertices' adjacency; returns the component of each vertex.
+// Returns the connected component of each vertex, numbered from 0, and stores the number of components in `count`.
 std::vector<Index> connected_components(const MedialAxis& axis, Index& count);
 
-// Throws Error unless adjacency is symmetric, indices are in range and every centre lies inside the surface.
+// Throws Error unless the adjacency is symmetric, all indices are in range and every centre lies inside the surface.
 void validate(const MedialAxis& axis, const Surface& surface);
 
 }  // namespace orchard

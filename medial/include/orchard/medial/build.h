@@ -15,77 +15,92 @@
 #include "orchard/medial/refine.h"
 #include "orchard/voronoi/algorithms.h"
 
+// Builds the medial axis of a solid from its surface: surface points, Voronoi diagram, gap repair, axis, pruning and
+// refinement in one call.
 namespace orchard {
 
-// All that can be tuned on the way from a surface to a medial axis.
+// The options of build_medial_axis(), one group for each stage.
 struct MedialBuildOptions {
-  SamplingOptions sampling = {};
+  SamplingOptions sampling = {};  // The number and spacing of the surface points.
   VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
-  bool repair_gaps = true;  // repair gap crossings; gap_repair says how
+  bool repair_gaps = true;  // Whether gap crossings are repaired, with the options in gap_repair.
   GapRepairOptions gap_repair = {};
   AxisOptions axis{.keep_topology = true};
-  PruneOptions prune = {};
-  std::optional<RefineOptions> refine = {};  // nothing: the axis stays as the diagram has it; an imported one always
-  // How often surface points are added where the refined axis leaves the surface open by more than its border loss, as
-  // it does where the solid is thinner than the points' spacing, and everything is rebuilt: each time takes as long as
-  // the first. Not where these and what gap repair added are less than a thirty-second of the points and triangles
-  // reach for them (RefineOptions) down to three border losses or less: nearly as good, and faster. Not with own
-  // points, nor with an own diagram.
+  PruneOptions prune = {};  // By default the axis is not pruned.
+  // If this has no value, the vertices of the axis stay at the Voronoi vertices. An imported axis is never refined.
+  std::optional<RefineOptions> refine = {};
+  // The maximum number of rounds that add surface points, at least 0. A round adds points where the refined axis leaves
+  // the surface open by more than border_loss, which happens where the solid is thinner than the spacing of the points,
+  // and then rebuilds the diagram and the axis. Each round takes as long as the first build.
+  // A round is skipped if its points and those of gap repair are at most 1/32 of the points, and if refinement reaches
+  // for all places that are open by more than three border losses (RefineOptions::reach_rounds): the result is nearly
+  // as good, and the build is faster. If the caller supplies the points or the diagram, no round runs.
   int open_rounds = 1;
-  // Compare the finished axis with axis_promise(). Costs about as much as one of the rounds that look for open places.
+  // Whether the finished axis is compared with axis_promise(). The check costs about as much as the search for open
+  // places in one round.
   bool check_promise = true;
 };
 
-// A diagram that the caller made, and where its points lie on the surface; the points of both are the same.
+// A diagram made by the caller, and the places of its points on the surface. Both members hold the same points in the
+// same order.
 struct OwnDiagram {
   VoronoiDiagram diagram;
   SurfaceSampling sampling;
 };
 
-// What stands in for the first steps of a build; at most one of them.
+// Replacements for the first stages of a build. At most one member may have a value.
 struct MedialBuildInput {
-  std::optional<SurfaceSampling> sampling;  // the points, instead of sampled ones: validate() passes, no two coincide
-  std::optional<OwnDiagram> diagram;        // the points and their diagram; its gaps are not repaired
-  std::optional<MedialMesh> mesh;           // the axis itself, of any system, see import_axis()
+  // Points that replace the sampled ones. They must pass validate(), and no two may coincide.
+  std::optional<SurfaceSampling> sampling;
+  // Points with their diagram. The gaps of this diagram are not repaired.
+  std::optional<OwnDiagram> diagram;
+  // A finished axis from any system, which is imported by import_axis().
+  std::optional<MedialMesh> mesh;
 };
 
-// Everything that a build made, and how long each stage took.
+// The results of all stages of a build, and the time of each stage.
 struct MedialBuild {
-  SurfaceSampling sampling;  // with the points that gap repair added, or an imported axis's contacts
-  Index points = 0;          // before
+  // The surface points, with those that gap repair and the rounds for open places added. After an import they include
+  // the contacts of the imported axis.
+  SurfaceSampling sampling;
+  Index points = 0;  // The number of surface points that the first stage made.
   InsertionReport voronoi;
-  VoronoiDiagram diagram;  // empty for an imported axis
+  VoronoiDiagram diagram;  // This is empty for an imported axis.
   GapRepairReport gap_repair;
-  Index unpruned_vertices = 0;
-  MedialAxis axis;                              // refined, if that was asked for
-  RefineReport refinement;                      // zeros, if not
-  std::vector<std::array<Index, 2>> features;   // edges of the mesh that sheets reach to, by its vertices, if refined
-  PromiseCheck promise;                         // what was promised, and whether it holds; if that was asked for
-  Index open_places = 0;                        // points added where a refined axis left the surface open
-  Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
+  Index unpruned_vertices = 0;  // The number of vertices of the axis before pruning.
+  MedialAxis axis;              // The finished axis; it is refined if options.refine has a value.
+  RefineReport refinement;      // All counts are 0 if the axis was not refined.
+  // The mesh edges that the sheets of a refined axis reach, each as two vertices of the mesh.
+  std::vector<std::array<Index, 2>> features;
+  // The promise and the result of its check, if options.check_promise asked for it.
+  PromiseCheck promise;
+  Index open_places = 0;  // The number of points added where a refined axis left the surface open.
+  Index balls_refused = 0, balls_adjusted = 0;  // These three describe an imported axis, see ImportedAxis.
   double ball_adjustment = 0;
-  StageTimes seconds;  // stage, time
+  StageTimes seconds;  // The name and the duration of each stage.
 };
 
-// The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning, refining. The time
-// goes as the parts': about n log n in the points, for each of the rounds. Throws InputError unless surface.solid(), if
-// an option is out of range, or if `input` has more than one of its values.
+// Builds the medial axis of a solid in these stages: surface points, Voronoi diagram, gap repair, axis, pruning,
+// refinement. `input` may replace the first stages.
+// Returns the results of all stages. Throws InputError unless surface.solid(), if an option is out of range, or if more
+// than one member of `input` has a value. Throws Cancelled if `progress` returns false. Takes about O(n log n) for n
+// surface points in each round.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, MedialBuildInput input = {});
 
-// What build_medial_axis() promises of an axis that it builds, and does not import. By `options`:
-// - a refined axis leaves no place of the surface open by more than 1.65 times the larger of border_loss and tolerance,
-//   or what so few points can show (RefineOptions::reach_detail) if that is more, and once the tolerance on top, unless
-//   reach_rounds is 0 or pruning is asked for;
-// - it sticks out of the solid by twice the tolerance at most: interpolated balls are held to the tolerance at places
-//   between which they may be off by another one;
-// - axis.keep_topology promises the topology of the solid, refined or not.
-// `points`: how many surface points it was built from.
+// Returns what build_medial_axis() promises of an axis that it builds from these options; nothing is promised of an
+// imported axis. `points` is the number of surface points that the axis was built from.
+// - A refined axis leaves no place of the surface open by more than L + tolerance, where L is the larger of 1.65
+//   max(border_loss, tolerance) and the detail that so few points can show (RefineOptions::reach_detail). There is no
+//   such promise if reach_rounds is 0 or if the axis is pruned.
+// - A refined axis protrudes from the solid by at most twice the tolerance. Interpolated balls are held to one
+//   tolerance at sampled places, and between these they may be off by another one.
+// - With axis.keep_topology, the axis has the topology of the solid, whether it is refined or not.
 AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& options, Index points);
 
-// The pass of gap repair that added each surface point, from 1 on, counted in the last round; 0 for points that the
-// sampling had. -1 is unknown: for what earlier rounds added, at open places and by gap repair, and for all that was
-// added where thinning took points out again. O(n).
+// Returns, for each surface point, the pass of gap repair that added it, counted from 1 within the last round. The
+// value is 0 for points of the sampling. It is -1 where the pass is unknown: for points that earlier rounds added, for
+// points added at open places, and for all added points if thinning removed points. O(n).
 std::vector<int> repair_passes(const MedialBuild& build);
 
 }  // namespace orchard

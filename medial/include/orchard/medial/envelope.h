@@ -3,27 +3,34 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/medial/medial_mesh.h"
 
+// Converts a medial mesh into the surface mesh that it stands for.
 namespace orchard {
 
+// The options of envelope_mesh().
 struct EnvelopeOptions {
-  double cell = 1.0 / 200;  // edge of the grid's cells, in diagonals of the box around all balls: in [1e-4, 0.5]
+  // The edge length of the grid's cells, in [1e-4, 0.5] diagonals of the box around all balls. Smaller cells follow the
+  // envelope more closely and cost more.
+  double cell = 1.0 / 200;
 };
 
+// The result of envelope_mesh().
 struct EnvelopeMesh {
   TriangleMesh mesh;
-  Index lost = 0;  // balls that the mesh has nothing of within a cell: what is thinner than that may be lost
+  // The number of balls of which no part of the mesh is nearer than a cell. Parts thinner than a cell may be lost.
+  Index lost = 0;
 };
 
-// The surface of what a medial mesh stands for, the union of the balls, cones and slabs of its vertices, edges and
-// triangles: a closed manifold mesh, counter-clockwise seen from outside, with vertices on the envelope but for
+// Returns the surface of the union of the balls, cones and slabs of a medial mesh's vertices, edges and triangles. The
+// result is a closed manifold mesh, counter-clockwise seen from outside, whose vertices lie on the envelope up to
 // rounding.
 //
-// The sign of the distance to the union is taken at the corners of a grid, whose cubes are halved where the envelope
-// can be; each of the smallest is cut into six tetrahedra, which fit together, and the part of the envelope in each is
-// one or two triangles. So it is closed and manifold whatever the balls are; what is thinner than a cell may be lost,
-// which `lost` tells, and edges are cut off by less than a cell. Time and size grow with the area over the square of
-// the cell. Deterministic; parallel. Throws InputError unless validate(mesh) passes, the options are in range, and the
-// union is met by the grid at all.
+// The function computes the sign of the distance to the union at the corners of a grid, whose cubes it halves where
+// they may contain the envelope. It cuts each of the smallest cubes into six tetrahedra, which fit together; the part
+// of the envelope in each tetrahedron is one triangle or two. So the mesh is closed and manifold for all balls. Parts
+// thinner than a cell may be lost, which `lost` counts, and edges are cut off by less than a cell.
+//
+// Throws InputError unless validate(mesh) passes, the options are in range, and the grid meets the union. The result is
+// deterministic; the work is parallel. Time and size grow with the area over the square of the cell.
 EnvelopeMesh envelope_mesh(const MedialMesh& mesh, const EnvelopeOptions& options = {}, const Progress& progress = {});
 
 }  // namespace orchard

@@ -5,28 +5,33 @@
 #include "orchard/medial/axis.h"
 #include "orchard/medial/medial_mesh.h"
 
+// Converts a medial mesh of any system into a MedialAxis, so that sphere-trees can be built from it.
 namespace orchard {
 
-// What import_axis() made of a medial mesh.
+// The result of import_axis().
 struct ImportedAxis {
   MedialAxis axis;
-  SurfaceSampling sampling;  // the samples, and behind them the first contact of each ball, by vertex
-  Index refused = 0;      // balls whose centre is not inside the solid: no vertex of the axis, and none of their cells
-  Index adjusted = 0;     // vertices whose radius was off by more than tolerance::kSameRadius: it is the right one now
-  double adjustment = 0;  // the largest such difference, in mesh units
+  // The samples, followed by the first contact of each ball in the order of the vertices.
+  SurfaceSampling sampling;
+  // Balls with a centre that is not inside the solid. The axis has neither these balls nor their cells.
+  Index refused = 0;
+  // Vertices whose radius was off by more than tolerance::kSameRadius and was replaced by the right one.
+  Index adjusted = 0;
+  double adjustment = 0;  // The largest such difference, in mesh units.
 };
 
-// A medial axis from the medial mesh of any other system, so that trees can be built from it.
+// Builds a medial axis from the medial mesh of any system.
 //
-// Vertices are the mesh's balls with their centres inside the solid; their radii are the centres' distances to the
-// surface. A ball's first contact is the surface's point nearest to its centre, which is added to the axis's points as
-// PointOrigin::repair. Every point of `sampling` becomes a contact of the ball that comes nearest to it. So a vertex
-// has one contact at least, where a Voronoi vertex has four, and validate(axis, surface) does not hold. Neighbours and
-// faces are the mesh's edges and triangles; a face's two points are those contacts of its corners that are farthest
-// apart. The angle of a vertex is the largest that two of its contacts are seen at, pi at most.
+// The vertices are the balls with their centres inside the solid; their radii are the distances of the centres to the
+// surface. The first contact of a ball is the point of the surface nearest to its centre. It is added to the points of
+// the axis as PointOrigin::repair. Every point of `sampling` becomes a contact of the ball that comes nearest to it. So
+// a vertex has at least one contact, whereas a Voronoi vertex has four, and validate(axis, surface) does not hold. The
+// neighbours and faces are the edges and triangles of the mesh. The two points of a face are the contacts of its
+// corners that are farthest apart. The angle of a vertex is the largest angle, at most pi, at which two of its contacts
+// are seen.
 //
-// Deterministic; one nearest-point query a ball and one search a sample: O((m + n) log m). Throws InputError unless
-// surface.solid(), or if no ball is left.
+// Throws InputError unless surface.solid(), or if no ball is left. The result is deterministic. Takes O((m + n) log m):
+// one nearest-point query for each ball and one search for each sample.
 ImportedAxis import_axis(const Surface& surface, const MedialMesh& mesh, SurfaceSampling sampling,
                          const Progress& progress = {});
 

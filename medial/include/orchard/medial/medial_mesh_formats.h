@@ -4,22 +4,24 @@
 
 #include "orchard/medial/medial_mesh.h"
 
+// Writes medial meshes in formats that other programs read.
 namespace orchard {
 
-// The same cells with flags by what they are, as MATFP counts features: an edge between balls of radius 0 is external
-// (2), on a sharp edge of the surface; one where sheets meet, with other than one or two triangles, internal (1).
+// Returns the same cells with flags by their kind, as MATFP counts features. An edge between balls of radius 0 lies on
+// a sharp edge of the surface and is external (2). An edge where sheets meet, with a number of triangles other than one
+// or two, is internal (1).
 FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh);
 
-// PLY as text: vertices with x, y, z and radius, the edges (vertex1, vertex2), and the triangles with their sheet
-// (medial_structure()). Numbers are the shortest that read back the same.
+// Returns a text PLY file: vertices with x, y, z and radius, edges (vertex1, vertex2), and triangles with the number of
+// their sheet (medial_structure()). Numbers have the fewest digits that read back as the same value.
 std::string to_ply(const MedialMesh& mesh);
 
-// Wavefront OBJ: a group for each sheet's triangles, and one, `wires`, of lines for the edges without triangles. Radii
-// are lost.
+// Returns a Wavefront OBJ file: a group for the triangles of each sheet, and a group `wires` of lines for the edges
+// without triangles. The file does not contain the radii.
 std::string to_obj(const MedialMesh& mesh);
 
-// GraphML of all edges, those of triangles included: nodes have x, y, z and radius, edges their length and the kind of
-// the part that they are in (structure.h). Triangles have no place in it.
+// Returns a GraphML file of all edges, those of triangles included. Nodes have x, y, z and radius; edges have their
+// length and the kind of the part that contains them (structure.h). The file does not contain triangles.
 std::string to_graphml(const MedialMesh& mesh);
 
 }  // namespace orchard

@@ -4,32 +4,38 @@
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/medial_mesh.h"
 
+// Quality measures of published papers on medial axes, by the definitions of these papers.
 namespace orchard {
 
+// The options of paper_measures().
 struct PaperOptions {
-  Index samples = 10'000;          // of the surface, and of the boundary of the reconstruction
-  double dilation = 0.02;          // of the longest side of the solid's box
-  Index structure_cells = 20'000;  // seam and junction vertices at most that are looked at, evenly chosen
+  Index samples = 10'000;  // Samples of the surface, and of the boundary of the reconstruction.
+  double dilation = 0.02;  // The growth of the radii, over the longest side of the solid's box.
+  // The maximum number of seam and junction vertices that are examined; they are chosen evenly.
+  Index structure_cells = 20'000;
   std::uint64_t seed = 1;
 };
 
-// What papers on medial axes print, by their own definitions, so that their numbers can be recomputed. Sampled: what
-// they find is no bound, and grows or falls with the samples; medial_quality() has bounds.
-// docs/reference/medial-measures.md has the sources. NaN where there is nothing to measure.
+// The measures that papers on medial axes report, by their own definitions, so that their numbers can be recomputed.
+// They are sampled values and no bounds, and change with the samples; medial_quality() returns bounds.
+// docs/reference/medial-measures.md lists the sources. A value is NaN if there is nothing to measure.
 struct PaperMeasures {
-  // Point2Skeleton (Lin et al. 2021): of samples of the surface and of the reconstruction's boundary, each to its
-  // nearest one of the other set. Over the diagonal of the box.
-  double chamfer = 0;            // the sum of the two mean distances
-  double sampled_hausdorff = 0;  // the largest distance
-  // Coverage Axis (Dou et al. 2022): of the balls alone, without what is between them.
-  double covered = 0;  // share of the surface's samples that lie in balls, whose radii are larger by the dilation
-  double dilation_needed = 0;  // the least that covers all samples, over the longest side; 0: none is needed
-  // MATStruct (Wang et al. 2025): of the balls on seams and at junctions, the share that touch the surface at fewer
-  // places than such balls do: three on a seam, four where three or more seams meet.
+  // Point2Skeleton (Lin et al. 2021): distances from samples of the surface and of the reconstruction's boundary, each
+  // to the nearest sample of the other set, over the diagonal of the box. The sum of the two mean distances.
+  double chamfer = 0;
+  double sampled_hausdorff = 0;  // The largest of these distances.
+  // Coverage Axis (Dou et al. 2022), which uses the balls alone, without the cones and slabs between them. The share of
+  // the surface's samples that lie in balls whose radii are enlarged by the dilation.
+  double covered = 0;
+  // The smallest dilation that covers all samples, over the longest side; 0 if none is needed.
+  double dilation_needed = 0;
+  // MATStruct (Wang et al. 2025): the share of the balls on seams and at junctions that touch the surface at fewer
+  // places than expected. The expected number is three on a seam and four where three or more seams meet.
   double wrong_structure = 0;
-  Index structure_balls = 0;  // that these are
+  Index structure_balls = 0;  // The number of balls that this share refers to.
 };
-// Deterministic for a seed; parallel. Throws InputError unless surface.solid() and validate(mesh) passes.
+// Computes the measures of a medial mesh for a solid. Throws InputError unless surface.solid() and validate(mesh)
+// passes. The result is deterministic for a seed; the work is parallel.
 PaperMeasures paper_measures(const Surface& surface, const MedialMesh& mesh, const PaperOptions& options = {});
 
 }  // namespace orchard

@@ -4,30 +4,34 @@
 
 #include "orchard/medial/axis.h"
 
+// Removes the spurs of a medial axis that noise on the surface causes.
 namespace orchard {
 
-// What is cut off a medial axis. Noise of the surface grows spurs on the axis; both rules remove them.
+// The options of prune(). Both rules remove spurs. The defaults remove nothing.
 struct PruneOptions {
-  // Radians in [0, pi]: cells whose forming points are seen at less than this from their middle (the separation angle
-  // lambda of Foskey, Lin, Manocha 2003; twice the object angle). 0 prunes nothing.
+  // The separation angle in radians, in [0, pi]. Cells whose forming points are seen from the middle of the cell at a
+  // smaller angle are removed (the angle lambda of Foskey, Lin, Manocha 2003; twice the object angle). Larger values
+  // remove more.
   double angle = 0;
-  // At least 1: vertices whose ball, enlarged so many times, lies in another vertex's enlarged ball (the scale axis of
-  // Giesen, Miklos, Pauly, Wormser 2009). 1 prunes nothing.
+  // The scale factor, at least 1. Vertices whose ball, enlarged by this factor, lies in another vertex's enlarged ball
+  // are removed (the scale axis of Giesen, Miklos, Pauly, Wormser 2009). Larger values remove more.
   double scale = 1;
 };
 
-// Removes faces from their free edges, and edges from their free ends, the smallest angles first: elementary
-// collapses, so that whatever the options the result has the topology of `axis` (as Sud, Foskey, Manocha 2005). A cell
-// that is to go but has nothing free stays. O(n log n). Throws InputError for options out of range.
+// Removes faces from their free edges and edges from their free ends, the smallest angles first. All removals are
+// elementary collapses, so the result has the topology of `axis` for all options (as in Sud, Foskey, Manocha 2005). A
+// cell that the options select but that has no free side stays. Throws InputError if an option is out of range. O(n log
+// n).
 MedialAxis prune(const MedialAxis& axis, const PruneOptions& options);
 
-// The angle at which the two points of a face (or wall) are seen from its middle, in radians; at most that between the
-// surface's normals there, and at most that of the face's widest vertex, so that faces that slivers of the point set
-// put next to the surface do not pass for places between two walls. An axis without `turns` and `angles` is judged by
-// the positions alone.
+// Returns the angle in radians at which the two points of a face or wall are seen from its middle. It is limited to the
+// angle between the surface normals at the points, and to the angle of the face's widest vertex: slivers of the point
+// set put faces next to the surface, and without the limit these would look like places between two walls. If the axis
+// has no `turns` and no `angles`, only the positions are used.
 double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points);
 
-// axis.angles; for an axis without them, the widest such angle between two forming points of each vertex, seen from it.
+// Returns axis.angles. For an axis without them, returns for each vertex the widest angle between two forming points,
+// seen from the vertex.
 std::vector<double> contact_angles(const MedialAxis& axis);
 
 }  // namespace orchard

@@ -10,133 +10,159 @@
 #include "orchard/medial/medial_mesh.h"
 #include "orchard/medial/topology.h"
 
+// Measures how well a medial mesh of any system stands for a solid. docs/reference/medial-measures.md defines each
+// measure and its perfect value. The reconstruction is the union of the balls, cones and slabs of the mesh's vertices,
+// edges and triangles. D is the diagonal of the bounding box of the surface.
 namespace orchard {
 
-// How good a medial mesh is for a solid, whichever system made it. docs/reference/medial-measures.md defines each
-// metric and says what is perfect. The reconstruction is the union of the balls, cones and slabs of its vertices, edges
-// and triangles.
-
+// The options of medial_quality(). More samples and larger searches give tighter values and take longer.
 struct QualityOptions {
-  Index surface_samples = 100'000;  // for coverage and protrusion
-  Index cells = 200'000;            // of each kind (vertices, edges, triangles) that are looked at, evenly chosen
-  Index search = 250'000;           // parts at most in which the largest dent and protrusion are searched
-  Index contact_cells = 10'000;     // vertices whose second contact is searched
-  double contact_angle = 0.5235987755982988;  // radians, 30 degrees: half the opening of the first contact's cone
-  double economy_error = 0.01;                // of the diagonal
+  Index surface_samples = 100'000;  // Samples of the surface, for coverage and protrusion.
+  Index cells = 200'000;            // The maximum number of cells of each kind that are measured, evenly chosen.
+  // The maximum number of parts in which the largest dent and the largest protrusion are searched.
+  Index search = 250'000;
+  Index contact_cells = 10'000;  // Vertices whose second contact is searched.
+  // The second contact of a ball is the nearest surface point that is seen from its centre at this angle or more from
+  // the nearest one; in radians, 30 degrees by default.
+  double contact_angle = 0.5235987755982988;
+  double economy_error = 0.01;  // The error that the greedy cover of `economy` may have, over D.
   Index economy_candidates = 20'000, economy_samples = 20'000;
-  Index worst_places = 5;      // of each kind that are named
-  double places_apart = 0.05;  // of the diagonal: nearer ones of a kind are one place
+  Index worst_places = 5;      // The number of worst places reported of each kind.
+  double places_apart = 0.05;  // Places of a kind that are nearer than this, over D, count as one.
   std::uint64_t seed = 1;
 };
 
+// The largest and the mean value of a measure.
 struct Spread {
   double max = 0, mean = 0;
 };
 
+// How many balls of the mesh a greedy cover of the surface needs. A ball is admissible if it protrudes by at most
+// QualityOptions::economy_error.
 struct Economy {
-  Index spheres = 0;     // that a greedy cover needs
-  double uncovered = 0;  // fraction of the samples that no admissible ball reaches
+  Index spheres = 0;     // The number of balls of the cover.
+  double uncovered = 0;  // The fraction of the samples that no admissible ball reaches.
 };
 
-// What a medial mesh falls into where it is joined by less than edges.
+// The pieces of a medial mesh: parts that are joined to each other by less than edges.
 struct MedialPieces {
-  Index sheets = 0;  // sets of triangles joined across edges
-  Index wires = 0;   // sets of edges without triangles, joined at vertices; a ball without edges is one, too
-  // Of both, those whose bounding box has a diagonal below their largest radius: flakes and spikes. One that is alone
-  // does not count.
+  Index sheets = 0;  // Sets of triangles joined across edges.
+  // Sets of edges without triangles that are joined at vertices. A ball without edges is such a set, too.
+  Index wires = 0;
+  // The pieces of both kinds with a bounding box whose diagonal is below the largest radius in the piece: flakes and
+  // spikes. A mesh that is a single piece has none.
   Index small = 0;
 };
-// O(n log n).
+// Counts the pieces of a medial mesh. O(n log n).
 MedialPieces medial_pieces(const MedialMesh& mesh);
-// The length of the edges that have one triangle, in mesh units: the borders of sheets, walls included. O(n log n).
+// Returns the total length, in mesh units, of the edges with exactly one triangle. These are the borders of sheets,
+// walls included. O(n log n).
 double border_length(const MedialMesh& mesh);
 
+// The measure that a worst place belongs to.
 enum class WorstKind : std::uint8_t { protrusion, coverage, dent };
 
-// Where a metric is worst. A dent is a place of the reconstruction's boundary deep in the solid, and given where it is
-// what the Hausdorff distance is largest at.
+// A place where a measure is worst. A dent is a place of the reconstruction's boundary deep inside the solid; it is
+// reported where it determines the Hausdorff distance.
 struct WorstPlace {
   WorstKind kind = WorstKind::protrusion;
-  double value = 0;                  // over D
-  Point position = Point::Zero();    // of the reconstruction, farthest outside or inside; or of the surface, uncovered
-  Vector outward = Vector::Zero();   // the surface's unit normal there
-  Sphere ball = {Point::Zero(), 0};  // of the reconstruction: that which protrudes; or the nearest one
+  double value = 0;  // The value of the measure, over D.
+  // The place of the reconstruction that is farthest outside or deepest inside, or the uncovered place of the surface.
+  Point position = Point::Zero();
+  Vector outward = Vector::Zero();   // The unit normal of the surface at this place.
+  Sphere ball = {Point::Zero(), 0};  // The ball of the reconstruction that protrudes, or the nearest one.
 };
 
+// The measures of medial_quality().
 struct MedialQuality {
-  double diagonal = 0;  // D of the mesh's bounding box, in mesh units
-  Spread hausdorff;     // two-sided distance between the surface and the reconstruction's boundary, over D
-  Spread coverage;      // distance from the surface to the reconstruction, over D; the maximum searched, 1e-5 D low
-  double coverage_upper = 0;  // proven, up to rounding: no place of the surface is farther from the reconstruction
-  // Of coverage, what is not at the borders of sheets, where what is pruned is missing. NaN if the mesh has neither
-  // edges nor triangles: then every ball is a border.
+  double diagonal = 0;  // D, in mesh units.
+  Spread hausdorff;     // Two-sided distance between the surface and the reconstruction's boundary, over D.
+  // Distance from the surface to the reconstruction, over D. The maximum is searched and is at most 1e-5 D too small.
+  Spread coverage;
+  // Proven up to rounding: no place of the surface is farther than this from the reconstruction.
+  double coverage_upper = 0;
+  // The coverage without the places at the borders of sheets, where pruning removes parts. NaN if the mesh has neither
+  // edges nor triangles, because every ball is a border then.
   Spread inner_coverage;
-  Spread protrusion;  // distance of the reconstruction outside the solid, over D
-  // Proven, up to rounding: no ball reaches farther beyond the place of the surface that is nearest to its centre. More
-  // than what protrudes where a ball closes a crevice.
+  Spread protrusion;  // Distance from places of the reconstruction outside the solid to the solid, over D.
+  // Proven up to rounding: no ball extends farther than this beyond the place of the surface that is nearest to its
+  // centre. It is larger than the protrusion where a ball closes a crevice.
   double protrusion_upper = 0;
-  double dent_upper = 0;  // proven: no place of the reconstruction's boundary is deeper in the solid
-  Spread radius_error;    // |radius - distance to the surface| of vertices, over D
-  Spread centredness;     // |distance to the second contact - radius| of vertices, over the radius; NaN without any
-  double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions; by more than 1e-9 D
-  Topology found, wanted;                                                 // of the medial mesh; of the solid
+  // Proven: no place of the reconstruction's boundary is deeper inside the solid than this.
+  double dent_upper = 0;
+  Spread radius_error;  // |radius - distance to the surface| of vertices, over D.
+  // |distance to the second contact - radius| of vertices, over the radius. NaN if no vertex has a second contact.
+  Spread centredness;
+  // The fractions of the vertices, edges and triangles that lie outside the solid by more than 1e-9 D.
+  double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;
+  Topology found, wanted;  // Of the medial mesh, and of the solid.
   Economy economy;
-  Index balls = 0;           // vertices of the medial mesh
-  double border_length = 0;  // over D
+  Index balls = 0;           // The number of vertices of the medial mesh.
+  double border_length = 0;  // border_length() over D.
   MedialPieces pieces;
-  std::vector<WorstPlace> worst;  // protrusion first, then coverage, each from the worst down; of values above 1e-6
+  // The worst places with a value above 1e-6: those of protrusion first, then those of coverage, each from the worst
+  // down.
+  std::vector<WorstPlace> worst;
 };
 
-// Deterministic for a seed; parallel. Throws InputError unless surface.solid() and validate(mesh) passes.
+// Measures a medial mesh against a solid. Throws InputError unless surface.solid() and validate(mesh) passes. The
+// result is deterministic for a seed; the work is parallel.
 MedialQuality medial_quality(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options = {},
                              const Progress& progress = {});
 
-// What is wrong with single balls of an axis: lengths over the diagonal of the surface's bounding box.
+// Errors of single balls of an axis. Lengths are over the diagonal of the surface's bounding box.
 struct BallErrors {
   std::vector<double> radius_error, protrusion;
-  std::vector<double> centredness;  // over the radius; NaN where there is no second contact or next to no radius
+  // Over the radius. NaN where there is no second contact or the radius is almost zero.
+  std::vector<double> centredness;
 };
-// By the definitions of medial_quality(), of each ball; no centredness, which takes longest, if options.contact_cells
-// is 0. Parallel. Throws InputError unless surface.solid().
+// Measures each ball by the definitions of medial_quality(). If options.contact_cells is 0, the centredness, which
+// takes longest, is not measured. Throws InputError unless surface.solid(). The work is parallel.
 BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, const QualityOptions& options = {});
 
-// The protrusion alone.
+// Returns the protrusion of each ball only.
 std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sphere> balls);
 
-// What is wrong with the reconstruction at single points of the surface, over the diagonal.
+// Errors of the reconstruction at single points of the surface, over the diagonal.
 struct SurfaceErrors {
   std::vector<double> coverage, protrusion;
 };
-// By the definitions of medial_quality(), of each point; normals: outward, unit length. Parallel. Throws InputError
-// unless surface.solid().
+// Measures the reconstruction at each point by the definitions of medial_quality(). `normals` are outward and of unit
+// length. Throws InputError unless surface.solid(). The work is parallel.
 SurfaceErrors surface_errors(const Surface& surface, const MedialMesh& mesh, std::span<const Point> points,
                              std::span<const Vector> normals);
 
-// The noise is a smooth random field: independent displacements on a lattice, interpolated in between. It does not know
-// the mesh's triangles, which are divided where they are too long for it: a solid's figure is that of the solid,
-// however fine its mesh is, and no noise crumples a mesh whose triangles are no larger than it.
+// The noise of medial_stability(). It is a smooth random field: independent displacements on a lattice, interpolated in
+// between. The field does not depend on the triangles of the mesh; triangles that are too long for the lattice are
+// divided. So the result depends on the solid and not on the fineness of its mesh, and the noise does not crumple a
+// mesh with small triangles.
 struct StabilityOptions {
-  double noise = 0.001;       // every place of the surface moves by at most this, in diagonals
-  double correlation = 0.05;  // above 0: spacing of the lattice, in diagonals; farther apart, places move on their own
-  double object_angle = 1.0472;  // radians, 60 degrees: half the angle between the contacts
+  double noise = 0.001;  // The largest displacement of any place of the surface, over the diagonal.
+  // The spacing of the lattice over the diagonal, above 0. Places that are farther apart than this move independently.
+  double correlation = 0.05;
+  // Half the angle between the contacts, in radians; 60 degrees by default. Only parts of the axis with a larger object
+  // angle are compared.
+  double object_angle = 1.0472;
   std::uint64_t seed = 1;
 };
 
-// Distances between two axes, from the vertices of each to the other, over the noise.
+// Distances between two axes, from the vertices of each one to the other, over the amplitude of the noise.
 struct MedialStability {
   double hausdorff = 0, percentile99 = 0, mean = 0;
 };
 
-// Of the medial axis of the mesh and that of the mesh with noise, both built with `options`, the other one from the
-// points of the first, which move with the mesh, those that were added to the sampling included; only what has a larger
-// object angle is compared (with what has one at most 10 degrees smaller).
-// Nothing if the noise makes the mesh no solid, or if an axis has no such part.
+// Measures how much the medial axis moves under noise. It compares the axis in `build` with the axis of the mesh with
+// noise, which is built with `options` from the same points. These points, including those that were added to the
+// sampling, move with the mesh. Only the part with an object angle above stability.object_angle is compared, with the
+// part of the other axis whose object angle is at most 10 degrees smaller.
+// Returns nullopt if the perturbed mesh is not a solid, or if one of the axes has no such part.
 std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
                                                 const MedialBuildOptions& options,
                                                 const StabilityOptions& stability = {}, const Progress& progress = {});
 
-// The radius of the largest ball that touches each vertex of the surface's mesh, of those of `mesh`'s vertices: the
-// local thickness, halved. A ball touches if it comes as near as the nearest, up to 0.001 bounding radii.
+// Returns, for each vertex of the surface's mesh, the radius of the largest ball that touches it, among the balls of
+// the vertices of `mesh`. This is half the local thickness. A ball touches a vertex if its distance is at most 0.001
+// bounding radii above that of the nearest ball.
 std::vector<double> medial_radii_at_surface(const Surface& surface, const MedialMesh& mesh);
 
 }  // namespace orchard

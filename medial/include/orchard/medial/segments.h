@@ -5,53 +5,59 @@
 
 #include "orchard/medial/axis.h"
 
+// Divides a medial axis into sheets and curves, and extracts its skeleton of lines.
 namespace orchard {
 
+// The options of medial_segments().
 struct SegmentOptions {
-  // Mesh units: a vertex with a radius up to this nearly touches the surface. Twice the spacing of the surface points
-  // is about where what they resolve ends.
+  // In mesh units: a vertex with a radius up to this counts as touching the surface. Twice the spacing of the surface
+  // points is about the limit of what they resolve.
   double touching = 0;
-  // Radians: faces whose points are seen at less than this are spurs; no sheet starts or ends at them.
+  // In radians: faces whose points are seen at a smaller angle are spurs. No sheet starts or ends at a spur.
   double angle = 1.0472;
 };
 
-// The parts of an axis between the places where it branches (Goldak, Yu, Knight, Dong 1991, as dissertation 6.2.1 sums
-// them up): sheets of faces joined across edges that only two faces share, and curves of edges without faces. A branch
-// touches the surface, or nearly: it holds a vertex that does. A trunk does not. Spurs, walls and what nearly touches
-// do not count as faces at an edge; they go to the sheet that is fewest faces away.
+// The parts of an axis between the places where it branches: sheets of faces that are joined across edges with exactly
+// two faces, and curves of edges without faces. A branch is a segment with a vertex that touches the surface or nearly
+// does; a trunk is a segment without. Spurs, walls and faces that nearly touch do not count as faces of an edge. They
+// belong to the sheet that is the fewest faces away. Source: Goldak, Yu, Knight, Dong 1991, as dissertation 6.2.1
+// summarises it.
 struct MedialSegments {
   struct Segment {
-    bool sheet = false;  // else a curve
-    bool trunk = false;  // else a branch
-    Index cells = 0;     // faces and walls of a sheet, edges of a curve
+    bool sheet = false;  // Whether the segment is a sheet; otherwise it is a curve.
+    bool trunk = false;  // Whether the segment is a trunk; otherwise it is a branch.
+    Index cells = 0;     // The number of faces and walls of a sheet, or of edges of a curve.
     double min_radius = 0, max_radius = 0;
   };
   std::vector<Segment> segments;
-  std::vector<Index> of_face, of_wall;  // segments
-  std::vector<Index> of_edge;           // in the order of (vertex, larger neighbour); kNone for edges of faces
-  std::vector<Index> of_vertex;  // the segment with most cells at it, the lower of equals; kNone for a lone vertex
+  std::vector<Index> of_face, of_wall;  // The segment of each face and wall.
+  // The segment of each edge, in the order of (vertex, larger neighbour); kNone for edges of faces.
+  std::vector<Index> of_edge;
+  // The segment with the most cells at each vertex, the lower one of equals; kNone for a vertex without neighbours.
+  std::vector<Index> of_vertex;
 };
 
-// Sheets first, in the order of their first face; O(n log n).
+// Divides an axis into segments. Sheets come first, in the order of their first face. O(n log n).
 MedialSegments medial_segments(const MedialAxis& axis, const SegmentOptions& options);
 
-// The lines of an axis: borders of sheets, junctions where three or more of them meet, and curves. Nodes are their ends
-// and where they meet or change; a closed line has a node of its own.
+// The lines of an axis: borders of sheets, junctions where three or more sheets meet, and curves. The nodes are the
+// ends of lines and the places where lines meet or change their kind. A closed line has one node of its own.
 struct SkeletonGraph {
   enum class Kind : std::uint8_t { curve, border, junction };
   struct Arc {
-    Index from = 0, to = 0;  // nodes
+    Index from = 0, to = 0;  // The nodes at the ends, as indices into `nodes`.
     Kind kind = Kind::curve;
-    std::vector<Index> vertices;  // of the axis, ends included
-    double length = 0;            // mesh units
-    double mean_radius = 0;       // over the vertices
+    std::vector<Index> vertices;  // Vertices of the axis along the line, ends included.
+    double length = 0;            // In mesh units.
+    double mean_radius = 0;       // The mean over the vertices, in mesh units.
   };
-  std::vector<Index> nodes;  // vertices of the axis, ascending
+  std::vector<Index> nodes;  // Vertices of the axis, ascending.
   std::vector<Arc> arcs;
 };
+// Returns the lines of an axis as a graph.
 SkeletonGraph skeleton_graph(const MedialAxis& axis);
 
-// GraphML with x, y, z and radius of nodes, and kind, length and mean_radius of edges.
+// Returns a GraphML file of the graph. Nodes have x, y, z and radius; edges have kind, length and mean_radius.
 std::string to_graphml(const SkeletonGraph& graph, const MedialAxis& axis);
 
 }  // namespace orchard

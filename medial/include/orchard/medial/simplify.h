@@ -8,73 +8,88 @@
 #include "orchard/medial/medial_mesh.h"
 #include "orchard/medial/quality.h"
 
+// Reduces a medial mesh to few balls whose envelope is as near to the surface as that number of balls allows. The
+// envelope is the union of the balls, cones and slabs of the mesh's vertices, edges and triangles.
 namespace orchard {
 
-// The medial mesh in as few balls as you like: its envelope, the union of the balls, cones and slabs of its vertices,
-// edges and triangles, stays as near to the surface as so many can.
-// What balls of a simplified axis may be. Free ones are those that fit best: a part too thin for so few balls is given
-// some whose centres lie outside.
+// The balls that a simplified axis may have.
 enum class SimplifiedBalls : std::uint8_t {
-  medial,  // centres in the solid, or on its surface; radii off the centre's distance to the surface by no more than
-           // the two-sided distance; and the solid's volume is aimed at
+  // Centres lie in the solid or on its surface, and radii differ from the centre's distance to the surface by at most
+  // the two-sided distance. The result aims at the volume of the solid.
+  medial,
+  // The balls that fit best. A part that is too thin for the number of balls may get balls with centres outside.
   free
 };
 
+// The options of simplify_medial_mesh().
 struct SimplifyOptions {
-  Index vertices = 0;        // at most so many; 0: as few as `error` allows, to a fiftieth
-  double error = 0;          // where vertices is 0: the two-sided distance allowed, over the diagonal, proved; above 0
-  Index samples = 10'000;    // places of the surface that balls are fitted to
-  Index check = 20'000;      // places from which the distance is measured at the end
-  Index search = 1'000'000;  // parts at most in which dents and what protrudes are searched, each time
+  // The maximum number of vertices. 0 asks for the fewest that `error` allows, found to a fiftieth.
+  Index vertices = 0;
+  // If `vertices` is 0: the largest two-sided distance that is allowed, over the diagonal, above 0. The result is
+  // proved to keep it.
+  double error = 0;
+  Index samples = 10'000;  // Places of the surface that the balls are fitted to.
+  Index check = 20'000;    // Places from which the distance is measured at the end.
+  // The maximum number of parts that each search for dents and protrusions examines.
+  Index search = 1'000'000;
   SimplifiedBalls balls = SimplifiedBalls::medial;
-  int rounds = 4;  // at most, of moving vertices from where they are spared to where the distance is largest
+  // The maximum number of rounds that move vertices from places where they are dispensable to the place of the largest
+  // distance.
+  int rounds = 4;
   std::uint64_t seed = 1;
 };
 
+// Measures of the simplified mesh.
 struct SimplifyReport {
   Index vertices_before = 0, vertices = 0;
-  // Measured on the result, over the diagonal, as medial_quality() defines them. coverage.max is a bound, proved for
-  // the whole surface, and hausdorff.max no less; what protrudes, and dents of the envelope, are searched by branch and
-  // bound where they may be more than that, dents from the centres of the balls of the mesh given, too; how deep places
-  // of the surface lie in the envelope is measured at samples. protrusion.max is what was found.
+  // Measured on the result as medial_quality() defines them, over the diagonal. coverage.max is a bound that is proved
+  // for the whole surface, and hausdorff.max is at least as large. Branch and bound searches for protrusions, and for
+  // dents of the envelope, where they may exceed that value; the search for dents also starts at the centres of the
+  // balls of the given mesh. How deep places of the surface lie in the envelope is measured at samples. protrusion.max
+  // is the largest value that was found.
   Spread hausdorff, coverage, protrusion;
-  // Proved, over the diagonal: no place of the surface is farther from the envelope, none of the envelope's boundary
-  // from the surface. At least hausdorff.max; 2 % or 1e-4 more, unless the searches did not come to their end, or a
-  // ball closes a crevice. Where options.error counts, what is less than it is not
-  // searched for, and this is no less than nearly so much.
+  // A proved bound, over the diagonal: no place of the surface is farther from the envelope, and no place of the
+  // envelope's boundary is farther from the surface. It is at least hausdorff.max, and exceeds it by at most 2 % or
+  // 1e-4 unless a search was cut short or a ball closes a crevice. If options.error is in force, values below
+  // options.error are not searched for, so this bound is then not much below options.error.
   double upper = 0;
 };
 
+// The result of simplify_medial_mesh().
 struct SimplifiedMedialMesh {
   MedialMesh mesh;
   SimplifyReport report;
 };
 
-// Contracts edges under the link condition, and so keeps the Betti numbers of `mesh`, until options.vertices are left:
-// first by quadrics of slabs, cones and borders, then by what contracting costs places of the surface; fits all balls
-// to the surface in between and at the end; then moves vertices from where they are spared to where the distance is
-// largest. One vertex alone is the largest ball in the solid. Radii may be 0, on edges. Balls are those that fit best
-// among those that options.balls allows. Where these are medial, the mesh goes down twice, by contractions that make
-// free balls and by ones that make medial ones, each time to the next half-power of 2 below options.vertices as well,
-// and the nearest result is taken: more vertices are seldom worse than fewer, and never worse than that number below.
+// Simplifies a medial mesh in these steps:
+// 1. Edges are contracted under the link condition, which keeps the Betti numbers of `mesh`, until options.vertices are
+//    left. The first contractions are chosen by quadrics of slabs, cones and borders, the later ones by the cost at
+//    places of the surface. In between and at the end, all balls are fitted to the surface, within options.balls.
+// 2. Vertices are moved from places where they are dispensable to the place of the largest distance.
+// A single vertex becomes the largest ball in the solid. Radii may be 0 on edges. If options.balls is `medial`, the
+// mesh is contracted twice, once with free and once with medial balls, each time also to the next half-power of 2 below
+// options.vertices, and the nearest result is returned. So more vertices are seldom worse than fewer, and never worse
+// than that next lower number.
 //
-// Deterministic, whatever the number of threads; parallel. O(n log n) for n vertices, and some nearest-ball queries for
-// each sample. Throws InputError unless surface.solid(), validate(mesh) passes and options are in range; if no
-// contraction leads to so few vertices, since the topology needs more: the error names the least number that was
-// reached, and that which is proved to be needed if it is less; or if no number of vertices leads to options.error: it
-// names what was reached.
+// Throws InputError
+// - unless surface.solid(), validate(mesh) passes and the options are in range;
+// - if the topology needs more vertices than options.vertices: the message names the lowest number that was reached,
+//   and the number that is proved to be needed if it is lower;
+// - if no number of vertices reaches options.error: the message names the error that was reached.
+// The result is deterministic on any number of threads; the work is parallel. Takes O(n log n) for n vertices, and
+// several nearest-ball queries for each sample.
 SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMesh& mesh,
                                           const SimplifyOptions& options, const Progress& progress = {});
 
-// The same for each of several numbers of vertices, which are descending, all from the same descents; options.vertices
-// and .error do not count. None is farther off than one of fewer vertices. Ends before the first that the topology does
-// not allow.
+// Simplifies a mesh to each of several numbers of vertices (descending) in one descent; options.vertices and
+// options.error are ignored. No result is worse than one with fewer vertices. The results end before the first number
+// that the topology does not allow.
 std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const MedialMesh& mesh,
                                                    std::span<const Index> vertices, const SimplifyOptions& options,
                                                    const Progress& progress = {});
 
-// The largest ball inside the solid that lies uphill, on the distance to the surface, from the largest balls of `mesh`.
-// Throws InputError unless surface.solid().
+// Returns the largest ball inside the solid that ascent of the distance to the surface reaches from the largest balls
+// of `mesh`. Throws InputError unless surface.solid().
 Sphere max_inscribed_ball(const Surface& surface, const MedialMesh& mesh);
 
 }  // namespace orchard

@@ -7,108 +7,125 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/surface.h"
 
-// The local thickness of a solid. docs/guide/thickness.md explains the definitions with pictures.
+// Measures the local thickness of a solid. docs/guide/thickness.md explains the definitions with pictures.
 namespace orchard {
 
+// The definition of the thickness at a place of the surface.
 enum class ThicknessDefinition : std::uint8_t {
-  ball,  // the diameter of the largest ball in the solid that touches the surface at the place
-  ray    // the way from the place along the inward normal to the surface
+  // The diameter of the largest ball in the solid that touches the surface at the place.
+  ball,
+  // The distance from the place along the inward normal to the surface.
+  ray
 };
 
+// The options of thickness_at() and local_thickness().
 struct ThicknessOptions {
   ThicknessDefinition definition = ThicknessDefinition::ball;
-  // Radians in [0, pi]. A place has a thickness where its ball touches the surface at a place that is seen from the
-  // ball's centre at least this far from the first one, so that the two face each other; of a ray, where the surface's
-  // normals at its ends are at least this far apart. Less lets balls in wedges count, which measure how near an edge
-  // is: 120 degrees by default.
+  // An angle in radians, in [0, pi]. A place has a thickness if its ball also touches the surface at a place that is
+  // seen from the ball's centre at an angle of at least this from the first one, so that the two places face each
+  // other; for a ray, the normals at its ends must differ by at least this angle. Lower values also count balls in
+  // wedges, which measure the distance to an edge. The default is 120 degrees.
   double facing = 2.0943951023931953;
-  // Radians in (0, pi / 2]. A mesh that turns by less than this around a place stands for a smooth surface: contacts
-  // that a ball sees at less than this from the place do not end it, and a ball may be up to a quarter smaller than the
-  // one that ends at a contact that faces the place, in proportion to how much the facets there turn. Edges that turn
-  // by more are edges, where balls vanish: 40 degrees by default. With next to nothing, balls are those of the mesh's
-  // own polyhedron.
+  // An angle in radians, in (0, pi / 2]. A mesh that turns by less than this around a place stands for a smooth surface
+  // there. Contacts that the ball sees at less than this angle from the place do not stop its growth. A place whose
+  // ball is smaller than the ball that ends at a contact facing the place still has a thickness if the difference is at
+  // most a quarter; the allowed difference is proportional to how much the facets turn there. Where the mesh turns by
+  // more than this angle, it has edges, at which balls vanish. The default is 40 degrees. With values near 0, the balls
+  // are those of the polyhedron itself.
   double smooth = 0.6981317007977318;
-  // Edges are divided until the surface has about as many triangles, the values at whose middles and corners are the
-  // result. Larger meshes are not made coarser.
+  // The approximate number of triangles after dividing edges. The result has values at the corners and middles of these
+  // triangles. Larger meshes are not coarsened.
   Index samples = 20'000;
-  // Parts of the search tree that are looked at for one place, at most, before what was found is taken with what is
-  // proven about it. It ends where thousands of triangles are as near to a ball as they can be, as in a fine sphere.
+  // The maximum number of parts of the search tree that are visited for one place. A search that reaches it returns the
+  // value found with its proven error. This happens if thousands of triangles are equally near to a ball, as in a fine
+  // sphere.
   Index work = 3'000;
 };
 
-// A place of a surface: where, on which triangle, and on which part of it.
+// A place of a surface: its position, its triangle, and the part of the triangle.
 struct SurfacePlace {
   Point position = Point::Zero();
   Index triangle = 0;
   Feature feature = Feature::face;
 };
 
-// The ball (or ray) that is as thick as the solid at a place. `diameter` is 0 on edges that stick out, and NaN where
-// there is no normal (of degenerate triangles) and where nothing is in front of the surface (of an open one).
+// The ball or ray that measures the thickness at a place. `diameter` is 0 on convex edges. It is NaN where there is no
+// normal (on degenerate triangles) and where there is no surface in front (on open surfaces).
 struct ThicknessAt {
-  double diameter = 0;  // mesh units
-  double error = 0;     // proven: the diameter is too large by no more than this; above 0 where work ended the search
-  // Mesh units: the diameter of the ball that ends at a contact that faces the place; NaN if it has none. It is larger
-  // than `diameter` by no more than facets cause (see ThicknessOptions::smooth).
+  double diameter = 0;  // In mesh units.
+  // A proven bound: the diameter is too large by at most this. It is above 0 if options.work ended the search.
+  double error = 0;
+  // The diameter, in mesh units, of the ball that ends at a contact that faces the place; NaN if it has none. It
+  // exceeds `diameter` only by what the facets cause (see ThicknessOptions::smooth).
   double thickness = 0;
-  Point contact = Point::Zero();   // the other end: of `thickness`, or else of `diameter`
-  double angle = 0;                // radians between both ends, as of ThicknessOptions::facing
-  Vector normal = Vector::Zero();  // outward: the ball's centre is at the place - diameter / 2 x normal
+  Point contact = Point::Zero();  // The other end: of `thickness` if it is defined, otherwise of `diameter`.
+  double angle = 0;               // The angle between both ends in radians, as in ThicknessOptions::facing.
+  // The outward normal: the centre of the ball is at the place - diameter / 2 x normal.
+  Vector normal = Vector::Zero();
 };
 
-// Of places of one's own. On faces the ball touches along the normal of the smooth surface that the mesh stands for,
-// interpolated between triangles that turn by less than options.smooth; at an edge or vertex along the pseudonormal,
-// or, where the surface is concave, along the normal of one of the triangles around if that ball is larger. Exact up to
-// rounding (about 1e-12 of the diameter) for all triangles in front of the place, whichever way they face: where the
-// surface cuts itself, a ball ends at a part that is inside the solid. About log n for each place; parallel; the same
-// for any number of threads. Throws InputError for options out of range.
+// Measures the thickness at places that the caller chooses.
+// On a face, the ball touches along the normal of the smooth surface that the mesh stands for, interpolated between
+// triangles that turn by less than options.smooth. At an edge or vertex, it touches along the pseudonormal; where the
+// surface is concave, it may touch along the normal of an adjacent triangle if that ball is larger. All triangles in
+// front of the place count, whichever way they face: where the surface cuts itself, a ball ends at a part inside the
+// solid.
+// The result is exact up to rounding (about 1e-12 of the diameter). Throws InputError if an option is out of range. The
+// work is parallel, with the same result on any number of threads. Takes about log n for each place.
 std::vector<ThicknessAt> thickness_at(const Surface& surface, std::span<const SurfacePlace> places,
                                       const ThicknessOptions& options = {}, const Progress& progress = {});
 
 // A value for each vertex or each triangle of LocalThickness::mesh.
 struct ThicknessValues {
-  std::vector<double> ball_diameter;  // ThicknessAt::diameter, also for rays
-  std::vector<double> thickness;      // ThicknessAt::thickness
-  std::vector<double> contact_angle;  // radians
-  std::vector<double> error;          // ThicknessAt::error
-  std::vector<Point> contacts;        // the other ends
+  std::vector<double> ball_diameter;  // ThicknessAt::diameter, also for rays.
+  std::vector<double> thickness;      // ThicknessAt::thickness.
+  std::vector<double> contact_angle;  // In radians.
+  std::vector<double> error;          // ThicknessAt::error.
+  std::vector<Point> contacts;        // ThicknessAt::contact.
 };
 
+// The thickness of a whole surface.
 struct LocalThickness {
-  TriangleMesh mesh;               // the surface's own, long edges divided; its vertices first, in their order
-  std::vector<Index> of_triangle;  // the surface's triangle that each triangle is a part of
-  ThicknessValues at_vertices, at_triangles;  // of triangles: at their middles
+  // The mesh of the surface with its long edges divided. The vertices of the surface come first, in their order.
+  TriangleMesh mesh;
+  std::vector<Index> of_triangle;             // The triangle of the surface that each triangle is a part of.
+  ThicknessValues at_vertices, at_triangles;  // The values of triangles are those at their middles.
 };
 
-// O(n log n). Throws InputError unless surface.solid(), and for options out of range.
+// Measures the thickness of a solid all over its surface. Throws InputError unless surface.solid(), and if an option is
+// out of range. O(n log n).
 LocalThickness local_thickness(const Surface& surface, const ThicknessOptions& options = {},
                                const Progress& progress = {});
 
 // A connected part of the surface that is thinner than a limit.
 struct ThinRegion {
-  double area = 0;                 // mesh units squared
-  double min_thickness = 0;        // mesh units
-  Point thinnest = Point::Zero();  // where
-  Box box;                         // around all of it
-  Index triangles = 0;             // of LocalThickness::mesh
+  double area = 0;                 // In squared mesh units.
+  double min_thickness = 0;        // In mesh units.
+  Point thinnest = Point::Zero();  // The place of the smallest thickness.
+  Box box;                         // The bounding box of the region.
+  Index triangles = 0;             // The number of triangles of LocalThickness::mesh in the region.
 };
 
-// The regions of triangles whose thickness is defined and below the limit, by more than rounding (1e-9 of it), joined
-// where they share a corner, the largest first.
+// The regions of a surface that are thinner than a limit, the largest first. A region consists of triangles whose
+// thickness is defined and below the limit by more than rounding (1e-9 of it), joined where they share a corner. Areas
+// are in squared mesh units.
 struct ThinRegions {
-  double area = 0;          // of all regions
-  double defined_area = 0;  // of all triangles whose thickness is defined
-  double total_area = 0;    // of the surface
+  double area = 0;          // The area of all regions.
+  double defined_area = 0;  // The area of all triangles whose thickness is defined.
+  double total_area = 0;    // The area of the surface.
   std::vector<ThinRegion> regions;
-  std::vector<Index> of_triangle;  // the region of each triangle of the mesh; kNone: it is in none
+  // The region of each triangle of the mesh, or kNone.
+  std::vector<Index> of_triangle;
 };
+// Finds the regions that are thinner than `below` (mesh units).
 ThinRegions thin_regions(const LocalThickness& thickness, double below);
 
-// The surface's area by thickness, in bins of equal width from 0 to the largest value.
+// The area of a surface by thickness, in bins of equal width from 0 to the largest value.
 struct ThicknessHistogram {
-  double bin_width = 0;                          // mesh units
-  std::vector<double> thickness, ball_diameter;  // area in each bin
+  double bin_width = 0;                          // In mesh units.
+  std::vector<double> thickness, ball_diameter;  // The area in each bin, in squared mesh units.
 };
+// Returns the histogram of a measured surface with the given number of bins.
 ThicknessHistogram thickness_histogram(const LocalThickness& thickness, Index bins);
 
 }  // namespace orchard

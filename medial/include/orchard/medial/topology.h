@@ -4,24 +4,26 @@
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/medial_mesh.h"
 
+// Betti numbers of solids and medial meshes.
 namespace orchard {
 
-// The Betti numbers of a complex or a solid. A medial axis has those of its solid (Lieutier 2004).
+// The Betti numbers of a complex or a solid. A medial axis has the Betti numbers of its solid (Lieutier 2004).
 struct Topology {
   std::int64_t components = 0;
-  std::int64_t loops = 0;     // independent ones: one for each handle
-  std::int64_t cavities = 0;  // voids enclosed
+  std::int64_t loops = 0;     // Independent loops: one for each handle.
+  std::int64_t cavities = 0;  // Enclosed voids.
 
   std::int64_t euler_characteristic() const { return components - loops + cavities; }
   bool operator==(const Topology&) const = default;
 };
 
-// Of the solid inside a surface, from its components' orientations and Euler characteristics. Throws InputError unless
-// surface.solid().
+// Returns the Betti numbers of the solid inside a surface, from the orientations and Euler characteristics of its
+// components. Throws InputError unless surface.solid().
 Topology solid_topology(const Surface& surface);
 
-// Over the field with two elements. Collapses what can be collapsed and reduces the boundary matrix of the rest; O(n)
-// for most axes, whose rest is next to nothing. Precondition: validate(mesh) passes.
+// Returns the Betti numbers of a medial mesh over the field with two elements. The function collapses as much as
+// possible and reduces the boundary matrix of the rest. Precondition: validate(mesh) passes. Takes O(n) for most axes,
+// of which collapsing leaves almost nothing.
 Topology topology(const MedialMesh& mesh);
 
 }  // namespace orchard

@@ -11,15 +11,17 @@
 #include "orchard/runtime/execution.h"
 #include "orchard/runtime/motion.h"
 
+// The broad phase: which bodies' bounding spheres overlap, from bounds on their motion.
 namespace orchard::runtime {
 
-// Where a body's values lie in the application's arrays: small numbers; the one given back last is used again first.
+// The index of a body's values in the application's arrays. Indices are small numbers; the one that became free last is
+// reused first.
 using BodyIndex = std::uint32_t;
 inline constexpr BodyIndex kNoIndex = 0xffffffffu;
 inline constexpr BodyIndex kMaxBodies = (1u << 28) - 1;
 
-// A body, and no other: an index that is used again comes with another generation. So what still names a body that was
-// removed is refused, and never meant for its successor.
+// Identifies one body uniquely: a reused index has another generation. So the id of a removed body is refused and never
+// refers to its successor.
 struct BodyId {
   BodyIndex index = kNoIndex;
   std::uint32_t generation = 0;
@@ -27,29 +29,31 @@ struct BodyId {
 };
 inline constexpr BodyId kNoBody{};
 
-// Which pairs there are, in Box2D's terms: two bodies may be a pair if each one's mask has a bit of the other's
-// category; but two of the same group, unless it is 0, always are if it is positive, and never if it is negative.
-// Bullet's group and mask are `category` and `mask`; of Jolt's layers each gets a category. What is one body for the
-// application, and several spheres for the broad phase, gets a negative group of its own: its parts are no pairs and
-// keep no body awake.
+// Which pairs a body is in, in Box2D's terms. Two bodies may be a pair if each one's mask has a bit of the other's
+// category. Two bodies of the same group other than 0 are always a pair if the group is positive, and never if it is
+// negative.
+// Bullet's group and mask are `category` and `mask`; each of Jolt's layers becomes a category. If one body of the
+// application is several spheres of the broad phase, give it a negative group of its own: then its parts are no pairs
+// and keep no body awake.
 struct BodyFilter {
-  std::uint32_t category = 1;        // bits: what the body is
-  std::uint32_t mask = 0xffffffffu;  // bits: the categories it has pairs with
+  std::uint32_t category = 1;        // Bits: what the body is.
+  std::uint32_t mask = 0xffffffffu;  // Bits: the categories that it has pairs with.
   std::int32_t group = 0;
-  bool ignores_static = false;  // it has no pairs with static bodies
+  bool ignores_static = false;  // Whether it has no pairs with static bodies.
   friend bool operator==(const BodyFilter&, const BodyFilter&) = default;
 };
 
-// Of two bodies of which none is static, or that do not ignore these.
+// Returns whether the filters allow a pair. It assumes that neither body is static, or that no filter ignores static
+// bodies.
 constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
 }
 
 // A filter of the application: the two bodies are no pair if it returns false. It is called for bodies that may_pair()
-// allows, with a.index < b.index, whenever they are found near each other and whenever that is tested again, so it must
-// return the same value for the same bodies until another filter is set. It is called from within advance() only (of a
-// Detector: step()). What it asks of the same object is refused: see MotionSource.
+// allows, with a.index < b.index, whenever they are found near each other and whenever that is tested again. So it must
+// return the same value for the same bodies until another filter is set. Only advance() (of a Detector: step()) calls
+// it. The object refuses calls from within the filter: see MotionSource.
 using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
 struct BodyPair {
@@ -57,104 +61,111 @@ struct BodyPair {
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;  // NOLINT(modernize-use-nullptr): no 0 here
 };
 
-// Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may come up twice.
+// A callback that fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may occur
+// twice.
 // A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the body is
-// in no pair, is asked again at the next step, and is named in Advance::refused.
+// in no pair, is asked for again at the next step, and is named in Advance::refused.
 // While a source, a filter or a listener runs, the broad phase that called it refuses every change and every call of
 // advance(), and its queries have no answer: they return what they return for a body that does not exist, and
 // Advance::time_refused or BodyQueries::refused() is true. Destroying or moving the broad phase there is an error.
 using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
-// For an application that keeps all motions as values, by BodyIndex, as of the time it calls advance() with. It calls
-// advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase and
-// is longer than any index of a body that moves: static bodies have indices of the same kind, so bodies that were added
-// after them need values beyond theirs. A body without a value is refused: see Advance::refused.
+// Returns a source for an application that keeps all motions as values, by BodyIndex, as of the time that it passes to
+// advance(). The application calls advance() at every step then, which costs nothing while the broad phase sleeps.
+// `values` must outlive the broad phase and be longer than any index of a body that moves. Static bodies share these
+// indices, so a body that was added after them needs a value beyond theirs. A body without a value is refused: see
+// Advance::refused.
 MotionSource values_of(const std::vector<Motion>& values);
 
-// What an application knows of its bodies, by BodyIndex, that keeps it in floats, array by array, as of the time of
-// advance(), as above: a third of the memory of as many motions, all of which an update of all windows passes through.
-// BroadPhase::reading() takes them without a call in between. Positions are as long as there
-// are bodies: one beyond the end of `x` is refused. Each of the others is as long, or empty: all 0, and `expiry` never.
-// Floats are off by their last place. position_slack = float_slack() covers positions that are rounded to float when
-// they are put here, kept_in_float() says what M and drift are where the state itself is kept so (motion_helpers.h).
+// Motions as arrays of floats, by BodyIndex, as of the time of advance(). They need a third of the memory of Motion
+// values, which matters because an update of all windows reads all of them. BroadPhase::reading() reads them without a
+// callback. Position arrays need an element for each body; a body beyond the end of `x` is refused. Each other array
+// has the same length or is empty: all values are then 0, and `expiry` is never.
+// The last place of a float is an error. position_slack = float_slack() covers positions that are rounded to float when
+// they are stored here; kept_in_float() computes M and drift if the state itself is kept in floats (motion_helpers.h).
 struct MotionArrays {
-  std::span<const float> x{}, y{}, z{};     // positions
-  std::span<const float> vx{}, vy{}, vz{};  // velocities
+  std::span<const float> x{}, y{}, z{};     // Positions.
+  std::span<const float> vx{}, vy{}, vz{};  // Velocities.
   std::span<const float> radius{}, acceleration{}, drift{};
   std::span<const double> expiry{};
 };
 
-// A body that has not kept its bounds: `promise`, given at bound_time, does not allow what was given at `time`.
+// A body that has not kept its bounds: `bound`, given at bound_time, does not allow `given` at `time`.
 struct MotionBoundViolation {
   BodyId body;
   double bound_time, time;
   const Motion &bound, &given;
   MotionBoundExcess by;
 };
-// Called from within advance(), and within a query of BodyQueries; it calls nothing of the broad phase's.
+// Called by advance() and by queries of BodyQueries. It must not call the broad phase.
 using MotionBoundViolationListener = std::function<void(const MotionBoundViolation&)>;
 
+// The options of a BroadPhase.
 struct BroadPhaseOptions {
-  double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
-  double start = 0;         // the time of step 0
-  // Most steps between two updates of a body's window; 0 lets the broad phase choose.
+  double time_step = 0.01;  // The temporal resolution dt_d in seconds, above 0.
+  double start = 0;         // The time of step 0.
+  // The maximum number of steps between two updates of a body's window; 0 lets the broad phase choose.
   std::uint32_t window = 0;
-  // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
-  // float float_slack() in motion_helpers.h. A length; it costs what radii larger by twice as much would.
+  // The largest distance between a position that the source gives and one for which the bounds hold, a length. For
+  // positions rounded to float, use float_slack() in motion_helpers.h. It costs as much as radii that are larger by
+  // twice this value.
   double position_slack = 0;
-  // For debugging: each motion that the source gives is compared with what it promised for the same body before, and
-  // every moving body is asked for at every step that is processed, and at the last one not after the time of each
-  // advance(). So what is not of the time it is asked for shows, too, as values of a frame that are taken for those of
-  // a step. Pairs are the same as without; it costs what asking for all bodies costs, and 250 bytes for each. `broken`
-  // hears of each broken promise, once: what was given instead counts from then on. Without it they are counted.
+  // For debugging: compares each motion that the source gives with its earlier promise for the same body. Every moving
+  // body is asked for at every processed step, and at the last step that is not after the time of each advance(). So
+  // motions that are not of the time that was asked for are found, too, such as values of a frame passed as values of a
+  // step. The pairs do not change. The cost is that of asking for all bodies, and 250 bytes for each. The listener
+  // `broken` receives each broken promise once, and the new motion replaces the promise. Without a listener they are
+  // counted.
   bool validate = false;
   MotionBoundViolationListener broken{};
-  // Updates of all windows of many bodies are cut into jobs of it. The same reports with any, or none; but the source
-  // is called by several jobs at once then, each about its own bodies, and throws nothing. Steps within a budget, and
-  // `validate`, take no part.
+  // Runs updates of all windows of many bodies as jobs. Reports are the same with any executor or none. The source is
+  // then called by several jobs at once, each for its own bodies, and must not throw. Steps within a budget and
+  // `validate` do not use the executor.
   Executor executor{};
-  // Of so many bodies and more, or a quarter of them where enough pairs are near. Reports are the same with any; fewer
-  // than some thousand are not worth waking a thread for, and a thread that is alone takes a tenth longer with jobs
-  // where all fits into its cache.
+  // The number of bodies from which jobs are used; a quarter of it suffices if enough pairs are near. Reports do not
+  // depend on it. For less than some thousand bodies, waking a thread costs more than it saves, and a single thread
+  // takes a tenth longer with jobs if everything fits into its cache.
   std::size_t min_bodies_for_jobs = 16384;
 };
 
-// Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
-// blur the steps.
+// The largest number of time steps between a time and 0 (348 years at a step of 0.01 seconds). Beyond it, rounding
+// would blur the steps.
 inline constexpr double kMaxSteps = 0x1p40;
 
-// time_step is from 1e-20 to 1e20, position_slack from 0 to kMaxNumber, and start is a time: not NaN, not infinite,
-// within kMaxSteps time steps. A BroadPhase with other options refuses all bodies and all times.
+// Returns whether time_step is in 1e-20..1e20, position_slack in 0..kMaxNumber, and start finite and within kMaxSteps
+// steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
-// A unit of a Budget's work is a motion that is asked for (8.2). A call asks for at least one of them. A pair's test
-// takes two and is not split, so a step may ask for one more than the budget allows. The clock is read once per
-// kWorkPerClock units.
+// The number of units of work between two readings of the clock. A unit of a Budget's work is a motion that is asked
+// for (8.2). A call asks for at least one. A pair's test takes two and is not split, so a step may ask for one more
+// than the budget allows.
 inline constexpr std::uint64_t kWorkPerClock = 64;
 inline constexpr std::uint64_t kWholeStep = std::numeric_limits<std::uint64_t>::max();
 
 inline constexpr unsigned kNoClass = 256;
 
+// The result of advance().
 struct Advance {
-  double time;                      // of the step that the pairs belong to; without pairs: nothing touches at any step
-                                    // before this one, and there is no need to call again earlier
-  std::span<const BodyPair> pairs;  // in ascending order; valid until the next call of any other member
-  // Interrupted: pairs with a body of this importance class or a higher one may be missing. kNoClass: none is.
+  // The time of the step that the pairs belong to. Without pairs, nothing touches at any step before this time, and
+  // earlier calls are unnecessary.
+  double time;
+  std::span<const BodyPair> pairs;  // In ascending order; valid until the next call of any other member.
+  // If the step was interrupted, pairs with a body of this importance class or a higher one may be missing. kNoClass:
+  // no pair is missing.
   unsigned incomplete_from = kNoClass;
-  std::size_t left_over = 0;  // bodies and pairs that could not be asked for within the budget; 0: nothing is missing
-  // Bodies whose motions were not valid at one of the steps that this call processed: they were in no pair there. In
-  // ascending order; valid as long as the pairs.
+  std::size_t left_over = 0;  // Bodies and pairs that the budget left untested; 0: nothing is missing.
+  // Bodies whose motions were not valid at a step that this call processed; they were in no pair there. In ascending
+  // order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
-  // Nothing was done: t_now is NaN, infinite or too far away (kMaxSteps), or the call came from a callback.
-  bool time_refused = false;
-  std::uint64_t work = 0;  // of the last step processed within a budget, in its units
+  bool time_refused = false;  // Nothing was done: t_now is not finite or beyond kMaxSteps, or a callback called.
+  std::uint64_t work = 0;     // Units of the last step that was processed within a budget.
 };
 
-// What the broad phase already knows of a step to come (8.2: the load, predicted).
+// What the broad phase already knows of a future step (8.2: predicted load).
 struct StepsAhead {
-  std::size_t updates = 0;   // bodies to be updated: a motion each
-  std::size_t meetings = 0;  // pairs whose bounds can touch from that step on: two motions each
-  std::size_t overlaps = 0;  // pairs that overlapped at the last step: they may do so still
+  std::size_t updates = 0;   // Bodies that will be updated: one motion each.
+  std::size_t meetings = 0;  // Pairs whose bounds can touch from that step on: two motions each.
+  std::size_t overlaps = 0;  // Pairs that overlapped at the last step, which may still overlap.
 };
 
 class BroadPhase;
@@ -167,94 +178,98 @@ using MakeMethod =
 BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
 }  // namespace detail
 
-// Tells which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
+// Finds which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
 // (dissertation, chapter 4).
 //
-// Time passes in steps of dt_d = options.time_step; step k is at start + k dt_d. At each step the pairs reported are
+// Time passes in steps of dt_d = options.time_step; step k is at start + k dt_d. At each step the reported pairs are
 // *exactly* those with spheres_touch() for the motions of that step, provided that the motions have kept their bounds
-// since they were asked for (or cancel() was called). Hence: an overlap that lasts for dt_d or longer contains a step,
-// and is reported at the first one, so less than dt_d after it begins. A shorter one may fall between two steps. Two
-// static bodies are never a pair, nor are two that the filters exclude: such a pair is not made, and costs nothing but
-// finding once per window update that the two are near.
+// since they were asked for (or cancel() was called). So an overlap that lasts for dt_d or longer contains a step, and
+// is reported at the first one, less than dt_d after it begins. A shorter one may fall between two steps. Two static
+// bodies are never a pair, nor are two that the filters exclude; an excluded pair costs only the discovery, once per
+// window update, that the two are near.
 //
-// A bound that expires at a step's time still holds at this step. Where most bounds expire together and advance() is
-// called when the new ones can be given already, half of the work is done at the step before the one that needs it.
+// A bound that expires at a step's time still holds at this step. If most bounds expire together and advance() is
+// called when the new ones can already be given, half of the work is done at the step before the one that needs it.
 //
-// Call advance(t_now) once per frame, or more often, or when the time it returned has come, never with a smaller time:
+// Call advance(t_now) once per frame, or more often, or at the time that it returned, with times that do not decrease:
 //     for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) ..     // see Fig. 4.23
 // While pairs overlap, each step reports them.
 //
-// Deterministic: same calls, same motions, same reports in the same order, on every machine, whatever a budget
-// cut short in *work* leaves out. Not thread-safe.
+// The broad phase is deterministic: the same calls and motions give the same reports in the same order on every
+// machine, also for steps that a budget in *work* cut short. It is not thread-safe.
 //
-// Throws only std::bad_alloc, and what the source throws. Where a change of bodies throws, nothing has changed. Where
-// advance() throws, what it was about is lost: valid() is false from then on, there are no bodies, and all is refused.
+// Throws only std::bad_alloc, and what the source throws. If a change of bodies throws, nothing has changed. If
+// advance() throws, its result is lost: valid() is then false, there are no bodies, and all calls are refused.
 class BroadPhase {
  public:
-  // Keeps an event for each near pair, at the first step at which its two bounds can touch. Without a source there can
-  // be static bodies only.
+  // Constructs a broad phase that keeps an event for each near pair, at the first step at which the bounds of the two
+  // can touch. Without a source there can be only static bodies.
   explicit BroadPhase(MotionSource source, const BroadPhaseOptions& options = {});
-  // The same with motions in arrays. `arrays` outlives the broad phase; its spans may become others between calls.
+  // Does the same with motions in arrays. `arrays` must outlive the broad phase; its spans may change between calls.
   static BroadPhase reading(const MotionArrays& arrays, const BroadPhaseOptions& options = {});
   BroadPhase(BroadPhase&&) noexcept;
   BroadPhase& operator=(BroadPhase&&) noexcept;
   ~BroadPhase();
 
-  // What changes between two calls of advance() takes part from the first step after the time of the last report.
-  // importance: 0 is the highest class. kNoBody if there are kMaxBodies already, or no source.
+  // Adds a moving body. `importance` is its class; 0 is the highest. Returns kNoBody if there are kMaxBodies bodies or
+  // no source. Changes between two calls of advance() take part from the first step after the time of the last report.
   BodyId add(std::uint8_t importance = 0, const BodyFilter& filter = {});
-  // Never asked for again. Takes the position and the radius; kNoBody if the motion is not valid, too.
+  // Adds a body that does not move. Only the position and the radius of `place` count, and the body is never asked for.
+  // Returns kNoBody also if the motion is not valid.
   BodyId add_static(const Motion& place, std::uint8_t importance = 0, const BodyFilter& filter = {});
-  // The following change nothing and return false if there is no such body (any more).
+  // Removes a body. This function and the following ones change nothing and return false if there is no such body.
   bool remove(BodyId body);
-  // 4.4: the bounds last given for the body no longer hold from now on; they are asked for again at the next step.
+  // Cancels the last bounds of the body; they are asked for again at the next step (4.4).
   bool cancel(BodyId body);
-  bool teleport(BodyId body) { return cancel(body); }         // the source gives the new place from now on
-  bool move_static(BodyId body, const Motion& place);         // false, too, if it is not static or the motion not valid
-  bool set_importance(BodyId body, std::uint8_t importance);  // from the next step
-  bool set_filter(BodyId body, const BodyFilter& filter);  // from the next step; costs an update of the body's window
+  bool teleport(BodyId body) { return cancel(body); }  // The source gives the new place from now on.
+  // Returns false also if the body is not static or the motion not valid.
+  bool move_static(BodyId body, const Motion& place);
+  bool set_importance(BodyId body, std::uint8_t importance);  // Takes effect from the next step.
+  // Takes effect from the next step; costs an update of the body's window.
+  bool set_filter(BodyId body, const BodyFilter& filter);
 
-  BodyFilter filter_of(BodyId body) const noexcept;  // that of no body: BodyFilter{}
-  // None: all pairs that may_pair() allows. From the next step; costs an update of each body's window.
+  BodyFilter filter_of(BodyId body) const noexcept;  // Returns BodyFilter{} if there is no such body.
+  // Sets the filter of pairs; an empty function allows all pairs that may_pair() allows. It takes effect from the next
+  // step and costs an update of each body's window.
   void set_pair_filter(PairFilter filter);
 
-  BodyId id_of(BodyIndex index) const noexcept;  // of the body that has the index now; kNoBody: none
+  BodyId id_of(BodyIndex index) const noexcept;  // Returns the body with this index now, or kNoBody.
   bool contains(BodyId body) const noexcept { return body != kNoBody && id_of(body.index) == body; }
 
-  // Processes the steps up to t_now that may have something, and stops at the first one that has. A long time ahead
-  // takes a long time: a body is updated every 254 steps at least.
+  // Processes the steps up to t_now that may have a result, and stops at the first one that has. A long interval takes
+  // long, because each body is updated at least every 254 steps.
   Advance advance(double t_now) {
     if (!sleeps_until(t_now)) return process(t_now, nullptr, 0);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
-  // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
-  // over is resumed at the next step. Any budget gets to every body and pair of a class in time, unless a more
-  // important class takes it all. Each pair reported was tested at this step.
-  // `replay`, if not 0, replays what a clock has cut short: the step ends where that of another run did, in place of
-  // budget.time. It is that run's Advance::work if the step was interrupted, else kWholeStep.
+  // Does the same within a budget per step. The bodies and pairs of the more important classes come first; what is left
+  // over continues at the next step. Any budget reaches every body and pair of a class eventually, unless a more
+  // important class uses all of it. Each reported pair was tested at this step.
+  // `replay`, if not 0, repeats a step that a clock cut short: the step ends where that of another run ended, instead
+  // of at budget.time. It is the Advance::work of that run if the step was interrupted, otherwise kWholeStep.
   Advance advance(double t_now, const Budget& budget, std::uint64_t replay = 0) {
     if (!sleeps_until(t_now)) return process(t_now, &budget, replay);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
 
-  // Leaves out the steps before the last one that is not after t, which becomes the next one that is processed: for an
-  // application that was paused. Costs an update of every body's window at that step, however long the pause. Does
-  // nothing, and returns 0, if nothing is due in between; else returns how many steps are left out.
+  // Skips the steps before the last one that is not after t, which is then processed next; use it after a pause. Costs
+  // an update of every body's window at that step, however long the pause. Returns the number of skipped steps; returns
+  // 0 and does nothing if nothing is due in between.
   std::uint64_t skip_to(double t);
 
-  // steps[i] becomes what is due at the i-th step after `time`, up to which steps have been processed. What has been
-  // cancelled since is not in it, what has become void is: an estimate. Returns how many are known, at most 254; 0 for
-  // other methods than the default one. O(what is due).
+  // Predicts the load: steps[i] becomes what is due at the i-th step after `time`, up to which steps have been
+  // processed. It is an estimate: it does not contain what was cancelled since, but contains what became obsolete.
+  // Returns how many steps are known, at most 254; 0 for algorithms other than the default one. O(what is due).
   std::size_t predict_load(double time, std::span<StepsAhead> steps) const noexcept;
 
-  bool valid() const noexcept { return max_time_ >= 0; }    // the options are, and no step has thrown
-  double next_time() const noexcept { return next_time_; }  // nothing happens before
-  std::size_t size() const noexcept;                        // bodies
-  std::size_t memory_bytes() const noexcept;                // held on the heap
-  std::uint64_t motions_asked() const noexcept;             // of the source, so far
-  std::uint64_t motion_bound_violations() const noexcept;   // found by BroadPhaseOptions::validate, so far
+  bool valid() const noexcept { return max_time_ >= 0; }    // The options are valid, and no step has thrown.
+  double next_time() const noexcept { return next_time_; }  // Nothing happens before this time.
+  std::size_t size() const noexcept;                        // The number of bodies.
+  std::size_t memory_bytes() const noexcept;                // On the heap.
+  std::uint64_t motions_asked() const noexcept;             // Motions that the source has given so far.
+  std::uint64_t motion_bound_violations() const noexcept;   // Found by BroadPhaseOptions::validate so far.
 
  private:
   struct State;
@@ -275,10 +290,10 @@ class BroadPhase {
   void note_next_step();
 
   std::unique_ptr<State> state_;
-  double next_time_ = 0;  // of the next step with anything to do
-  double wake_time_ = 0;  // the same, a rounding error earlier
-  double max_time_ = -1;  // in size; below 0: no time is accepted
-  double seen_time_ = 0;  // up to when everything has been reported
+  double next_time_ = 0;
+  double wake_time_ = 0;  // next_time_ less a rounding error.
+  double max_time_ = -1;  // The largest accepted |time|; below 0: no time is accepted.
+  double seen_time_ = 0;  // The time up to which everything has been reported.
 };
 
 }  // namespace orchard::runtime

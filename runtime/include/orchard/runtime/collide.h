@@ -11,50 +11,50 @@
 #include "orchard/runtime/pair_front.h"
 #include "orchard/runtime/shape_query.h"
 
-// A whole question in one call. What NarrowPhase says about the question answered, threads, determinism and memory
-// holds here.
-namespace orchard::runtime {
-
-// How a budget is spent.
-enum class Order : std::uint8_t {
-  exact_first,    // straight to the triangles: the fastest way to "yes" or "no"; bounds are those of the roots
-  level_by_level  // all levels of spheres, then the triangles: bounds on the separation as good as the budget allows
-};
-
-// Answers a pair within a budget. What a budget ends can be gone on with: pair.refine_exactly(), or refine() for level
-// by level. The same budget of tests gives the same verdict; Verdict::work of a timed call, given as `work`,
-// repeats it.
-Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget = {},
-                Order order = Order::exact_first) noexcept;
-
-// Many pairs of bodies, cheaply: a TreePair is a few words and is made in some 50 ns; what a query needs while it runs
-// is in a Workspace, one per thread, which all pairs share.
+// Answers whole questions about pairs of bodies in one call. The question, threads, determinism, memory and rounding
+// are those of NarrowPhase. Many pairs share the memory of a query: a TreePair is a few words and takes about 50 ns to
+// construct, and a Workspace, one per thread, contains what a query needs while it runs.
 //
 //   PreparedTree body(tree), ground(other);          // once per tree
 //   Workspace workspace;                             // once per thread
 //   TreePair pair(body, ground);                     // as many as there are
 //   Verdict v = collide(workspace, pair, pose_a, pose_b);
 //
-// What NarrowPhase says about the question answered, poses, determinism and rounding holds here. Nothing here throws,
-// and nothing allocates once a workspace has seen trees as deep as those of a pair.
+// No function here throws. None allocates memory once a workspace has been used for trees as deep as those of a pair.
+namespace orchard::runtime {
 
-// Two bodies that may be asked about, and, for collide_coherently(), what the last answer said. Free to copy. The
-// prepared trees outlive it.
+// How a budget is spent.
+enum class Order : std::uint8_t {
+  // Straight to the triangles: the fastest way to "yes" or "no"; bounds are those of the roots.
+  exact_first,
+  // All levels of spheres, then the triangles: bounds on the separation as good as the budget allows.
+  level_by_level
+};
+
+// Answers a pair within a budget. To continue after the budget ended, call pair.refine_exactly(), or refine() for level
+// by level. The same budget of work gives the same verdict; the Verdict::work of a timed call, passed as `work`,
+// repeats it.
+Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget = {},
+                Order order = Order::exact_first) noexcept;
+
+// Two bodies and, for collide_coherently(), the result of the last answer. It may be copied freely. The prepared trees
+// must outlive it.
 class TreePair {
  public:
-  TreePair() = default;  // of nothing: not to be asked about
+  TreePair() = default;  // Without bodies; no query may use it.
   TreePair(const PreparedTree& a, const PreparedTree& b) noexcept : a_(&a), b_(&b) {}
 
   const PreparedTree& a() const noexcept { return *a_; }
   const PreparedTree& b() const noexcept { return *b_; }
-  // From now on collide_coherently() begins where it ended before, and keeps in `front` where that is: for pairs that
-  // stay close. Null: no more. The front outlives the pair, its copies share it, and only one of them is asked at a
-  // time.
+  // Gives the pair a front: each call of collide_coherently() then starts where the last one ended, which `front`
+  // stores. Use it for pairs that stay close; null removes the front. The front must outlive the pair. Copies of the
+  // pair share it, and only one of them may be queried at a time.
   void use(PairFront* front) noexcept {
     front_ = front;
     if (front != nullptr) front->clear();
   }
-  void forget() noexcept {  // as if never asked before
+  // Discards the results of earlier answers.
+  void forget() noexcept {
     memory_ = {};
     if (front_ != nullptr) front_->clear();
   }
@@ -62,18 +62,19 @@ class TreePair {
  private:
   friend struct Coherence;
   static constexpr std::size_t kWitnesses = 2;
-  struct Witness {  // triangles that met: ball slabs of leaves of both trees, and which of these
+  // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
+  struct Witness {
     std::uint32_t a, b;
     std::uint8_t lane_a, lane_b;
   };
   struct Memory {
-    Pose relative;                              // of b in a's frame, when `clearance` was certified
-    double clearance = 0;                       // in a's units; 0: none
-    std::array<Witness, kWitnesses> witnesses;  // in the answers since the last "no", the last ones first
+    Pose relative;                              // The pose of b in a's frame when `clearance` was certified.
+    double clearance = 0;                       // In a's units; 0: none.
+    std::array<Witness, kWitnesses> witnesses;  // Of the answers since the last "no", the last ones first.
     std::uint8_t witness_count = 0;
-    std::uint8_t wait = 0;     // searches until the roots are asked first
-    std::uint8_t in_vain = 0;  // times that the roots were asked and told nothing, in a row
-    bool close = false;        // the roots did not decide the last search
+    std::uint8_t wait = 0;     // Searches until the roots are tested first.
+    std::uint8_t in_vain = 0;  // Successive tests of the roots that decided nothing.
+    bool close = false;        // The roots did not decide the last search.
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;
@@ -82,11 +83,13 @@ class TreePair {
 };
 static_assert(sizeof(TreePair) <= 256);
 
-// What queries work with: belongs to one thread at a time. After collide() its `narrow` is the query that was answered
-// or interrupted, to be looked at or refined further, until the next call: as long as the pair's prepared trees exist.
+// The memory of queries; it belongs to one thread at a time. After collide(), `narrow` is the query that was answered
+// or interrupted. It can be examined or refined further until the next call, as long as the pair's prepared trees
+// exist.
 class Workspace {
  public:
-  // `room`: meeting pairs of spheres per level, 24 bytes each, for queries that go level by level; see NarrowPhase.
+  // `room` is the number of meeting pairs of spheres per level, 24 bytes each, for queries that go level by level; see
+  // NarrowPhase.
   explicit Workspace(std::size_t room = NarrowPhase::kDefaultRoom) noexcept;
   ~Workspace();
   Workspace(Workspace&&) noexcept;
@@ -95,55 +98,53 @@ class Workspace {
   NarrowPhase narrow;
   DistanceQuery distance;
 
-  struct Scratch;               // of contacts() and time_of_impact(), some 100 KB
-  Scratch* scratch() noexcept;  // made when first asked for; null: there is no memory
+  struct Scratch;               // Memory of contacts() and time_of_impact(), about 100 KB.
+  Scratch* scratch() noexcept;  // Allocated at the first call; null if there is no memory.
 
  private:
   std::unique_ptr<Scratch> scratch_;
 };
 
-// As collide() for a NarrowPhase. The answer depends on nothing but trees, poses and budget.
+// Answers a pair as collide() does for a NarrowPhase. The answer depends only on trees, poses and budget.
 Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, const Budget& budget = {},
                 Order order = Order::exact_first) noexcept;
 
-// The same answer for a pair that is asked about again and again while it moves a little each time, at a fraction of
-// the cost: the triangles that met last are tried first, and a "no" holds as long as the pair has moved less, its
-// farthest point counted, than the clearance that was certified with it. With a front (TreePair::use()), what is looked
-// at besides begins where the last search ended. Yes and no are those of collide() without a
-// budget; where several triangles meet, which ones are named, and bounds and work, depend on what was asked before.
-// Where nothing has to be looked at, the workspace stays as it is.
+// Answers a pair that is queried repeatedly while it moves a little each time, at a fraction of the cost. The triangles
+// that met last are tested first, and a "no" holds as long as the pair, measured at its farthest point, has moved by
+// less than the clearance that was certified with it. With a front (TreePair::use()), the remaining search begins where
+// the last one ended.
+// "Yes" and "no" are those of collide() without a budget. If several triangles meet, which ones are named depends on
+// earlier calls, and so do bounds and work. If no search is necessary, the workspace does not change.
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
 
-// Whether the surfaces are closer to each other than `margin` (in world units, at least 0; at most that far, exactly),
-// at about the cost of collide(), up to twice that for margins far larger than triangles. "No" and "yes" are certain.
-// "Maybe" is the answer where rounding does not tell: within some 1e-12 of the coordinates, and for triangles with
-// nearly parallel edges within 2e-7 of these; for what NarrowPhase refuses, for a margin that is not a number or
-// negative, and where a tree has no triangles.
+// Returns whether the distance of the surfaces is at most `margin` (world units, at least 0). "No" and "yes" are
+// certain. "Maybe" is the answer if rounding does not decide: within about 1e-12 of the coordinates, and for triangles
+// with nearly parallel edges within 2e-7 of these. It is also the answer for poses that NarrowPhase refuses, for a
+// margin that is NaN or negative, and if a tree has no triangles. Costs about as much as collide(), and up to twice
+// that for margins far larger than triangles.
 Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept;
 
-// The distance between the surfaces, by DistanceQuery, and where they are nearest.
+// The distance between two surfaces by DistanceQuery, and the nearest points.
 struct Distance {
-  double lower = 0, upper = std::numeric_limits<double>::infinity();  // lower <= distance <= upper
+  double lower = 0, upper = std::numeric_limits<double>::infinity();  // lower <= distance <= upper.
   DistanceQuery::Points points;
 };
+// Computes the distance between two surfaces to the given tolerance.
 Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                   const DistanceQuery::Tolerance& tolerance = {}) noexcept;
 
-// closer_than() with witnesses: where the answer is "yes", a point of each surface, at most `margin` apart but for
-// rounding. Costs a distance query more there.
+// The result of closer_with_points().
 struct Closeness {
   Answer answer = Answer::maybe;
-  Distance distance;  // for "yes"
+  Distance distance;  // For "yes" only.
 };
+// Does the same as closer_than() and, for "yes", also returns a point of each surface, at most `margin` apart up to
+// rounding. This costs an additional distance query.
 Closeness closer_with_points(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                              double margin) noexcept;
 
-// Many questions in one call, on as many threads as the executor has. Every answer is the one that the single call
-// gives: it depends neither on the executor nor on the other questions. `workspaces`: at least one; as many jobs run as
-// there are workspaces, so give executor.concurrency of them. Spans of results are as long as those of questions.
-// Nothing here throws or allocates.
-
-// Poses as arrays of their parts, as simulations keep them: element i of each. An empty `scale` means 1.
+// Poses as arrays of their members, as simulations store them: pose i consists of element i of each array. An empty
+// `scale` means 1.
 struct PoseArrays {
   std::span<const std::array<double, 9>> rotation;
   std::span<const std::array<double, 3>> translation;
@@ -153,13 +154,19 @@ struct PoseArrays {
   Pose operator[](std::size_t i) const noexcept { return {rotation[i], translation[i], scale.empty() ? 1 : scale[i]}; }
 };
 
-// Pair i of trees with pose i of a and of b; one pair of trees is asked about at all poses.
+// Answers many questions in one call, on as many threads as the executor has: pair i with pose i of a and of b. If
+// there is one pair of trees, it is queried at all poses. Every answer is that of the single call: it depends neither
+// on the executor nor on the other questions.
+// There must be at least one workspace. As many jobs run as there are workspaces, so pass executor.concurrency of them.
+// Spans of results are as long as those of questions. Nothing throws or allocates. These rules also hold for the two
+// functions below.
 void collide(std::span<Workspace> workspaces, const Executor& executor, std::span<const TreePair> pairs,
              const PoseArrays& a, const PoseArrays& b, std::span<Verdict> verdicts, const Budget& each = {}) noexcept;
-// Distances, and closer_than() with one margin.
+// Computes many distances.
 void distance(std::span<Workspace> workspaces, const Executor& executor, std::span<const TreePair> pairs,
               const PoseArrays& a, const PoseArrays& b, std::span<Distance> distances,
               const DistanceQuery::Tolerance& tolerance = {}) noexcept;
+// Answers closer_than() for many pairs with one margin.
 void closer_than(std::span<Workspace> workspaces, const Executor& executor, std::span<const TreePair> pairs,
                  const PoseArrays& a, const PoseArrays& b, double margin, std::span<Answer> answers) noexcept;
 

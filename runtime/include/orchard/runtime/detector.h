@@ -25,30 +25,33 @@
 //   }
 namespace orchard::runtime {
 
-// A shape that parts of bodies have: any number of bodies may share it. Shapes are never removed.
+// A shape of parts of bodies. Any number of bodies may share a shape. Shapes are never removed.
 using ShapeId = std::uint32_t;
 inline constexpr ShapeId kNoShape = 0xffffffffu;
 
-// Half-spaces have indices of their own: the first one that is added has kFirstHalfSpace, the next one the next, and
-// none is used again. All other bodies have indices below kMaxBodies, which are used again once a body is removed. So
-// an array by BodyId::index holds bodies, and one by half_space_number() half-spaces.
+// The index of the half-space that is added first; further half-spaces have the following indices, and none of these is
+// reused. All other bodies have indices below kMaxBodies, which are reused after a body is removed. So an array by
+// BodyId::index can hold bodies, and an array by half_space_number() can hold half-spaces.
 inline constexpr BodyIndex kFirstHalfSpace = 0xf0000000u;
+// Returns whether a body is a half-space.
 constexpr bool is_half_space(const BodyId& body) noexcept {
   return body.index >= kFirstHalfSpace && body.index != kNoIndex;
 }
-// 0 for the half-space that was added first. Precondition: is_half_space(body).
+// Returns the number of a half-space in the order of adding, from 0. Precondition: is_half_space(body).
 constexpr std::uint32_t half_space_number(const BodyId& body) noexcept { return body.index - kFirstHalfSpace; }
 
-// A rigid part of a body: world = the body's pose after `local`. Lengths of a shape times local.scale times the body's.
+// A rigid part of a body. Its place in the world is the body's pose after `local`. Lengths of the shape are multiplied
+// by local.scale and by the scale of the body.
 struct BodyPart {
   ShapeId shape = kNoShape;
   Pose local{};
 };
 
-// What the application knows of a body at the time of a step. The promise is about the body's origin, pose.translation:
-// see Motion in motion.h, whose fields these are. The scale stays what it is until the promise expires. A state with a
-// pose and a velocity and nothing else promises that the body flies straight on for ever. DetectorOptions::watch, which
-// is on by default where a source gives the states, finds at every step what has not kept its promise.
+// What the application knows of a body at the time of a step. The bounds are a promise about the body's origin,
+// pose.translation: see Motion in motion.h, which has the same fields. The scale must not change until the promise
+// expires. A state with a pose and a velocity and nothing else promises straight motion without end.
+// DetectorOptions::watch, which is on by default if a source gives the states, finds at every step the bodies that have
+// not kept their promise.
 struct BodyState {
   Pose pose{};
   Vec3 velocity{};
@@ -56,295 +59,329 @@ struct BodyState {
   double drift = 0;
   Vec3 half_space{};
   double expiry = std::numeric_limits<double>::infinity();
-  // At most, until the promise expires, in radians per second. Worth telling of bodies whose origin is not in their
-  // middle: one of which nothing is promised (infinity) may soon have its farthest point on any side of its origin.
-  // Not negative.
+  // An upper bound on the angular speed until the promise expires, in radians per second, at least 0. Set it for bodies
+  // whose origin is not in their middle: if there is no bound (infinity), the farthest point of such a body may soon be
+  // on any side of its origin.
   double angular_speed = std::numeric_limits<double>::infinity();
 };
 
-// Fills states[i] with what is known of bodies[i] at `time`, the time of a step. It throws nothing. Called from within
-// step() only, in the thread that called this. While a source, a filter or a listener runs, the detector that called it
-// refuses every change and every call of step(), manifold() and predict_load(): they return what they return for a body
-// that does not exist, and Frame::time_refused is true. Destroying or moving the detector there is an error.
+// A callback that fills states[i] with what is known of bodies[i] at `time`, the time of a step. It must not throw.
+// step() calls it in the thread that called step().
+// While a source, a filter or a listener runs, the detector that called it refuses every change and every call of
+// step(), manifold() and predict_load(): they return what they return for a body that does not exist, and
+// Frame::time_refused is true. Destroying or moving the detector there is an error.
 using StateSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states)>;
 
-// For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with. The vector
-// outlives the detector and is longer than any index of a body that moves: static bodies have indices of the same kind,
-// so bodies that were added after them need values beyond theirs. A body without a value is in no pair: see
-// Frame::refused.
+// Returns a source for an application that keeps all states as values, by BodyIndex, as of the time that it passes to
+// step(). `values` must outlive the detector and be longer than any index of a body that moves. Static bodies share
+// these indices, so a body that was added after them needs a value beyond theirs. A body without a value is in no pair:
+// see Frame::refused.
 StateSource states_of(const std::vector<BodyState>& values);
 
+// Properties of a body.
 struct BodyOptions {
-  std::uint8_t importance = 0;  // 0 is the highest class; a pair is as important as the less important of its bodies
-  // Which pairs the body is in. Others are no pair in the broad phase already, and cost nothing. Half-spaces are
+  // The class of importance; 0 is the highest. A pair is as important as the less important of its bodies.
+  std::uint8_t importance = 0;
+  // Which pairs the body is in. The broad phase does not create other pairs, so they cost nothing. Half-spaces are
   // static.
   BodyFilter filter{};
-  // Above 0: also what happens between two steps is found, by time_of_impact() from pose to pose, those of the body and
-  // of its parts: of each part the centre straight, the rotation by the smallest angle. It is a promise that relative
-  // to whatever the body may meet no origin moves faster. Lengths per second. Where the scale changes within a step,
-  // the answer is "possible".
+  // Above 0, contacts between two steps are found, too, by time_of_impact() from pose to pose of the body and of its
+  // parts: the centre of each part moves straight, and the rotation uses the smallest angle. The value promises that no
+  // origin moves faster than this relative to any body that this body may meet, in lengths per second. If the scale
+  // changes during a step, the result is `possible`.
   double continuous_speed = 0;
-  // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new window update
-  // whenever an articulated body stretches. 0: as far as the parts reach.
+  // The distance from the origin at scale 1 within which the body always lies, whatever its parts do. It avoids a
+  // window update each time an articulated body stretches. 0 uses the reach of the present parts.
   double reach = 0;
-  // The source gives poses, and a velocity if it has one: acceleration, drift, half-space and expiry are suggested by
-  // the motion monitor. add_body() refuses it where DetectorOptions::watch is off, since a guess has to be checked.
+  // Whether the motion monitor suggests acceleration, drift, half-space and expiry. The source then gives only poses,
+  // and a velocity if it has one. add_body() refuses this option if DetectorOptions::watch is off, since a guess has to
+  // be checked.
   bool suggest = false;
 };
 
-// An observer, for debugging and visualisation: what the broad phase relies on from `time` on, until it asks for the
-// body again. The motion is of the body's origin, or where BodyState::angular_speed allows it, of its middle.
+// An observer, for debugging and visualisation. It receives the motion that the broad phase relies on from `time` until
+// it asks for the body again. The motion is that of the body's origin or, if BodyState::angular_speed allows it, of its
+// middle.
 using MotionBoundListener = std::function<void(double time, BodyIndex body, const Motion& bound)>;
 
+// The options of a Detector.
 struct DetectorOptions {
-  double time_step = 0.01;    // dt_d, see BroadPhaseOptions; > 0. Usually a frame
-  double start = 0;           // the time of step 0
-  double position_slack = 0;  // see BroadPhaseOptions
-  // Whether every moving body's state is asked for at every step and compared with what was promised (4.4). A promise
-  // that does not hold is then cancelled in time for this very step, counted, and named in Frame::broken: nothing is
-  // missed. Without it a body is only asked for when something depends on it, which costs less
-  // (docs/guide/detector.md), and contacts are missed in silence unless every promise is kept or cancel() is called.
-  // Empty: on with a state source, off where the detector keeps the states, as set_state() cancels what it changes.
+  double time_step = 0.01;    // The time between steps (dt_d), above 0, usually a frame; see BroadPhaseOptions.
+  double start = 0;           // The time of step 0.
+  double position_slack = 0;  // The error of positions; see BroadPhaseOptions.
+  // Whether each step asks for the state of every moving body and compares it with the promise (4.4). A promise that
+  // does not hold is cancelled in time for this step, counted, and named in Frame::broken, and no contact is missed.
+  // Without it, the detector asks for a body only if something depends on it, which costs less
+  // (docs/guide/detector.md); but contacts are missed silently unless every promise is kept or cancel() is called.
+  // Without a value it is on with a state source, and off if the detector keeps the states, because set_state() cancels
+  // what it changes.
   std::optional<bool> watch{};
-  // An "end" comes after so many steps in a row with a certain "no"; at least 1. What trembles at contact may use more.
+  // The number of successive steps with a certain "no" after which a contact ends, at least 1. Raise it to debounce
+  // pairs that jitter at contact.
   std::uint32_t steps_to_end = 1;
-  // Pairs of trees that may be gone on with after a first piece at once; what exceeds it is reported as possible.
+  // The maximum number of pairs of trees that may be continued at once after a first piece. Further pairs are reported
+  // as possible.
   std::size_t max_unfinished = 4096;
-  // A call of step() ends early after the step with which it has so many events or more, so that its memory does not
+  // A call of step() ends after the step with which it has at least this number of events, so that its memory does not
   // grow with the length of a pause: see Frame::steps_left. At least 1.
   std::size_t max_events = std::size_t{1} << 18;
-  // Pairs of large trees that stay close, and are expensive to search each time, get a front each (PairFront, 43 KB):
-  // so many at most, made as such pairs come near each other. 0: none.
+  // The maximum number of fronts (PairFront, 43 KB each). Pairs of large trees that stay close and are expensive to
+  // search get one when they come near each other. 0 allows none.
   std::size_t max_fronts = 64;
-  // Pairs, poses, events, and where many bodies are in pairs the broad phase's windows; the same answers with any.
-  // Sources and filters are called in the thread that calls step(), all the same.
+  // Runs pairs, poses and events in parallel, and the broad phase's windows if many bodies are in pairs. Results are
+  // the same with any executor. Sources and filters are always called in the thread that calls step().
   Executor executor{};
-  // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
+  // step() calls this whenever the broad phase receives the motion of a body. It must not throw.
   MotionBoundListener bound_given{};
 };
 
-// How far a step got that a budget in time cut short.
+// The points at which a time budget ended the stages of a step.
 struct StepCut {
-  std::uint64_t broad = kWholeStep;    // the replay of BroadPhase::advance()
-  std::uint64_t begun = kWholeStep;    // beginnings of pairs of parts, and first searches
-  std::uint64_t refined = kWholeStep;  // their work, and 1 for each piece of it
-  std::uint64_t swept = kWholeStep;    // pairs
+  std::uint64_t broad = kWholeStep;    // The replay of BroadPhase::advance().
+  std::uint64_t begun = kWholeStep;    // Started pairs of parts, and first searches.
+  std::uint64_t refined = kWholeStep;  // Their work, and 1 for each piece of it.
+  std::uint64_t swept = kWholeStep;    // Swept pairs.
   friend bool operator==(const StepCut&, const StepCut&) = default;
 };
 
-// A unit of a Budget's work is that of NarrowPhase; a motion that the broad phase asks for counts as kMotionWork,
-// beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of a limited
-// budget at most, sweeps half of what it leaves. Of a budget in time, what a step does in any case is foreseen from the
-// steps before, and set aside; where that alone takes longer, nothing keeps the step to its budget. A step exceeds
-// `work` by less than kMaxOvershoot, one pair of leaves, but for what each step does in any case: one unit of the broad
-// phase. Only a budget in counted work gives the same answers on every machine; what a clock has cut short can be
-// replayed.
+// Units of Budget::work in a Detector. A unit is that of NarrowPhase. A motion that the broad phase asks for costs
+// kMotionWork, starting a pair costs kPairWork, and a pair with a simple shape costs kSimplePairWork.
+// The broad phase gets at most half of a limited budget, and sweeps get half of what it leaves. A step exceeds `work`
+// by less than kMaxOvershoot, which is one pair of leaves, apart from what each step always does: one unit of the broad
+// phase. With a budget in time, the cost of what a step always does is predicted from earlier steps and reserved; if
+// that alone takes longer, the step exceeds its budget. Only a budget in counted work gives the same answers on every
+// machine; a step that a clock cut short can be replayed.
 inline constexpr std::uint64_t kMotionWork = 16;
 inline constexpr std::uint64_t kPairWork = 16;
 inline constexpr std::uint64_t kSimplePairWork = 64;
 inline constexpr std::uint64_t kMaxOvershoot = std::uint64_t{kLeafPairTests} * kTriangleTestCost + kBlockWidth;
 
+// The options of Detector::step().
 struct StepOptions {
-  // Not null: the step ends where that of another run did, Frame::cut, in place of the budget's time. After the same
-  // calls with the same states, the frame is that run's. A replayed call answers one step at most, and no executor took
-  // part.
+  // If not null, the step ends where that of another run ended, Frame::cut, instead of at the time budget. After the
+  // same calls with the same states, the frame equals that of the other run. A replayed call answers at most one step,
+  // and requires that no executor took part.
   const StepCut* replay = nullptr;
-  // Only the last step up to the time given to step() is answered, for after a pause. The steps before it are left out:
-  // their number is Frame::skipped, what only happened there is not reported, and no sweep of a continuous body leads
-  // across them. What touched before and touches now stays, what touches no more ends.
+  // Whether only the last step up to the given time is answered; use it after a pause. Frame::skipped counts the steps
+  // before it. Contacts that happened only there are not reported, and no sweep of a continuous body crosses them.
+  // Contacts that held before and hold now continue; contacts that hold no longer end.
   bool latest_only = false;
 };
 
+// What an event reports of a pair.
 enum class PairChange : std::uint8_t {
-  begin,     // the first certain yes
-  stay,      // touching since an earlier step: no certain no since
-  end,       // the certain no after a begin (the last one of steps_to_end), or a body was removed or teleported
-  possible,  // neither touching nor certainly apart at this step: the budget ended, or nothing more can be known
+  begin,  // The first certain "yes".
+  stay,   // The pair touches since an earlier step, without a certain "no" since.
+  end,    // A certain "no" after a begin (the last of steps_to_end), or a body was removed or teleported.
+  // The pair is neither touching nor certainly apart at this step, because the budget ended or no more can be known.
+  possible,
 };
 
-// One pair at one step. a.index < b.index, but for half-spaces, which are always b.
+// One pair at one step. a.index < b.index, except that half-spaces are always b.
 struct PairEvent {
   PairChange change = PairChange::possible;
   BodyId a, b;
-  std::uint32_t part_a = 0, part_b = 0;  // that touch, or with the least bound
-  double time = 0;                       // of the step
-  Verdict verdict;  // what is certain at this step. `stay` may have "maybe", or "no" while steps_to_end counts
-  // Of a contact between the step before and this one (continuous bodies): begins in this bracket. NaN: not such a one.
+  std::uint32_t part_a = 0, part_b = 0;  // The parts that touch, or those with the smallest bound.
+  double time = 0;                       // The time of the step.
+  // What is certain at this step. With `stay`, it may be "maybe", or "no" while steps_to_end counts.
+  Verdict verdict;
+  // The time bracket in which a contact between the previous step and this one begins (continuous bodies); otherwise
+  // NaN.
   double impact_from = std::numeric_limits<double>::quiet_NaN();
   double impact_to = std::numeric_limits<double>::quiet_NaN();
 };
 
-// What step() found. The spans are valid until the next call of a member that is not const.
+// The result of step(). The spans are valid until the next call of a member that is not const.
 struct Frame {
-  double time = 0;          // of the last step that was answered
-  double next_time = 0;     // nothing can begin or end before: no need to call earlier
-  std::uint32_t steps = 0;  // answered in this call
-  // Up to the time given: not 0 if DetectorOptions::max_events ended the call, and another one with the same time goes
-  // on.
+  double time = 0;          // The time of the last step that was answered.
+  double next_time = 0;     // Nothing can begin or end before this time; earlier calls are unnecessary.
+  std::uint32_t steps = 0;  // The steps answered in this call.
+  // The steps up to the given time that were not answered because DetectorOptions::max_events ended the call. Another
+  // call with the same time continues.
   std::uint64_t steps_left = 0;
-  std::uint64_t skipped = 0;            // steps left out: StepOptions::latest_only
-  std::span<const PairEvent> events;    // by time, then by pair
-  std::uint64_t pairs = 0;              // of bodies that may touch, whose spheres overlapped, over the steps
-  std::uint64_t certain = 0;            // of these, with a certain answer
-  StepCut cut{};                        // the last step's, if the budget was in time and there is no executor
-  double worst_bound = 0;               // the largest separation bound among the rest: how far from certain
-  std::uint64_t work = 0;               // in units of Budget::work
-  std::uint64_t motions_asked = 0;      // part of it: times kMotionWork
-  unsigned incomplete_from = kNoClass;  // the broad phase was interrupted: see Advance
+  std::uint64_t skipped = 0;          // The steps left out by StepOptions::latest_only.
+  std::span<const PairEvent> events;  // Ordered by time, then by pair.
+  std::uint64_t pairs = 0;          // Pairs of bodies that may touch, whose spheres overlapped, summed over the steps.
+  std::uint64_t certain = 0;        // The number of these with a certain answer.
+  StepCut cut{};                    // Where the last step ended, for a budget in time without an executor.
+  double worst_bound = 0;           // The largest separation bound of the pairs without a certain answer.
+  std::uint64_t work = 0;           // In units of Budget::work.
+  std::uint64_t motions_asked = 0;  // Motions asked for; each costs kMotionWork.
+  unsigned incomplete_from = kNoClass;  // Set if the broad phase was interrupted: see Advance.
   std::size_t left_over = 0;
-  // States that were not valid, or poses not rigid: such a body is in no pair at that step, or, if its promise held on,
-  // in pairs that are possible.
+  // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its
+  // promise still holds, in possible pairs.
   std::span<const BodyIndex> refused;
-  std::span<const BodyIndex> broken;  // promises that did not hold; cancelled (watch)
-  bool time_refused = false;          // see Advance: nothing was done, or step() was called from within itself
-  // There was not enough memory for what this step needs. The detector answers nothing from then on: make another one.
+  std::span<const BodyIndex> broken;  // Bodies whose promise did not hold and was cancelled (watch).
+  // Nothing was done: the time is not valid (see Advance), or step() was called from within itself.
+  bool time_refused = false;
+  // There was not enough memory for this step. The detector answers nothing after that; construct another one.
   bool out_of_memory = false;
 };
 
-// What the next steps are likely to cost, from the broad phase's own timing wheel of events (8.2).
+// The predicted cost of a future step, from the broad phase's timing wheel of events (8.2).
 struct StepLoad {
   double time = 0;
-  std::uint64_t motions = 0;  // to be asked for, at least
-  double pairs = 0;           // expected to overlap
-  double work = 0;            // expected, in units of Budget::work
+  std::uint64_t motions = 0;  // Motions that will be asked for, at least.
+  double pairs = 0;           // The expected number of overlapping pairs.
+  double work = 0;            // The expected work, in units of Budget::work.
 };
 
-// What a question about all bodies of a world has found.
+// The result of a query about all bodies of a world.
 struct WorldPoint {
   BodyId body;
   std::uint32_t part = 0;
-  double distance = 0;  // from the point asked about, 0 inside a solid; along a ray, in lengths of its direction
-  Vec3 point{};         // of the body; of a ray that begins inside a solid, its origin
-  std::uint32_t triangle = kNoTriangle;  // of trees
+  // The distance from the query point, 0 inside a solid; for a ray, in multiples of its direction's length.
+  double distance = 0;
+  // A point of the body; for a ray that begins inside a solid, the ray's origin.
+  Vec3 point{};
+  std::uint32_t triangle = kNoTriangle;  // The triangle, if the shape is a tree.
 };
 
-// Which bodies touch, at every step, within a budget, always with a bound.
+// Finds which bodies touch, at every step, within a budget, and always with a bound.
 //
-// At each step every pair of bodies whose spheres overlap, that the filters allow, is answered from
-// the poses of that step: yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; where
-// many static bodies are in reach of one, the spheres that have to overlap are its parts'. The parts of one body are
-// never a pair, nor are two static bodies. Trees are their surfaces, as for NarrowPhase; the simple shapes (sphere,
-// capsule, box, half-space) are solid.
+// Each step answers every pair of bodies that the filters allow and whose spheres overlap, from the poses of that step:
+// yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; if many static bodies are in
+// reach of a body, the spheres that have to overlap are those of its parts. The parts of one body are never a pair, nor
+// are two static bodies. Trees stand for their surfaces, as in NarrowPhase; the simple shapes (sphere, capsule, box,
+// half-space) are solid.
 //
-// Refinement (7.3): by class of importance, and within a class those first that have waited longest for a certain
-// answer. All pairs begin with what tells most of them at next to no cost: spheres, roots, what the last step found.
-// At the same time, with a share that no budget takes from them, the others go straight to their triangles, one after
-// the other, in pieces; who is not finished then gets further ones, each four times the last. Bounds of pairs that are
-// not certain are those of their spheres, or better. So under any budget every pair gets its turn.
+// Refinement (7.3) is ordered by class of importance, and within a class the pairs that have waited longest for a
+// certain answer come first. All pairs start with cheap tests that decide most of them: spheres, roots, and the result
+// of the last step. In addition, a reserved share of the budget takes the other pairs straight to their triangles, one
+// after the other, in pieces; a pair that is not finished gets further pieces, each four times as large as the last.
+// Pairs without a certain answer have the bounds of their spheres or better. So under any budget every pair is
+// processed in turn.
 //
-// Deterministic: same calls, same states, same budget in work: same frames, with any executor. A pair's answer without
-// budget does not depend on other pairs. Allocates nothing once warm: once as many bodies, pairs and kinds of pairs as
-// there are have been there before. step() throws nothing; the other members throw only std::bad_alloc, and then the
-// detector has no bodies and answers nothing any more: see Frame::out_of_memory. One object
-// belongs to one thread at a time.
+// The detector is deterministic: the same calls, states and budget in work give the same frames, with any executor.
+// Without a budget, the answer of a pair does not depend on other pairs. It allocates nothing once it has held as many
+// bodies, pairs and kinds of pairs before. step() throws nothing. The other members throw only std::bad_alloc; after
+// that the detector has no bodies and answers nothing: see Frame::out_of_memory. One object must not be used by several
+// threads at once.
 class Detector {
  public:
-  // The detector keeps the states of bodies, and moves them: see set_state().
+  // Constructs a detector that keeps the states of bodies and moves them: see set_state().
   explicit Detector(const DetectorOptions& options = {});
-  // The application knows where its bodies are, and is asked when something depends on it.
+  // Constructs a detector that asks the application for the states of bodies when something depends on them.
   explicit Detector(StateSource source, const DetectorOptions& options = {});
   Detector(Detector&&) noexcept;
   Detector& operator=(Detector&&) noexcept;
   ~Detector();
 
-  // Shapes. kNoShape if structure_fault(tree), or a number is not finite, or a length is negative (a half-length of 0
-  // is a flat box). Trees outlive the detector, unchanged but for what FlexibleTree does between steps.
+  // Adds the shape of a tree. The add functions for shapes return kNoShape if structure_fault(tree) reports a fault, a
+  // number is not finite, or a length is negative (a half-length of 0 gives a flat box). Trees must outlive the
+  // detector and stay unchanged, except for what FlexibleTree does between steps.
   ShapeId add_shape(const TreeView& tree);
-  // A tree of its own. kNoShape if there is no such file, or no tree in it; `status` says why.
+  // Loads a tree that the detector owns. Returns kNoShape if there is no such file or no tree in it, and stores the
+  // reason in `status`.
   ShapeId load_shape(const char* path, LoadStatus* status = nullptr);
   ShapeId add_sphere(double radius, const Vec3& center = {});
-  ShapeId add_capsule(const Vec3& p, const Vec3& q, double radius);  // the points within `radius` of the segment
-  ShapeId add_box(const Vec3& half_lengths);                         // around the origin, along the axes
+  ShapeId add_capsule(const Vec3& p, const Vec3& q, double radius);  // The points within `radius` of the segment.
+  ShapeId add_box(const Vec3& half_lengths);                         // Around the origin, along the axes.
 
-  // Bodies. What changes between two steps takes part from the next one. kNoBody if a part's shape is none or its pose
-  // not rigid, if there are no parts, if there are kMaxBodies, or the options are not valid, `suggest` without `watch`
-  // among them.
+  // Adds a moving body of several parts. Bodies that are added or changed between two steps take part from the next
+  // step on. The add functions for bodies return kNoBody if a part's shape does not exist or its pose is not rigid, if
+  // there are no parts, if there are kMaxBodies bodies, or if the options are not valid (`suggest` without `watch`, for
+  // example).
   BodyId add_body(std::span<const BodyPart> parts, const BodyOptions& options = {});
   BodyId add_body(std::initializer_list<BodyPart> parts, const BodyOptions& options = {}) {
     return add_body(std::span(parts.begin(), parts.size()), options);
   }
-  // Of one part, where the detector keeps the states (else kNoBody): there, and moving on, from the last step on.
+  // Adds a moving body of one part with its state, which holds from the last step on. Returns kNoBody if a source gives
+  // the states.
   BodyId add_body(ShapeId shape, const BodyState& state, const BodyOptions& options = {});
-  // Never asked for.
+  // Adds a body that does not move; its state is never asked for.
   BodyId add_static(std::span<const BodyPart> parts, const Pose& pose, const BodyOptions& options = {});
   BodyId add_static(std::initializer_list<BodyPart> parts, const Pose& pose, const BodyOptions& options = {}) {
     return add_static(std::span(parts.begin(), parts.size()), pose, options);
   }
-  // Everything with normal . point <= offset; the normal of any length but 0. See half_space_number(). Costs nothing
-  // for bodies that cannot reach it: each has an event of its own, like the broad phase's.
+  // Adds the half-space normal . point <= offset. The normal may have any length but 0. See half_space_number(). The
+  // half-space costs nothing for bodies that cannot reach it, since each body has an event of its own, like those of
+  // the broad phase.
   BodyId add_half_space(const Vec3& normal, double offset, const BodyOptions& options = {});
 
-  // The following change nothing and return false if there is no such body, or what is handed over is not valid.
+  // Removes a body. This function and the following ones change nothing and return false if the body does not exist or
+  // an argument is not valid.
   bool remove(BodyId body);
-  bool cancel(BodyId body);    // the promise last given holds no longer
-  bool teleport(BodyId body);  // the source gives the new place from now on; a touch ends, and no sweep leads there
+  // Cancels the last promise of the body.
+  bool cancel(BodyId body);
+  // Moves the body to the place that the source gives from now on. A contact ends, and no sweep leads to the new place.
+  bool teleport(BodyId body);
   bool move_static(BodyId body, const Pose& pose);
-  // Where the detector keeps the states. From the time of the last step on (before the first one: from `start`) the
-  // body is there, and goes straight on at `velocity` without turning, until it is told otherwise. Without `watch` this
-  // cancels what was promised; with it, only what does not hold is. A body that sleeps sleeps on, there.
+  // Sets the state of a body, if the detector keeps the states. From the time of the last step on (before the first
+  // step: from `start`), the body has this state and moves straight at `velocity` without turning, until the next
+  // change. Without `watch` this cancels the promise; with it, a promise is cancelled only if it does not hold. A
+  // sleeping body continues to sleep at the new place.
   bool set_state(BodyId body, const BodyState& state);
-  bool set_velocity(BodyId body, const Vec3& velocity);              // from where it is now
-  bool set_local(BodyId body, std::size_t part, const Pose& local);  // articulated bodies: at any time
+  // Sets the velocity of a body from its present place on.
+  bool set_velocity(BodyId body, const Vec3& velocity);
+  // Moves a part of an articulated body; may be called at any time.
+  bool set_local(BodyId body, std::size_t part, const Pose& local);
   bool set_importance(BodyId body, std::uint8_t importance);
   bool set_filter(BodyId body, const BodyFilter& filter);
-  // It does not move until wake(): its source is asked once more, at the next step, and then no more. Pairs of it with
-  // what does not move either keep their answers at no cost. Where the detector keeps the states it stops where it is,
-  // and wakes at rest.
+  // Puts a body to sleep: it does not move until wake(). Its source is asked at the next step and not again. Pairs of
+  // sleeping and static bodies keep their answers at no cost. If the detector keeps the states, the body stops where it
+  // is and wakes at rest.
   bool sleep(BodyId body);
   bool wake(BodyId body);
   bool asleep(BodyId body) const noexcept;
-  // The triangles of a shape's tree have moved (FlexibleTree): answers about bodies at rest are void. O(bodies).
+  // Invalidates the answers about resting bodies with this shape, after the triangles of its tree have moved
+  // (FlexibleTree). O(bodies).
   bool shape_changed(ShapeId shape);
-  // None: all pairs. Pairs that overlap already are asked about again; see PairFilter in broad_phase.h.
+  // Sets the filter of pairs; an empty function allows all pairs. Pairs that already overlap are tested again; see
+  // PairFilter in broad_phase.h.
   void set_pair_filter(PairFilter filter);
   void set_executor(const Executor& executor) noexcept;
 
-  // At the time of the last step, where the detector keeps the states; else as of when it was asked for last. What is
-  // static, half-spaces included, is at rest.
+  // Returns the state at the time of the last step if the detector keeps the states, otherwise the state that the
+  // source gave last. Static bodies and half-spaces are at rest.
   BodyState state(BodyId body) const noexcept;
-  bool moves(BodyId body) const noexcept;  // neither static nor a half-space
-  // No point of the shape is farther from the shape's origin. 0: no such shape.
+  bool moves(BodyId body) const noexcept;  // Neither static nor a half-space.
+  // Returns the distance from the shape's origin within which all its points lie; 0 if there is no such shape.
   double reach(ShapeId shape) const noexcept;
   bool contains(BodyId body) const noexcept;
-  std::size_t size() const noexcept;  // bodies, half-spaces included
-  bool valid() const noexcept;        // the options are
+  std::size_t size() const noexcept;  // The number of bodies, half-spaces included.
+  bool valid() const noexcept;        // Whether the options are valid.
 
-  // Answers the steps up to `time` that may have something, in order; what the budget has left is shared evenly among
-  // them. Call it once per frame, never with a smaller time. A long time ahead takes a long time, as every step with a
-  // pair, and with `watch` every step, is looked at, within any budget: StepOptions::latest_only answers the last one
-  // alone.
+  // Answers the steps up to `time` that may have a result, in order; the remaining budget is shared evenly among them.
+  // Call it once per frame, with times that do not decrease. A long interval takes long, because each step with a pair,
+  // and with `watch` every step, is processed, whatever the budget; StepOptions::latest_only answers only the last
+  // step.
   Frame step(double time, const Budget& budget = {}, const StepOptions& options = {}) noexcept;
 
-  // Where the parts of an event of the last step touch, at up to four points, and how they come apart; as contacts()
-  // does for two trees. Boxes are solid: what is wholly inside one leaves it. With a half-space the points are the
-  // outermost ones of where the surface cuts its plane (of a capsule, the lowest points of its ends), and the depth is
-  // that of the lowest point. Of spheres and capsules with anything else there is one point, and the depth is that
-  // along the normal.
-  // Without points, and "maybe", if the event's bodies are gone or its answer is not yes. For a contact between two
-  // steps it tells of this step, at which it may be over: "no". Allocates nothing once warm; throws nothing.
+  // Returns where the parts of an event of the last step touch, at up to four points, and how they come apart, as
+  // contacts() does for two trees. Boxes are solid: a part wholly inside one leaves it. With a half-space, the points
+  // are the outermost ones of the curve in which the surface cuts its plane (for a capsule, the lowest points of its
+  // ends), and the depth is that of the lowest point. Spheres and capsules have one point with any other shape, and the
+  // depth along the normal.
+  // The result has no points and the answer "maybe" if the event's bodies do not exist any more or its answer is not
+  // yes. For a contact between two steps, the result refers to this step, at which the contact may be over: "no".
+  // Allocates nothing once warm; throws nothing.
   Manifold manifold(const PairEvent& event, const ContactOptions& options = {}) noexcept;
 
-  // All bodies, half-spaces included, as of the time of the last step (before the first one: of `start`). Trees are
-  // their surfaces, simple shapes are solid. The first question after a step or a change costs O(n log n) for n parts,
-  // and the source gives the states, for that time, of the bodies that the step has not asked for; the next ones cost
-  // O(log n) parts, and what each asks about. Answers are correct to rounding in double; bodies whose states are not
-  // valid are not found. Nothing is found if a number is not finite (a ray may be infinitely long), a direction 0, or a
-  // radius negative, nor from within a source or filter. Throws std::bad_alloc only, and changes nothing.
-  // The first point of any body that the ray meets; of equal ones that of the smallest index.
+  // Returns the first point of any body that the ray meets; of equal ones, that of the lowest index.
+  // This query and the two below include all bodies and half-spaces at the time of the last step (before the first one:
+  // at `start`). Trees stand for their surfaces; simple shapes are solid. The first query after a step or a change
+  // takes O(n log n) for n parts, and asks the source for the states of the bodies that the step has not asked for.
+  // Later queries take O(log n) plus the cost of the parts that they examine. Results are correct to rounding in
+  // double; bodies with invalid states are not found. Nothing is found if a number is not finite (a ray may be
+  // infinitely long), a direction is 0 or a radius is negative, or from within a source or filter. Throws
+  // std::bad_alloc only, and changes nothing.
   std::optional<WorldPoint> cast_ray(const Ray& ray, const QueryFilter& filter = {});
-  // The point of any body that is nearest, if it is no farther than `limit`.
+  // Returns the nearest point of any body, if it is at most `limit` away.
   std::optional<WorldPoint> nearest(const Vec3& point, double limit = std::numeric_limits<double>::infinity(),
                                     const QueryFilter& filter = {});
-  // The bodies that a solid sphere touches, in ascending order of indices. Until the next question.
+  // Returns the bodies that a solid sphere touches, in ascending order of indices. The span is valid until the next
+  // query.
   std::span<const BodyId> touching_sphere(const Vec3& center, double radius, const QueryFilter& filter = {});
 
-  // What the steps after the last one will cost, as far as the broad phase knows now: loads[i] is that of the i-th step
-  // after it. At most 254 are filled; returns how many.
+  // Predicts the cost of the steps after the last one from what the broad phase knows: loads[i] is that of the i-th
+  // step after it. Fills at most 254 elements and returns their number.
   std::size_t predict_load(std::span<StepLoad> loads) const noexcept;
 
-  std::uint64_t motion_bound_violations() const noexcept;             // found so far (watch)
-  std::uint64_t motion_bound_violations(BodyId body) const noexcept;  // of one body
-  std::size_t memory_bytes() const noexcept;                          // held on the heap, shapes' trees not included
+  std::uint64_t motion_bound_violations() const noexcept;             // Found so far (watch).
+  std::uint64_t motion_bound_violations(BodyId body) const noexcept;  // Those of one body.
+  std::size_t memory_bytes() const noexcept;                          // On the heap, without the shapes' trees.
 
  private:
   struct State;

@@ -6,42 +6,43 @@
 
 #include "orchard/runtime/packed_tree.h"
 
+// Trees of flexible bodies (dissertation 8.2).
 namespace orchard::runtime {
 
-// A tree whose triangles move a little about a rest position: a flexible body (dissertation 8.2). The spheres and the
-// tree of triangles follow, and stay certified:
-// a point of a triangle moves no farther than the triangle's corners have, so a ball that held it at rest holds it when
-// it is enlarged by that; a node is enlarged by what moved farthest among the triangles listed below it, from where
-// they were *at rest*, so that what comes back shrinks again and nothing piles up.
+// A tree whose triangles move a little about a rest position. The spheres and the triangle BVH follow, and stay
+// certified: a point of a triangle moves no farther than the triangle's corners, so a ball that contained it at rest
+// contains it if it is enlarged by that distance. A node is enlarged by the largest displacement from *rest* among the
+// triangles listed below it, so that it shrinks again when they come back, and enlargements do not accumulate.
 //
 //   FlexibleTree cloth(tree, 0.1);                     // no vertex moves farther than 0.1 from where it is in `tree`
 //   const ShapeId shape = world.add_shape(cloth.view());
 //   cloth.move(vertices, places);                      // between two steps
 //   world.shape_changed(shape);
 //
-// Queries between two moves see one and the same tree; none may be under way during a move. Throws std::bad_alloc from
-// the constructor only.
+// Queries between two moves see the same tree; no query may run during a move. Only the constructor throws,
+// std::bad_alloc.
 class FlexibleTree {
  public:
-  // Precondition: structure_fault(rest) is nullptr. O(nodes + triangles). Bounds on the distance to the solid (`error`,
-  // `depth`) and the table of supports are enlarged once, by what `max_displacement` allows, and so is the root.
+  // Copies a tree at rest. `max_displacement` is the largest distance, in mesh units, that a vertex may move from its
+  // place at rest. Bounds on the distance to the solid (`error`, `depth`), the table of supports and the root are
+  // enlarged once, for this displacement. Precondition: structure_fault(rest) is nullptr. O(nodes + triangles).
   FlexibleTree(const PackedSphereTree& rest, double max_displacement);
 
-  // False: the displacement is negative or not finite, or coordinates might leave kCoordinateLimit. It then never
-  // moves.
+  // Returns false if the displacement is negative or not finite, or if coordinates might leave kCoordinateLimit. The
+  // tree then never moves.
   bool valid() const noexcept { return valid_; }
   TreeView view() const noexcept { return tree_; }
 
-  // Moves vertices[i] (an index into the tree's vertices) to places[i], in the mesh's coordinates. False, and nothing
-  // is changed, if an index is out of range, a place is not finite or is farther than max_displacement from where
-  // the vertex rests. O(triangles at these vertices, and nodes above them): nodes_touched() says how many.
+  // Moves vertices[i] (an index into the tree's vertices) to places[i], in the coordinates of the mesh. Returns false
+  // and changes nothing if an index is out of range, or a place is not finite or farther than max_displacement from
+  // where the vertex rests. Takes O(triangles at these vertices, and nodes above them), which nodes_touched() counts.
   bool move(std::span<const std::uint32_t> vertices, std::span<const std::array<double, 3>> places) noexcept;
 
-  std::size_t nodes_touched() const noexcept { return touched_; }  // by the last move, of both trees
+  std::size_t nodes_touched() const noexcept { return touched_; }  // By the last move, in both trees.
   std::size_t nodes() const noexcept { return spheres_.size() + obb_nodes_.size(); }
-  // By how much the leaves are larger than at rest: the sum of what they were enlarged by over the sum of their radii.
+  // Returns by how much the leaves are larger than at rest: the sum of their enlargements over the sum of their radii.
   double looseness() const noexcept { return rest_radii_ > 0 ? enlarged_ / rest_radii_ : 0; }
-  // Beyond this, queries cost several times as much as with a tree built for the present shape.
+  // Returns whether queries cost several times as much as with a tree that is built for the present shape.
   bool worth_rebuilding() const noexcept { return looseness() > 0.5; }
 
  private:

@@ -4,9 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
+// Keeps frames to a length (dissertation 7.3): computes how long collision detection may take in each, and measures it.
 namespace orchard::runtime {
 
-// Keeps frames to a length (dissertation 7.3): says how long collision detection may take in each, and measures.
+// A pacer of frames:
 //
 //   FramePacer pacer(std::chrono::milliseconds(16));
 //   for (;;) {
@@ -18,12 +19,12 @@ namespace orchard::runtime {
 //     pacer.end_frame();             // pacer.slack() is left: wait, or do something useful
 //   }
 //
-// The dissertation predicts the whole non-detection time of a frame to be that of the last one. Here only what comes
-// *after* detection is predicted, as what comes before is measured by then; and the prediction is the mean of recent
-// frames plus `deviations` times their mean deviation, both smoothed exponentially as round-trip times are in TCP
-// (Jacobson 1988; RFC 6298), and no less than a share of the largest one lately. Half of the frames take longer than a
-// good guess of the mean: what is wanted is a guess that is seldom exceeded. A detection that took longer than it was
-// granted lowers later grants by what it exceeded, smoothed in the same way.
+// The dissertation predicts that the whole non-detection time of a frame equals that of the last one. This class
+// predicts only the time *after* detection, since the time before it is measured by then. The prediction is the mean of
+// recent frames plus `deviations` times their mean deviation, both smoothed exponentially as round-trip times are in
+// TCP (Jacobson 1988; RFC 6298), and at least a share of the largest recent one. The mean alone would be exceeded by
+// half of the frames; the prediction should be exceeded seldom. A detection that took longer than granted lowers later
+// grants by the excess, smoothed in the same way.
 class FramePacer {
  public:
   using Clock = std::chrono::steady_clock;
@@ -33,18 +34,18 @@ class FramePacer {
   explicit FramePacer(Duration frame, double deviations = 4) noexcept : frame_(frame), deviations_(deviations) {}
 
   void begin_frame(Time now = Clock::now()) noexcept;
-  // How long detection may take from now on; 0 if the frame is late already.
+  // Returns how long detection may take from now on; 0 if the frame is already late.
   Duration begin_detection(Time now = Clock::now()) noexcept;
   void end_detection(Time now = Clock::now()) noexcept;
   void end_frame(Time now = Clock::now()) noexcept;
 
   Duration frame() const noexcept { return frame_; }
-  Duration granted() const noexcept { return granted_; }      // to the last detection
-  Duration detection() const noexcept { return detection_; }  // what it took
-  Duration slack() const noexcept { return slack_; }          // of the last frame; below 0: it was late by so much
+  Duration granted() const noexcept { return granted_; }      // The time granted to the last detection.
+  Duration detection() const noexcept { return detection_; }  // The time that it took.
+  Duration slack() const noexcept { return slack_; }  // The time left of the last frame; below 0 if it was late.
   std::uint64_t frames() const noexcept { return frames_; }
-  std::uint64_t late() const noexcept { return late_; }  // frames that were
-  Duration predicted_rest() const noexcept;              // of the frame, after detection
+  std::uint64_t late() const noexcept { return late_; }  // The number of late frames.
+  Duration predicted_rest() const noexcept;              // The predicted time of the frame after detection.
 
  private:
   struct Smoothed {

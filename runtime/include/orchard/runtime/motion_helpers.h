@@ -3,41 +3,44 @@
 
 #include "orchard/runtime/motion.h"
 
+// Computes motion bounds for common kinds of bodies and for integrators.
+//
+// The functions for bodies compute M and d (dissertation 4.4; its directions of d have to be negated, as done here).
+// Each returns a Motion as of `time` that expires after `horizon` seconds, or earlier if the half-space ends earlier,
+// but not before half of `horizon`: a half-space that ends before that is left out. If the user does something that the
+// bounds exclude, the application calls BroadPhase::cancel() and asks again. Units are lengths, seconds and radians.
 namespace orchard::runtime {
 
-// How an application comes by M and d (dissertation 4.4; its directions of d have to be negated, as done here). Each
-// function gives a Motion as of `time` that expires `horizon` seconds later, or earlier where the half-space ends
-// earlier, but not before half of that: a shorter half-space is left out. Once the user does what was not foreseen, the
-// application calls BroadPhase::cancel() and asks again. Lengths, seconds, radians.
-
-// A spaceship: the engine pushes along the axis, the rudder turns the axis.
+// A spaceship whose engine pushes along its axis, and whose rudder turns the axis.
 struct Rocket {
   Vec3 position{}, velocity{};
   double radius = 0;
-  Vec3 axis{1, 0, 0};      // forward, of length 1
-  double max_thrust = 0;   // bound on the engine's acceleration: the present one, and some slack for the throttle
-  double max_turning = 0;  // bound on the axis' angular speed: the present one, and some slack for the rudder
+  Vec3 axis{1, 0, 0};  // Forward, of length 1.
+  // An upper bound on the engine's acceleration: the present value and a margin for the throttle.
+  double max_thrust = 0;
+  // An upper bound on the angular speed of the axis: the present value and a margin for the rudder.
+  double max_turning = 0;
 };
-// M is the thrust; the half-space holds until the axis may have turned by 90 degrees.
+// Returns a motion with the thrust as M. The half-space holds until the axis may have turned by 90 degrees.
 Motion rocket_motion(const Rocket& rocket, double time, double horizon) noexcept;
 
-// A car or an aircraft in a turn: centripetal acceleration v^2 / R towards the centre, on the same side all the time,
-// in one plane, and acceleration or braking along its heading.
+// A car or an aircraft in a turn. Its centripetal acceleration v^2 / R points to the centre, always on the same side
+// and in one plane, and it accelerates or brakes along its heading.
 struct Vehicle {
   Vec3 position{}, velocity{};
   double radius = 0;
-  Vec3 to_center{};            // from the vehicle to the turn's centre, of length 1; zero: either side
-  double max_speed = 0;        // until the horizon
-  double min_turn_radius = 1;  // R: an underestimate
-  double max_drive = 0;        // bound on the acceleration along the heading
+  Vec3 to_center{};            // From the vehicle to the centre of the turn, of length 1; zero: either side.
+  double max_speed = 0;        // Until the horizon.
+  double min_turn_radius = 1;  // A lower bound on R.
+  double max_drive = 0;        // An upper bound on the acceleration along the heading.
 };
-// M is that of both accelerations together; a half-space exists only at constant speed (max_drive 0), until the
-// heading may have turned by 90 degrees.
+// Returns a motion with both accelerations together as M. There is a half-space only at constant speed (max_drive 0),
+// until the heading may have turned by 90 degrees.
 Motion vehicle_motion(const Vehicle& vehicle, double time, double horizon) noexcept;
 
-// An object under the user's cursor, known by its last three positions, `step` apart, the last one at `time`. Provided
-// that the acceleration changes by at most max_jerk per second from the first one on, everything else follows from
-// finite differences: acceleration, velocity and how wrong they can be.
+// An object under the user's cursor, known by its last three positions, `step` seconds apart, the last one at `time`.
+// If the acceleration changes by at most max_jerk per second from the first position on, finite differences give
+// acceleration and velocity with their errors.
 struct Dragged {
   Vec3 before_last{}, last{}, position{};
   double step = 0.01;
@@ -47,19 +50,21 @@ struct Dragged {
 Motion dragged_motion(const Dragged& dragged, double time, double horizon) noexcept;
 
 // An object on a damped spring to the cursor: y'' = stiffness (cursor - y) - damping y'. The cursor stays within
-// cursor_reach of where it is now until the horizon.
+// cursor_reach of its present place until the horizon.
 struct SpringDragged {
   Vec3 position{}, velocity{};
   double radius = 0;
   Vec3 cursor{};
-  double stiffness = 1, damping = 0;  // 1/s^2, 1/s
+  double stiffness = 1, damping = 0;  // In 1/s^2 and 1/s.
   double cursor_reach = 0;
 };
-// M from the energy, which the cursor can only feed at a bounded rate; the half-space while the spring surely pulls.
+// Returns a motion with M from the energy, which the cursor can increase only at a bounded rate. The half-space holds
+// while the spring is certain to pull.
 Motion spring_motion(const SpringDragged& dragged, double time, double horizon) noexcept;
 
-// A simulation in steps of dt, with |acceleration| <= M at every evaluation. Bounds are about motion in continuous
-// time; what an integrator makes of it may stray from it, by a drift that drift_of() gives: add it to Motion::drift.
+// The method of a simulation in steps of dt, with |acceleration| <= M at every evaluation. The bounds describe motion
+// in continuous time; the result of an integrator may differ from it by a drift, which drift_of() returns. Add it to
+// Motion::drift.
 enum class Integrator : std::uint8_t {
   explicit_euler,       // x += dt v; v += dt a
   semi_implicit_euler,  // v += dt a; x += dt v. Also called symplectic; what most games and rigid-body engines do
@@ -73,10 +78,10 @@ enum class Integrator : std::uint8_t {
   runge_kutta_4         // the classical one
 };
 
-// When positions are asked for.
+// Which positions the broad phase receives.
 enum class Sampling : std::uint8_t {
-  at_steps,  // as the integrator has them
-  between    // interpolated linearly between the last step and the next, as for drawing
+  at_steps,  // Those at the integrator's steps.
+  between    // Linear interpolations between the last step and the next, as for drawing.
 };
 
 // The smallest drift with which Lemmas 4.1 and 4.2 hold for everything the integrator can do with the velocity it has
@@ -96,17 +101,18 @@ enum class Sampling : std::uint8_t {
 double drift_of(Integrator integrator, double dt, double max_acceleration,
                 Sampling sampling = Sampling::at_steps) noexcept;
 
-// How far a position moves when its coordinates, at most `max_coordinate` in size, are rounded to float: for
-// BroadPhaseOptions::position_slack, if the simulation runs in double but gives its positions in float. A velocity
-// rounded to float is off by float_slack() of its largest coordinate: that is drift.
+// Returns how far a position moves if its coordinates, at most `max_coordinate` in size, are rounded to float. Use it
+// as BroadPhaseOptions::position_slack if the simulation computes in double but gives its positions in float. A
+// velocity rounded to float is off by float_slack() of its largest coordinate, which is a drift.
 double float_slack(double max_coordinate) noexcept;
 
-// For a simulation that also *keeps* positions and velocities as floats: each step rounds again, which is drift and
-// acceleration. Gives the motion with both enlarged and without its half-space, as roundings point anywhere. The bounds
-// on the coordinates of position and velocity hold until the motion expires. Per step a position's coordinate is
-// rounded once, and its change dt v up to eight times, so it is off by u (L + 9 dt S) with u = 2^-24, the largest
-// coordinate L and the largest speed S along an axis; a velocity's is off by u (S + 9 dt M). n steps of e each are a
-// drift of e / dt, and n changes of the velocity an acceleration of e / dt.
+// Returns the motion of a simulation that also *keeps* positions and velocities as floats. Each step rounds again,
+// which acts as drift and acceleration. The result has both enlarged, and no half-space, because roundings point in any
+// direction. The bounds on the coordinates of position and velocity must hold until the motion expires.
+// In each step, a coordinate of the position is rounded once and its change dt v up to eight times, so it is off by u
+// (L + 9 dt S) with u = 2^-24, the largest coordinate L and the largest speed S along an axis. A coordinate of the
+// velocity is off by u (S + 9 dt M). n steps with an error e each are a drift of e / dt, and n changes of the velocity
+// are an acceleration of e / dt.
 Motion kept_in_float(const Motion& motion, double dt, double max_coordinate, double max_speed) noexcept;
 
 }  // namespace orchard::runtime

@@ -5,51 +5,56 @@
 
 #include "orchard/runtime/broad_phase.h"
 
+// Checks whether bodies keep the promised bounds on their motion, and suggests bounds.
 namespace orchard::runtime {
 
+// The options of a MotionMonitor.
 struct MonitorOptions {
-  double safety = 1.5;  // a suggested M is the largest acceleration seen lately, times this; >= 1
-  double window = 0.5;  // seconds: "lately". > 0
-  double min_horizon = 0.02, longest_horizon = 1;  // seconds until a suggested promise expires
-  double min_acceleration = 0;                     // no suggested M is smaller
-  double position_slack = 0;                       // as BroadPhaseOptions has it: what positions may be off by
+  // A suggested M is the largest acceleration of the last `window` seconds times this factor, at least 1. Higher values
+  // break fewer promises and give looser bounds.
+  double safety = 1.5;
+  double window = 0.5;  // The length of the observed past, in seconds, above 0.
+  // In seconds: the range of the time until a suggested promise expires.
+  double min_horizon = 0.02, longest_horizon = 1;
+  double min_acceleration = 0;  // The smallest suggested M.
+  double position_slack = 0;    // The error of positions, as in BroadPhaseOptions.
 };
 
-// Watches bodies' motions (dissertation 4.4): whether the bounds that were promised hold, and which ones could be
-// promised, from what was seen. A promise that is broken silently is the one way in which a broad phase misses a
-// contact. (BroadPhaseOptions::validate finds such ones while a program is being written.) Use it where the simulation
+// Observes the motions of bodies (dissertation 4.4): whether they keep the promised bounds, and which bounds could be
+// promised. A promise that is broken silently is the only way in which a broad phase misses a contact.
+// (BroadPhaseOptions::validate finds such promises while a program is developed.) Use the monitor where the simulation
 // moves its bodies:
 //   monitor.note_bound(body, time, motion);                                     // in the source, as it answers
 //   if (!monitor.observe(body, time, position, velocity)) world.cancel(id);   // at every step, before advance()
-// A Detector with DetectorOptions::watch does so itself.
-//
-// Allocates only when a body index is seen for the first time. O(1) per call.
+// A Detector with DetectorOptions::watch does this itself. The monitor allocates only when a body index occurs for the
+// first time. O(1) per call.
 class MotionMonitor {
  public:
   explicit MotionMonitor(const MonitorOptions& options = {}) : options_(options) {}
 
-  // The promise of `motion`, made at `time`, replaces the body's earlier one.
+  // Replaces the promise of a body by `motion`, made at `time`.
   void note_bound(BodyIndex body, double time, const Motion& motion);
 
-  // Where the body is at `time`, and its velocity. False if Lemma 4.1 or 4.2 does not hold for the last promise, or the
-  // velocity has left its bound: the promise is broken, counted once, and void from then on. True where nothing was
-  // promised or the promise has expired. Times never decrease; the same time again changes nothing that is learnt.
+  // Records the position and the velocity of a body at `time`. Returns false if Lemma 4.1 or 4.2 does not hold for the
+  // last promise, or if the velocity has left its bound: the promise is broken, counted once and cancelled. Returns
+  // true if nothing was promised or the promise has expired. Times must not decrease; repeating a time does not change
+  // what the monitor has learnt.
   bool observe(BodyIndex body, double time, const Vec3& position, const Vec3& velocity);
-  // The same without a velocity: only positions are compared, and the velocity for suggestions is the difference of the
-  // last two positions.
+  // Does the same without a velocity: compares positions only, and uses the difference of the last two positions as the
+  // velocity for suggestions.
   bool observe(BodyIndex body, double time, const Vec3& position);
 
-  // A motion that can be promised now, after observe() at `time`: M is `safety` times the largest acceleration of the
-  // last `window` seconds; half_space is opposite to the mean acceleration, if every acceleration seen lately was
-  // surely within 60 degrees of it; expiry is a horizon that is halved by each broken promise and grows by a quarter
-  // with each kept one, between the options' bounds. Radius as given. A guess about the future: observe() tells when it
-  // was wrong.
+  // Returns a motion that can be promised now, after observe() at `time`. M is `safety` times the largest acceleration
+  // of the last `window` seconds. half_space is opposite to the mean acceleration if every recent acceleration was
+  // certainly within 60 degrees of it. The time until expiry is halved by each broken promise and grows by a quarter
+  // with each kept one, within the options' range. The radius is the given one. The suggestion is a guess about the
+  // future, and observe() finds out if it was wrong.
   Motion suggest(BodyIndex body, double time, double radius) const;
 
-  void cancelled(BodyIndex body);     // by the application: nothing is promised any more
-  void forget(BodyIndex body);        // a teleport: nothing is known. Counts are kept
-  void begin(BodyIndex body);         // another body with this index: nothing is known, and nothing counted of it
-  void count_broken(BodyIndex body);  // a promise of another kind: the present one is void, too
+  void cancelled(BodyIndex body);     // The application cancelled the promise.
+  void forget(BodyIndex body);        // A teleport: discards everything known, but keeps the counts.
+  void begin(BodyIndex body);         // Another body has this index: discards everything known and its counts.
+  void count_broken(BodyIndex body);  // Counts a broken promise of another kind, and cancels the present one.
   std::uint64_t broken() const noexcept { return broken_; }
   std::uint64_t broken(BodyIndex body) const noexcept { return body < tracks_.size() ? tracks_[body].broken : 0; }
   std::size_t memory_bytes() const noexcept { return tracks_.capacity() * sizeof(Track); }

@@ -7,11 +7,12 @@
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
 
+// Keeps where the last search through a pair of trees ended, so that the next one can start there.
 namespace orchard::runtime {
 
 namespace detail {
 
-// Eight pairs of ball slabs of two trees, each apart along a unit vector, or not known to be.
+// Eight pairs of ball slabs of two trees. Each pair is apart along a unit vector, or not known to be.
 struct FrontBlock {
   using Lanes = std::array<float, kBlockWidth>;
   alignas(32) Lanes x, y, z, radius;  // the second one's ball, in its own frame
@@ -22,14 +23,16 @@ struct FrontBlock {
 
 }  // namespace detail
 
-// Where the last search through the trees of a pair ended: pairs of ball slabs that hold all of both bodies between
-// them, each with a direction along which they are apart, and by how much. After a small motion most of them still are,
-// which is seen eight at a time, and the next search begins at the others instead of the roots. Given to a pair by
-// TreePair::use(), for collide_coherently(). A plain value of fixed size: keep as many as there are pairs that stay
-// close, and hand them on to others. It says nothing wrong of whatever pair it is given to.
+// The front of a search through the trees of a pair: pairs of ball slabs that together contain all of both bodies, each
+// with a direction along which they are apart, and by how much. After a small motion most of them are still apart,
+// which is tested eight at a time, and the next search starts at the others instead of the roots. TreePair::use() gives
+// a front to a pair, for collide_coherently().
+// A front is a plain value of fixed size. Keep one for each pair that stays close, and reuse it for other pairs: it
+// gives no wrong results for any pair.
 class PairFront {
  public:
-  static constexpr std::uint32_t kRoom = 1024;  // pairs; what does not fit is kept as one bound
+  // The number of pairs; what does not fit is kept as one bound.
+  static constexpr std::uint32_t kRoom = 1024;
   void clear() noexcept {
     first_ = second_ = nullptr;
     crowded_ = false;

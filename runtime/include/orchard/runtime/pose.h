@@ -7,10 +7,11 @@
 #include <type_traits>
 #include <utility>
 
+// Vectors, poses and rays of the run-time.
 namespace orchard::runtime {
 
-// Three numbers along x, y and z. A type of its own, so that its operators are found wherever it is used; and every
-// std::array<double, 3>, as poses and contacts have, becomes one where one is asked for, and the other way round.
+// Three numbers along x, y and z. It is a type of its own, so that its operators are found in every namespace. It
+// converts implicitly from and to std::array<double, 3>, which poses and contacts use.
 struct Vec3 : std::array<double, 3> {
   constexpr Vec3() noexcept : std::array<double, 3>{} {}
   constexpr Vec3(double x, double y, double z) noexcept : std::array<double, 3>{x, y, z} {}
@@ -36,43 +37,44 @@ struct std::tuple_element<i, orchard::runtime::Vec3> {
 
 namespace orchard::runtime {
 
-// Where an instance of a body is: world = scale * rotation * body + translation. Rotation is row-major.
-// Every query asks is_rigid() first, and of a pose that is not (zeros, a mirror, shear, scales that differ between
-// axes, what is not a number, and also a rotation whose entries were rounded to float) it says that nothing is known:
-// "maybe" without bounds, or what each function names. Radii would be wrong otherwise, and so would a "no". Rotations
-// kept in floats, or integrated over many frames, are made rigid by made_rigid() or pose_from_matrix() first.
+// The place of a body in the world: world = scale * rotation * body + translation. The rotation is row-major.
+// Every query tests is_rigid() first. For a pose that is not rigid (zeros, a mirror, shear, scales that differ between
+// axes, NaN, or a rotation whose entries were rounded to float), its answer is that nothing is known: "maybe" without
+// bounds, or what each function names. Otherwise radii, and so a "no", would be wrong. Use made_rigid() or
+// pose_from_matrix() to repair rotations that were kept in floats or integrated over many frames.
 struct Pose {
   std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::array<double, 3> translation = {0, 0, 0};
-  double scale = 1;  // uniform
+  double scale = 1;  // The uniform scale.
 
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
-// With rows a, b, c of the rotation: on the root of the sum of the squares of |a|^2 - 1, |b|^2 - 1, a . b and the
-// components of c - a x b.
+// The tolerance of is_rigid() for a rotation with rows a, b, c. It applies to the root of the sum of the squares of
+// |a|^2 - 1, |b|^2 - 1, a . b and the components of c - a x b.
 inline constexpr double kRigidTolerance = 1e-12;
-inline constexpr double kScaleLimit = 1e100;         // a scale is between 1 / kScaleLimit and kScaleLimit
-inline constexpr double kMaxRelativeScale = 0x1p44;  // of one body of a pair to the other
-inline constexpr double kRepairTolerance = 1e-3;     // as kRigidTolerance, of what made_rigid() repairs
+inline constexpr double kScaleLimit = 1e100;         // A scale is between 1 / kScaleLimit and kScaleLimit.
+inline constexpr double kMaxRelativeScale = 0x1p44;  // Of one body of a pair to the other.
+inline constexpr double kRepairTolerance = 1e-3;     // As kRigidTolerance, for made_rigid().
 
-// Whether queries can answer for a pose: a proper rotation to within kRigidTolerance, a scale within its limits,
-// nothing that is not finite. Some ten nanoseconds; queries do it themselves.
+// Returns whether queries can answer for a pose: the rotation is proper to within kRigidTolerance, the scale is within
+// its limits, and all numbers are finite. Takes about ten nanoseconds; queries call it themselves.
 bool is_rigid(const Pose& pose) noexcept;
 
-// The rotation nearest to pose.rotation, with the same translation and scale, so that is_rigid() holds: for matrices of
-// floats, and products of many. It moves no point of a body of radius R farther than rounding had moved it already:
-// some 1e-7 R for floats. Nothing if the matrix is farther than kRepairTolerance from a proper rotation, or if anything
-// else is wrong. Costs some 100 ns.
+// Returns the pose with the nearest rotation for which is_rigid() holds, and the same translation and scale. Use it for
+// matrices of floats and for products of many rotations. It moves no point of a body of radius R farther than rounding
+// has moved it before: about 1e-7 R for floats. Returns nullopt if the matrix is farther than kRepairTolerance from a
+// proper rotation, or if anything else is wrong. Takes about 100 ns.
 std::optional<Pose> made_rigid(const Pose& pose) noexcept;
 std::optional<Pose> pose_from_matrix(const std::array<float, 9>& rotation, const std::array<float, 3>& translation,
                                      float scale = 1) noexcept;
 
-// From a quaternion (w, x, y, z) of any length; nothing if it is zero or anything is not finite.
+// Returns the pose of a quaternion (w, x, y, z) of any length other than 0. Returns nullopt if it is zero or a number
+// is not finite.
 std::optional<Pose> pose_from_quaternion(const std::array<double, 4>& wxyz,
                                          const std::array<double, 3>& translation) noexcept;
 
-Pose compose(const Pose& outer, const Pose& inner) noexcept;  // outer after inner
+Pose compose(const Pose& outer, const Pose& inner) noexcept;  // Applies `inner` first, then `outer`.
 Pose inverse(const Pose& pose) noexcept;
 
 inline std::array<double, 3> rotate(const Pose& pose, const std::array<double, 3>& v) noexcept {
@@ -87,7 +89,7 @@ inline std::array<double, 3> transform(const Pose& pose, const std::array<double
           pose.scale * v[2] + pose.translation[2]};
 }
 
-// The points origin + t direction, 0 <= t <= longest; direction of any length but 0.
+// The points origin + t direction with 0 <= t <= longest. The direction may have any length but 0.
 struct Ray {
   std::array<double, 3> origin{}, direction{};
   double longest = std::numeric_limits<double>::infinity();

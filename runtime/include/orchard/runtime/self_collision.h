@@ -5,14 +5,15 @@
 
 #include "orchard/runtime/collide.h"
 
-// Does a robot touch itself, or what stands around it? Numbered parts, a tree each; pairs that may touch are not asked
-// about.
+// Finds whether a robot touches itself or its surroundings. Each part has a number and a tree; allowed pairs are not
+// tested.
 namespace orchard::runtime {
 
-// Which pairs of parts 0 .. parts - 1 may touch: none at first, and every part itself.
+// Which pairs of the parts 0 .. parts - 1 may touch. At first, only each part with itself.
 class AllowedPairs {
  public:
-  explicit AllowedPairs(std::size_t parts = 0) : parts_(parts), allowed_(parts * parts, false) {}  // throws bad_alloc
+  explicit AllowedPairs(std::size_t parts = 0)
+      : parts_(parts), allowed_(parts * parts, false) {}  // Throws std::bad_alloc.
 
   std::size_t parts() const noexcept { return parts_; }
   void allow(std::size_t a, std::size_t b, bool allowed = true) noexcept {
@@ -28,24 +29,28 @@ class AllowedPairs {
   std::vector<bool> allowed_;
 };
 
+// Tests all pairs of parts that must not touch.
 class SelfCollision {
  public:
-  // The trees outlive this object. Throws std::bad_alloc only.
+  // The trees must outlive this object. Throws std::bad_alloc only.
   explicit SelfCollision(std::span<const PreparedTree> parts) : allowed(parts.size()), parts_(parts) {}
 
   AllowedPairs allowed;
 
-  // Allows the pairs that touch, or might, where the parts are now: those that always do at rest.
+  // Allows all pairs that touch or might touch at the given poses, which are those that always touch at rest.
   void allow_touching(Workspace& workspace, std::span<const Pose> poses) noexcept;
 
+  // The contact of two parts.
   struct Touch {
-    Answer answer = Answer::no;  // yes: these parts touch; maybe: nothing is known of some pair, and no other touches
+    // yes: these parts touch. maybe: some pair is undecided, and no other one touches.
+    Answer answer = Answer::no;
     std::size_t part_a = 0, part_b = 0;
     Contact contact;
   };
-  // The first pair of parts, in order, that touch though they are not allowed to. poses.size(): a pose for every part.
+  // Returns the first pair of parts, in order, that touches without being allowed to. There must be a pose for each
+  // part.
   Touch first(Workspace& workspace, std::span<const Pose> poses) const noexcept;
-  // All of them: found(touch) for each, until it returns false. `Found`: a callable that throws nothing.
+  // Calls found(touch) for all of these pairs, until it returns false. `Found` is a callable that throws nothing.
   template <typename Found>
   void each(Workspace& workspace, std::span<const Pose> poses, Found&& found) const noexcept {
     for (std::size_t a = 0; a < parts_.size(); ++a) {

@@ -16,73 +16,85 @@
 #include "orchard/spheretree/tree.h"
 #include "orchard/spheretree/verify.h"
 
+// Builds a certified sphere-tree of a surface in one call, from the mesh to the packed tree and its proof.
 namespace orchard {
 
+// The builder of the tree: tightened.h, merging.h, annealing.h or octree.h.
 enum class TreeMethod { tightened, merging, annealing, octree };
 
-// Numbers of the annealing in place of those that the effort stands for.
+// Parameters of the annealing that replace those which the effort stands for. AnnealingOptions describes each of them;
+// those without a value keep the number of the effort.
 struct AnnealingTuning {
   std::optional<double> move, min_scale, max_scale, first_acceptance, cooling;
   std::optional<int> first_trials, max_accepted, max_rejected, max_uncovering, iterations_first, iterations;
 };
 
-// All that can be tuned on the way from a surface to a certified tree.
+// The options of build_sphere_tree().
 struct SphereTreeOptions {
   TreeMethod method = TreeMethod::tightened;
-  Index depth = 3;               // levels below the root at most
-  Index branching = 8;           // children of a node at most or on average, as the method has it
-  std::vector<Index> spheres{};  // tightened: how many each level may have, in place of `branching`; see TightenOptions
+  Index depth = 3;  // The maximum number of levels below the root.
+  // The number of children of a node: the maximum or the average, depending on the method.
+  Index branching = 8;
+  // tightened: the maximum number of spheres of each level, which replaces `branching`; see TightenOptions.
+  std::vector<Index> spheres{};
   Effort effort = Effort::standard;
-  Objective objective = Objective::balanced;  // tightened
-  SetEnergy energy = SetEnergy::maximum;      // annealing, the three
-  SphereEnergy distance = SphereEnergy::lemma;
-  AnnealingTuning annealing{};
-  // Which spheres that others make needless go at the end; annealing: between levels, too, but for `exhaustive`, which
-  // stands for `acyclic` there.
+  Objective objective = Objective::balanced;    // tightened: the quantity that is kept low on every level.
+  SetEnergy energy = SetEnergy::maximum;        // annealing: the energy of a set of siblings.
+  SphereEnergy distance = SphereEnergy::lemma;  // annealing: the energy of one sphere.
+  AnnealingTuning annealing{};                  // annealing: single parameters.
+  // Which redundant spheres are removed from the finished tree; `exhaustive` removes the most. Annealing also removes
+  // spheres between its levels, by the same selection, with `acyclic` in place of `exhaustive`.
   Selection redundancy = Selection::exhaustive;
-  MergeClosing closing = MergeClosing::refit;  // merging
-  Refinement refinement{};
-  Index descent = 0;       // trials of random descent for each node, after any method
-  bool anneal = false;     // whether to anneal each set of siblings afterwards (anneal_tree), after any other method
-  std::uint64_t seed = 1;  // of the tree's own random choices; medial.sampling has its own
+  MergeClosing closing = MergeClosing::refit;  // merging: how the spheres come to cover the surface.
+  Refinement refinement{};                     // Where the tree goes deeper.
+  // The number of trials of random descent for each node, after any method; 0 runs none. See descent.h.
+  Index descent = 0;
+  // Whether each set of siblings is annealed afterwards (anneal_tree()), after any method but annealing itself.
+  bool anneal = false;
+  // The seed of the tree's own random choices. medial.sampling has a seed of its own.
+  std::uint64_t seed = 1;
   MedialBuildOptions medial{};
-  // tightened: whether to make a medial axis, too. The tree is the same without, and there sooner, for it is fitted to
-  // surface points alone; other methods have an axis or not, whatever this says.
+  // tightened: whether a medial axis is built, too. The tree is fitted to surface points alone and is the same without
+  // the axis, and the build is faster. Other methods ignore this option.
   bool axis = true;
-  // Whether to take samples_needed() surface points, a fifth of them along edges, in place of the numbers in
-  // medial.sampling: a deep tree needs more than an axis does.
+  // Whether the build uses samples_needed() surface points, a fifth of them along edges, in place of the numbers in
+  // medial.sampling. A deep tree needs more points than an axis does.
   bool samples_by_need = true;
 };
 
-// Whether the method starts from points of the surface, or from a medial axis made of them.
+// Returns true if the method starts from points of the surface or from a medial axis built from them, as tightened and
+// merging do.
 bool samples_surface(TreeMethod method);
 
-// What the annealing runs with: the dissertation's schedule with high effort, otherwise a share of it, and the tuning.
-// Of a tree that there is already, the first acceptance is 0.05 unless the tuning says otherwise.
+// Returns the parameters that the annealing runs with: with high effort the dissertation's schedule, with lower effort
+// a share of it, and in both cases the values of options.annealing where they are given.
+// For a tree that exists already the first acceptance is 0.05 unless options.annealing says otherwise.
 AnnealingOptions annealing_options(const SphereTreeOptions& options);
 
-// How many surface points a method and its depth need: 5000, or for tightened trees 20 for each ball of the last level,
-// 10,000 at least and 200,000 at most, whatever the effort, so that high effort has the tree of standard effort to
-// begin with.
+// Returns how many surface points a method needs for its depth: 5000, but for tightened trees 20 for each ball of the
+// last level, within 10,000 and 200,000. The number does not depend on the effort, because high effort starts from the
+// tree of standard effort.
 Index samples_needed(const SphereTreeOptions& options);
 
-// Throws InputError for a branching or numbers of spheres that are out of the method's range; building does so before
-// anything else.
+// Checks the branching and the numbers of spheres. Throws InputError if they are out of the method's range.
+// build_sphere_tree() makes this check before all other work.
 void require_sizes(const SphereTreeOptions& options);
 
-// Everything that one run from a surface to a packed tree made, and how long each stage took.
+// The results of all stages of a build, and the time of each stage.
 struct SphereTreeBuild {
-  // Of the options, those that build_sphere_tree_within() chooses by itself.
+  // These three are the options that were used; build_sphere_tree_within() chooses them itself.
   TreeMethod method = TreeMethod::tightened;
   Effort effort = Effort::standard;
   std::uint64_t seed = 1;
-  Index points = 0;  // of the surface, that it started from; without those of gap repair
-  // Empty for an octree, annealing, and where options.axis did without. Of the points that a tightened tree is fitted
-  // to, unless it is refined: then points are added to its own.
+  // The number of surface points that the build started from, without those that gap repair added.
+  Index points = 0;
+  // The medial axis. There is none for an octree or annealing, nor if options.axis is false. It is built from the
+  // points that a tightened tree is fitted to, unless the axis is refined, which adds further points.
   std::optional<MedialBuild> medial;
   Index axis_components = 0;
   SphereTree tree;
-  SphereTree octree;  // of the same depth, to compare with: measured for its inaccuracy alone
+  // An octree of the same depth for comparison. Only its inaccuracies are measured.
+  SphereTree octree;
   TightenReport tightening;
   MergeReport merging;
   AnnealingReport annealing;  // also of options.anneal
@@ -90,25 +102,31 @@ struct SphereTreeBuild {
   CoverReport cover;
   RedundancyReport redundancy;
   runtime::PackedSphereTree packed;
-  Verification certificate;   // of the packed tree; always ok()
-  Index bounds_weakened = 0;  // nodes with a bound that is weaker than measured, since only that is proven
-  StageTimes seconds;         // stage, time; those of the medial axis among them
+  Verification certificate;  // The proof of the packed tree; ok() always holds.
+  // The number of nodes that store a weaker bound than the measured one, because only the weaker one is proven.
+  Index bounds_weakened = 0;
+  // The name and the duration of each stage, those of the medial axis included.
+  StageTimes seconds;
 };
 
-// Builds a certified tree of a surface: medial axis, tree, covering, removal of redundant spheres, bounds, packing,
-// verification. The result is conservative, and the same for the same surface, options and input whatever the number of
-// threads. A mesh that is scaled or moved gets the same tree but for the last digits, unless it is merged or a corner
-// is as near to the border between two lattice points (spheretree/canonical_frame.h) as its digits reach; scaled by a
-// power of two, the same but for the scale. Throws InputError if the surface or an option does not allow it, and Error
-// if the packed tree fails its certificate. Three levels take some seconds; see docs/results/benchmarks.md.
+// Builds a certified sphere-tree of a surface in these stages: medial axis, tree, covering, removal of redundant
+// spheres, bounds, packing, verification. `input` may replace the first stages of the medial axis.
+// The tree is conservative. It is the same for the same surface, options and input on any number of threads. If the
+// mesh is scaled by a power of two, the tree differs in its scale only. If the mesh is scaled otherwise or moved, the
+// tree is the same up to the last digits, except for merged trees and for meshes with a corner so near to the border
+// between two lattice points (spheretree/canonical_frame.h) that its rounding decides the side.
+// Throws InputError if the surface or an option does not allow the build, and Error if the packed tree fails its
+// verification. Three levels take some seconds; see docs/results/benchmarks.md.
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options = {},
                                   const Progress& progress = {}, MedialBuildInput input = {});
 
-// The tightest certified tree, by overall_inaccuracy(), that there is after some seconds: the octree first, which takes
-// its time whatever the limit, then tightened trees of low, standard and high effort, and of high effort with further
-// seeds, as long as there is time. The method and the effort of the options do not count. What comes out depends on the
-// machine's speed. A limit that is met is noticed at the next report of progress, within a second or so for meshes of a
-// few thousand triangles. Errors as above, and of a limit that is negative or not a number.
+// Builds the tightest certified tree, measured by overall_inaccuracy(), that it finds within a time limit in seconds.
+// It builds the octree first, which is finished whatever the limit, and then tightened trees of low, standard and high
+// effort, and of high effort with further seeds, until the time is used up. It ignores options.method and
+// options.effort.
+// The result depends on the speed of the machine. The limit is checked at each report of progress, which comes within
+// about a second for meshes of a few thousand triangles. Throws as build_sphere_tree() does, and InputError if the
+// limit is negative or not a number.
 SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options = {},
                                          const Progress& progress = {}, const MedialBuildInput& input = {});
 

@@ -2,15 +2,17 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/spheretree/tree.h"
 
+// Measures the bounds and inaccuracies of a sphere-tree's nodes.
 namespace orchard {
 
 // Fills center_distance, distance_bound and inaccuracy of every node, in mesh units. If the surface is not solid,
-// distances are unsigned and the inaccuracy is the distance bound. Parallel over nodes; the result does not depend on
-// the thread count. Source: dissertation 5.3.5 and 6.3.4.
+// distances are unsigned and the inaccuracy is the distance bound. The work is parallel over nodes; the result does not
+// depend on the number of threads. Source: dissertation 5.3.5 and 6.3.4.
 void measure(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
-// Fills the inaccuracy alone, with the same numbers, in about half the time: for trees that are only compared with.
-// `known`: a tree of the same surface that is measured; where it has the same sphere, its number is taken.
+// Fills the inaccuracy of every node only, with the same values as measure(), in about half the time. Use it for trees
+// that only serve for comparison. `known` is a measured tree of the same surface; where it contains the same sphere,
+// its value is copied.
 void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress = {},
                         const SphereTree& known = {});
 

@@ -4,12 +4,14 @@
 
 #include "orchard/geometry/surface.h"
 
+// Measures how much of a union of balls lies outside a solid.
 namespace orchard {
 
-// The volume of the part of a union of balls that lies outside the solid, in cubic mesh units: what parallel rays have
-// of it, exactly along each, at places of a low-discrepancy sequence (R2) across the union's box. Good to about .3 %
-// with the default number, and with fewer rays the error grows about as their number falls. The time goes as the rays,
-// plus how often triangles and balls meet them. Throws InputError unless surface.solid().
+// Returns the volume of the part of a union of balls that lies outside the solid, in cubic mesh units. Parallel rays
+// measure it, exactly along each ray, at places of a low-discrepancy sequence (R2) across the box of the union.
+// With the default number of rays, the error is about 0.3 %; it is about inversely proportional to the number of rays.
+// Throws InputError unless surface.solid(). The time is proportional to the number of rays plus the number of
+// intersections of rays with triangles and balls.
 double outside_volume(const Surface& surface, std::span<const Sphere> balls, std::uint64_t rays = 10'000);
 
 }  // namespace orchard

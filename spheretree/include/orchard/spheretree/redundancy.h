@@ -6,44 +6,53 @@
 #include "orchard/geometry/surface.h"
 #include "orchard/spheretree/tree.h"
 
+// Removes spheres that a tree does not need (dissertation 5.3.4). All functions require a tree that is conservative by
+// the path rule, whole or cut off below any level. Removal keeps it conservative: a sphere stays unless the boundary
+// lemma proves that it can be removed.
 namespace orchard {
 
-// Spheres that a tree can do without (dissertation 5.3.4). Every function here takes a tree that is conservative by the
-// path rule, whole or cut off below any level. Removal keeps it conservative: a sphere stays unless the boundary lemma
-// proves that it can go.
-
-// A node that covers nothing of the surface but what its coverers cover too. This is the dissertation's sense: balls
-// are compared with balls, whatever is above and below them.
+// A node that covers no part of the surface that its coverers do not cover. This is the dissertation's definition: it
+// compares balls with balls and ignores the balls above and below them.
 struct RedundantNode {
   Index node = kNone;
-  std::vector<Index> coverers;  // nodes, ascending: the covering rests on these
+  // The nodes that the covering depends on, ascending.
+  std::vector<Index> coverers;
 };
+// The nodes that may cover a redundant node: its siblings or the siblings of its parent.
 enum class Coverers { siblings, aunts };
-// The redundant nodes on one level, ascending, by their siblings or by the siblings of their parent. Parallel over
-// nodes.
+// Returns the redundant nodes of one level, ascending. The work is parallel over nodes.
 std::vector<RedundantNode> redundant_nodes(const SphereTree& tree, const Surface& surface, Index level, Coverers by);
 
-// Which of the redundant nodes may go together. Independent: no node goes that another one that goes rests on; greedy,
-// in order of increasing degree. Acyclic: a node that goes may rest on another that goes, as long as the chain ends in
-// nodes that stay; of each cycle, the node that most others rest on is kept.
+// Selects redundant nodes that may be removed together. An independent selection contains no node that another one of
+// the selection depends on; it is greedy, in order of increasing degree. In an acyclic selection, a removed node may
+// depend on another removed node if the chain ends in nodes that stay; of each cycle, the node that most others depend
+// on is kept.
 std::vector<Index> independent_selection(std::span<const RedundantNode> redundant);
 std::vector<Index> acyclic_selection(std::span<const RedundantNode> redundant);
 
+// Which redundant spheres remove_redundant() removes.
 enum class Selection {
-  independent,  // by siblings and aunts, as the dissertation built it
-  acyclic,      // by siblings and aunts, as it sketched it
-  exhaustive,   // whatever the path rule allows: afterwards no node at all can go
+  // By siblings and aunts, as the dissertation implemented it.
+  independent,
+  // By siblings and aunts, as the dissertation sketched it.
+  acyclic,
+  // All spheres that the path rule allows to remove: afterwards no further node can be removed.
+  exhaustive,
 };
+// Counts of remove_redundant().
 struct RedundancyReport {
-  Index by_siblings = 0, by_aunts = 0;  // found redundant, on all levels; not counted for exhaustive
-  Index selected = 0;                   // of these, selected to go together
-  Index vetoed = 0;                     // of the selected, kept because the path rule is not certain without them
-  Index removed = 0;                    // nodes that are gone, with what was below and left empty above them
+  // Nodes found redundant on all levels; not counted for `exhaustive`.
+  Index by_siblings = 0, by_aunts = 0;
+  Index selected = 0;  // Of these, the nodes selected for removal together.
+  // Of the selected nodes, those kept because the path rule is not certain without them.
+  Index vetoed = 0;
+  // The nodes removed, including those below them and parents that lost their last child.
+  Index removed = 0;
 };
 
-// Removes redundant nodes, from the top level down, the loosest of a level first: the one whose radius plus signed
-// distance of the centre is largest. A removed node takes its subtree with it; a parent that loses its last child goes
-// too. Precondition: the tree is conservative; it stays so.
+// Removes redundant nodes from the top level down, the loosest of a level first, which is the one with the largest sum
+// of radius and signed distance of the centre. A node is removed with its subtree, and a parent that loses its last
+// child is removed, too. Precondition: the tree is conservative; it remains so.
 RedundancyReport remove_redundant(SphereTree& tree, const Surface& surface, Selection selection = Selection::exhaustive,
                                   const Progress& progress = {});
 

@@ -12,37 +12,50 @@
 #include "orchard/spheretree/sphere_audit.h"
 #include "orchard/spheretree/tightened.h"
 
+// Builds a set of spheres for a solid that covers it, lies inside it, balances its volume or stands for it as
+// particles.
 namespace orchard {
 
-// What a set of spheres promises.
-//   cover     it holds the whole surface, and sticks out as little as it can
-//   inside    it lies within the solid, and fills as much of it as it can
-//   balanced  its union has the volume of the solid, within 1 %, and a boundary as near to the surface as can be
-//   particles it lies within the solid, no two of its spheres overlap by more than is allowed, and as one rigid body it
-//             has the solid's centre of mass and inertia within stated errors; it fills as much as it can
+// What a set of spheres guarantees, and what it optimises.
+//   cover     The set contains the whole surface and protrudes as little as possible.
+//   inside    The set lies within the solid and fills as much of it as possible.
+//   balanced  The union has the volume of the solid within 1 %, and its boundary is as near to the surface as possible.
+//   particles The set lies within the solid, no two spheres overlap by more than is allowed, and as one rigid body it
+//             has the solid's centre of mass and inertia within stated errors. It fills as much of the solid as
+//             possible.
 enum class SphereFit { cover, inside, balanced, particles };
 
+// The largest number of spheres in a set.
 inline constexpr Index kMaxSetSpheres = 2000;
-inline constexpr double kBalancedVolume = 0.01;  // how far the union's volume of a balanced set may be off, as a part
+// The largest error of the volume of a balanced set, as a fraction of the solid's volume.
+inline constexpr double kBalancedVolume = 0.01;
 
+// The options of build_sphere_set(). The description of an option names the fits that use it; require_usable() checks
+// this.
 struct SphereSetOptions {
   SphereFit fit = SphereFit::cover;
-  Index spheres = 20;  // exactly so many, 1..kMaxSetSpheres; where an error is given, at most so many
-  // The fewest spheres with this error at most, as a fraction of the diagonal of the bounding box; 0: exactly
-  // `spheres`. cover: how far they stick out; inside and particles: how far the surface is from them; balanced: the
-  // mean two-sided distance.
+  // The number of spheres, 1..kMaxSetSpheres. The set has exactly this number, or at most this number if `error` or
+  // `volume_error` is given.
+  Index spheres = 20;
+  // The error to reach with as few spheres as possible, as a fraction of the diagonal of the bounding box; 0 asks for
+  // exactly `spheres` spheres. The error of a cover is how far it protrudes. The error of inside and particles is the
+  // largest distance of the surface from the set. The error of balanced is the mean two-sided distance.
   double error = 0;
-  // The same for the volume, as a fraction of the solid's: cover: what lies outside; inside and particles: what is left
-  // out. balanced: of no use, since the volume is that of the solid anyhow.
+  // The same for the error of the volume, as a fraction of the solid's volume. The error of a cover is the volume
+  // outside the solid; the error of inside and particles is the volume left out. balanced does not use it, since its
+  // volume is always that of the solid.
   double volume_error = 0;
-  bool solid = false;           // cover: the whole solid, not the surface alone
-  double padding = 0;           // cover: every point no farther than this from the surface is held, too; mesh units
-  double min_radius = 0;        // no sphere is smaller; mesh units
-  SetWeights weights{};         // where looseness counts more; of no use to particles
-  ParticleOptions particles{};  // of use to that fit alone
-  Effort effort = Effort::standard;  // cover: as for trees; otherwise: how many steps
-  // Where something that was asked for is missed, look for a number of spheres that would do: up to four more sets are
-  // made.
+  bool solid = false;  // cover: whether the set contains the whole solid, not the surface alone.
+  // cover: the set contains every point that is at most this far from the surface; in mesh units.
+  double padding = 0;
+  double min_radius = 0;        // The smallest radius that a sphere may have, in mesh units.
+  SetWeights weights{};         // Regions where looseness counts more; particles do not use them.
+  ParticleOptions particles{};  // Options of the fit `particles`; other fits do not use them.
+  // cover: the effort of the search, as for trees. Other fits: the number of steps. Higher effort gives better sets and
+  // takes longer.
+  Effort effort = Effort::standard;
+  // Whether the build looks for a sufficient number of spheres if a guarantee or an error is missed. The search makes
+  // up to four more sets.
   bool find_enough = true;
   std::uint64_t seed = 1;
   // How closely the result is measured. It does not change what a cover or a set of spheres inside is, nor whether they
@@ -50,39 +63,44 @@ struct SphereSetOptions {
   SphereAuditOptions audit{};
 };
 
+// The result of build_sphere_set().
 struct SphereSetBuild {
   SphereFit fit = SphereFit::cover;
-  std::vector<Sphere> spheres;  // the largest first
-  // Whether the promise is proven: cover, of the surface (and of the solid, where that is asked for); inside, of every
-  // sphere; balanced, that the volume is within kBalancedVolume, two standard errors included; particles, of every
-  // sphere and every pair, and that the moments are within their errors. Also that no sphere is below `min_radius`.
+  std::vector<Sphere> spheres;  // The spheres, the largest first.
+  // Whether the guarantee is proven: for a cover, that it contains the surface, and the solid if that was asked for;
+  // for inside, that every sphere lies in the solid; for balanced, that the volume is within kBalancedVolume with two
+  // standard errors included; for particles, that every sphere and every pair satisfies it and the moments are within
+  // their errors. For all fits, also that no radius is below `min_radius`.
   bool kept = false;
-  // Whether an error that was asked for is reached. If not, `spheres` is the best set of as many as are allowed.
+  // Whether the requested error is reached. If it is not, `spheres` is the best set of as many spheres as are allowed.
   bool error_reached = true;
-  // Where one of the two is false: a number of spheres with which a set was made that misses nothing. Nothing: none was
-  // found up to kMaxSetSpheres, or `find_enough` is off.
+  // If one of the two is false, a number of spheres for which a set was built that misses nothing. There is no value if
+  // no such set was found up to kMaxSetSpheres or if `find_enough` is off.
   std::optional<Index> enough;
-  SphereAudit audit;                         // of the spheres; without `padding`
-  std::optional<ParticleFigures> particles;  // of that fit
+  SphereAudit audit;                         // Measures of the spheres, without `padding`.
+  std::optional<ParticleFigures> particles;  // Measures of the fit `particles`.
   StageTimes seconds;
 };
 
-// Throws InputError if an option is out of its range or of no use to the fit.
+// Throws InputError if an option is out of its range or if options.fit cannot use it.
 void require_usable(const SphereSetOptions& options);
 
-// Makes a set of spheres for a solid that keeps the promise of `options.fit`; the result says whether it does.
-// cover is the first level of a tightened tree (tightened.h), the best of some searches by how far the union sticks out
-// and how much of it lies outside; inside and balanced move all spheres together along the gradient of the union's
-// volume or of its two-sided distance; particles are packed, and then made smaller or moved until the moments are
-// right. Where fewer spheres are enough for a cover, the others lie within the solid. The same spheres for the same
-// surface, options and input whatever the number of threads. Throws InputError if options are unusable or the surface
-// is no solid.
+// Builds a set of spheres for a solid. The result states whether the guarantee of `options.fit` is kept.
+// - cover uses the first level of a tightened tree (tightened.h). It takes the best of several searches, by how far the
+//   union protrudes and by the volume of its part outside. If fewer spheres are enough, the others lie within the
+//   solid.
+// - inside and balanced move all spheres together along the gradient of the union's volume or of its two-sided
+//   distance.
+// - particles packs spheres, and then shrinks or moves them until the moments are right.
+// The result is the same for the same surface, options and input on any number of threads. Throws InputError if an
+// option is unusable or the surface is not solid.
 SphereSetBuild build_sphere_set(const Surface& surface, const SphereSetOptions& options = {},
                                 const Progress& progress = {});
 
-// Whether every point of the solid lies in a ball, given that every point of its surface does: a void of a union of
-// balls has a corner where three spheres meet in no other ball, so it is enough to look at those. What rounding cannot
-// tell counts as not held. Precondition: the balls cover the surface. O(n k^3) for n balls that meet k others each.
+// Returns whether every point of the solid lies in a ball. Precondition: the balls cover the surface.
+// A void in a union of balls has a corner where three spheres meet outside all other balls, so the function tests these
+// corners only. A corner that rounding leaves undecided counts as uncovered. O(n k^3) for n balls of which each meets k
+// others.
 bool covers_solid(const Surface& surface, std::span<const Sphere> balls);
 
 }  // namespace orchard

@@ -8,35 +8,39 @@
 #include "orchard/medial/segments.h"
 #include "orchard/viz/vtk_writer.h"
 
-// A medial axis and what is known about it as ParaView opens it. The rules of vtk_writer.h hold.
+// Writes medial axes and measures of them for ParaView. The rules of vtk_writer.h hold.
 namespace orchard {
 
-// One unstructured grid (.vtu): a polygon for each face and wall, a line for each edge that no face has.
-// Point arrays: radius; contact_angle (the widest at which two forming points are seen, radians); component; segment;
-// added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count. Cell
-// arrays: segment; sheet (1, else a curve) and trunk (1, else a branch) of the segment; wall (1 for walls);
-// contact_angle (at which the two points are seen, NaN for lines); point_a, point_b (-1 for lines); added; component.
-// Of points and cells: structure (the number of its part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2
-// border, 3 junction, 4 curve).
-// Also what `of_vertices` has, and `of_faces`: one value for each face, then for each wall; lines get NaN. Points are
-// numbered as in the contacts of write_medial_axis().
+// Writes a medial axis as an unstructured grid (.vtu): a polygon for each face and wall, and a line for each edge that
+// belongs to no face.
+// Point arrays: radius; contact_angle (the widest angle in radians at which two forming points are seen); component;
+// segment; added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count.
+// Cell arrays: segment; sheet (1, otherwise a curve) and trunk (1, otherwise a branch) of the segment; wall (1 for
+// walls); contact_angle (at which the two points are seen, NaN for lines); point_a, point_b (-1 for lines); added;
+// component.
+// Both have structure (the number of the part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2 border, 3
+// junction, 4 curve).
+// The file also contains the arrays `of_vertices`, and `of_faces` with one value for each face and then for each wall;
+// lines get NaN. Surface points are numbered as in the contacts of write_medial_axis().
 void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
                        const ViewArrays& of_vertices = {}, const ViewArrays& of_faces = {});
 
-// The mesh with a point array `medial_radius`, and `thickness`, twice that; radii: of each vertex of the mesh. And what
-// `more` has of each vertex.
+// Writes the mesh with a point array `medial_radius` and a point array `thickness`, which is twice that. `radii` has a
+// value for each vertex of the mesh, in mesh units. The file also contains the arrays `more`, with a value for each
+// vertex.
 void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii,
                      const ViewArrays& more = {});
 
-// A complete medial mesh of any system: triangles, and lines for the other edges. Point arrays: radius, structure and
-// structure_kind, as above, and what `of_vertices` has. Cell arrays: structure, structure_kind.
+// Writes a complete medial mesh of any system: its triangles, and lines for the other edges. Point arrays: radius,
+// structure and structure_kind, as in write_medial_grid(), and the arrays `of_vertices`. Cell arrays: structure,
+// structure_kind.
 void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {});
 
-// One vertex per place, in order. Point arrays: number (from 1 on, as reports have it), measure (0 protrusion, 1
-// coverage, 2 dent), value (in % of the diagonal), outward (the surface's normal there).
+// Writes one vertex for each place, in order. Point arrays: number (from 1, as in reports), measure (0 protrusion, 1
+// coverage, 2 dent), value (in % of the diagonal), outward (the surface's normal at the place).
 void write_worst_places(const std::filesystem::path& vtp, const std::vector<WorstPlace>& places);
 
-// A polyline for each arc. Point arrays: radius; vertex (of the axis). Cell arrays: kind (0 curve, 1 border, 2
+// Writes a polyline for each arc. Point arrays: radius; vertex (of the axis). Cell arrays: kind (0 curve, 1 border, 2
 // junction), length, mean_radius, from, to (nodes, as in the GraphML).
 void write_skeleton(const std::filesystem::path& vtp, const MedialAxis& axis, const SkeletonGraph& graph);
 

@@ -10,58 +10,63 @@
 #include "orchard/viz/render.h"
 #include "orchard/voronoi/diagram.h"
 
-// Pictures of files: whatever they hold, in the look of the pipeline's picture, one in the other. The rules of render.h
-// hold.
+// Draws any combination of meshes, axes, trees, diagrams and points, in the style of the pipeline's picture, or shows
+// them in a window. The rules of render.h hold.
 namespace orchard {
 
+// A value with its name.
 template <class Value>
 struct Named {
-  std::string name;  // for the caption
+  std::string name;  // The caption.
   Value value;
 };
 
-// What a figure shows besides, and how.
+// What a figure shows and how.
 struct Figure {
-  // An array of the points or cells of axes (radius, structure, structure_kind), trees' levels (write_tree_level) or
-  // .vtp files, with a bar of its colours where it is a quantity. Empty: axes by radius, trees by branch, without a
-  // bar.
+  // The array that determines the colours: an array of the points or cells of axes (radius, structure, structure_kind),
+  // of tree levels (write_tree_level) or of .vtp files. A quantity gets a colour bar. If this is empty, axes are
+  // coloured by radius and trees by branch, without a bar.
   std::string color = {};
-  std::optional<std::array<double, 2>> range = {};  // of the colours; nothing: that of all values
-  std::optional<Point> look_at = {};                // the middle of the picture; nothing: of everything
-  double span = 0;                                  // of what is seen around it, in mesh units; 0: everything
-  std::optional<std::array<double, 4>> clip = {};   // a, b, c, d: what has a x + b y + c z > d is cut away
-  bool edges = false;        // borders (dark) and seams (orange) of axes, feature edges of .vtp files
-  bool balls = false;        // the balls of axes instead of their sheets
-  bool beside = false;       // a panel for each thing, with the meshes around it, not all of them in one
-  bool captions = true;      // below the panels
-  bool transparent = false;  // no white ground
-  bool steady = false;       // room for everything from all directions, for turntables
+  // The range of the colours; without a value, the range of all values.
+  std::optional<std::array<double, 2>> range = {};
+  std::optional<Point> look_at = {};  // The middle of the picture; without a value, the middle of everything.
+  double span = 0;                    // The extent that is shown, in mesh units; 0 shows everything.
+  std::optional<std::array<double, 4>> clip = {};  // a, b, c, d: parts with a x + b y + c z > d are cut away.
+  bool edges = false;        // Borders (dark) and seams (orange) of axes, and feature edges of .vtp files.
+  bool balls = false;        // The balls of axes instead of their sheets.
+  bool beside = false;       // A panel for each item, with the meshes around it, instead of one panel for all.
+  bool captions = true;      // Captions below the panels.
+  bool transparent = false;  // No white background.
+  bool steady = false;       // Enough room for all items from all directions, for turntables.
 };
 
+// The items of a picture.
 struct Scene {
   std::vector<Named<Surface>> meshes;
   std::vector<Named<SphereTree>> trees;
   std::vector<Named<MedialMesh>> axes;
-  std::vector<Named<VoronoiDiagram>> diagrams;  // cells, by inaccuracy if they have any, cut open; a panel each
+  std::vector<Named<VoronoiDiagram>> diagrams;  // Cells, cut open, coloured by inaccuracy if any; a panel each.
   std::vector<Named<std::vector<Point>>> points;
-  std::vector<Named<std::filesystem::path>> data;  // .vtp files, as they are
-  // Of the trees, a panel for each; below a tree's deepest: its leaves. Empty: the deepest one there is.
+  std::vector<Named<std::filesystem::path>> data;  // .vtp files, unchanged.
+  // The levels of the trees, with a panel for each. A level below the deepest one of a tree shows its leaves. If this
+  // is empty, the deepest level is shown.
   std::vector<Index> levels;
-  double opacity = 0.16;  // of meshes, where there is something else to see
-  Figure figure;          // of draw_view(); a window has keys for what it can do
+  double opacity = 0.16;  // The opacity of meshes if there are other items.
+  Figure figure;          // Used by draw_view(); a window has keys for what it can show.
 };
 
-// The arrays that Figure::color may name, in alphabetical order. Reads the heads of the scene's .vtp files; those that
-// cannot be read have none.
+// Returns the arrays that Figure::color may name, in alphabetical order. Reads the heads of the scene's .vtp files;
+// files that cannot be read have no arrays.
 std::vector<std::string> color_arrays(const Scene& scene);
 
-// Draws a .png. Of `picture`, all but the values counts.
+// Draws a .png file. Uses all members of `picture` except the values.
 PictureStatus draw_view(const std::filesystem::path& png, const Scene& scene, const PipelinePicture& picture);
 
-// Opens a window on $DISPLAY and returns once it is closed. Keys: up, down and digits for the level, o and O for the
-// opacity of meshes, s to save what is seen to `png` (unless that is empty), r to see all again, q to close; a click on
-// a sphere prints its record to standard output. picture.timeout and picture.progress do not count. A status that is
-// not made says why there was no window.
+// Opens a window on $DISPLAY and returns when it is closed. A status without a picture states why there was no window.
+// Ignores picture.timeout and picture.progress.
+// Keys: up, down and digits select the level, o and O change the opacity of meshes, s saves the view to `png` (unless
+// that is empty), r shows everything again, q closes the window. A click on a sphere prints its record to standard
+// output.
 PictureStatus show_view(const std::filesystem::path& png, const Scene& scene, const PipelinePicture& picture);
 
 }  // namespace orchard

@@ -5,21 +5,25 @@
 
 #include "orchard/voronoi/diagram.h"
 
+// Writes Voronoi cells for ParaView.
 namespace orchard {
 
+// Which cells are written.
 struct VoronoiCellsView {
-  std::optional<Box> box;                        // clips the cells; a tenth larger than the points' box unless given
-  std::optional<std::span<const Index>> points;  // whose cells; all unless given
+  // The box that clips the cells; by default a tenth larger than the box of the points.
+  std::optional<Box> box;
+  std::optional<std::span<const Index>> points;  // The points whose cells are written; by default all.
 };
 
-// Voronoi cells as ParaView opens them: XML UnstructuredGrid (.vtu) of polyhedra, each with corners of its own, so that
-// filters like Shrink part them. Cells that do not reach into the box are left out. Cell arrays:
-//   point        the cell's
+// Writes Voronoi cells as an XML UnstructuredGrid (.vtu) of polyhedra. Each polyhedron has its own corners, so that
+// filters like Shrink separate the cells. Cells that do not reach into the box are left out. Cell arrays:
+//   point        the point of the cell
 //   inaccuracy   cell_inaccuracies() (quality.h), a length
-//   faces        that the cell has in the box
+//   faces        the number of faces of the cell in the box
 //   at_box       1 if the box cuts the cell
-// Zlib-compressed; the same bytes for the same diagram. The file appears as a whole or not at all; throws Error if it
-// cannot be written, InputError for a point that the diagram does not have. Returns the number of cells written.
+// The file is zlib-compressed and written completely or not at all; the same diagram gives the same bytes. Returns the
+// number of cells written. Throws Error if the file cannot be written, and InputError for a point that the diagram does
+// not have.
 Index write_voronoi_cells(const std::filesystem::path& vtu, const VoronoiDiagram& diagram,
                           const VoronoiCellsView& view = {});
 

@@ -4,12 +4,15 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/voronoi/voronoi_build.h"
 
+// Bowyer's insertion algorithm, for comparison with the robust algorithms.
 namespace orchard {
 
-// The Voronoi diagram by Bowyer's insertion (1981; dissertation 6.2.3) in plain double precision: every connected
-// vertex that computes as nearer to the new point is deleted. It presumes exact arithmetic: throws Error, naming the
-// point, where rounding leaves nothing to delete, makes what is deleted other than a ball or a new vertex wrongly
-// oriented. Nearly all points of polyhedra do. Coincident, flat and infinite input as highest_first_voronoi.
+// Builds the Voronoi diagram by Bowyer's insertion in plain double precision: each step deletes the connected vertices
+// that are computed to be nearer to the new point. It treats coincident, flat and infinite input as
+// highest_first_voronoi() does.
+// The algorithm presumes exact arithmetic. It throws Error, which names the point, if rounding leaves no vertex to
+// delete, if the deleted vertices do not form a ball, or if a new vertex is wrongly oriented. Nearly all point sets on
+// polyhedra cause this. Source: Bowyer 1981; dissertation 6.2.3.
 VoronoiBuild bowyer_voronoi(std::span<const Point> points, const Progress& progress = {});
 
 }  // namespace orchard

@@ -4,26 +4,31 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/voronoi/voronoi_build.h"
 
+// The default algorithm for Voronoi diagrams: incremental insertion that is consistent for every input and certified.
 namespace orchard {
 
-// The Voronoi diagram by incremental insertion with the highest-first deletion search under Inagaki et al.'s five
-// constraints (dissertation 6.2.3): consistent for every input, and certified to be right: no point is deeper in a
-// sphere, or farther beyond a facet of the hull, than report.certified_intrusion, which is at most
-// tolerance::kVoronoiIntrusion of the bounding radius for up to 512 points (a 512th of that for each point more).
-// Points within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Points that all
-// lie in a plane, up to rounding, or are fewer than four have a diagram without vertices; report.dimension tells.
-// Deterministic; from 100,000 points on by several threads, with the same result on any number of them. Throws
-// InputError for coordinates that are not finite or beyond 1e100, or if all points lie within
-// 1e-100 and are not one. About O(n log n) on surface points; at the peak 66 bytes a vertex and 32 a point beside the
-// caller's points.
+// Builds the Voronoi diagram by incremental insertion with the highest-first deletion search under the five constraints
+// of Inagaki et al.
+// - The diagram is consistent for every input.
+// - It is certified: no point lies deeper in the sphere of a vertex, or farther beyond a facet of the hull, than
+//   report.certified_intrusion. This value is at most tolerance::kVoronoiIntrusion of the bounding radius for up to 512
+//   points, and a 512th of that more for each further point.
+// - Points within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex.
+// - If there are fewer than four points or all lie in one plane up to rounding, the diagram has no vertices;
+//   report.dimension contains the dimension that they span.
+// The result is deterministic. From 100,000 points on, several threads compute it, and it is the same on any number of
+// them. Throws InputError for coordinates that are not finite or beyond 1e100, or if all points lie within 1e-100 and
+// are not one point. Takes about O(n log n) on surface points, and at the peak 66 bytes for each vertex and 32 for each
+// point in addition to the caller's points. Source: dissertation 6.2.3.
 VoronoiBuild highest_first_voronoi(std::span<const Point> points, const Progress& progress = {});
 
-// Adds points to a diagram that any of the algorithms made; new ones are numbered after those there are. A rebuild
-// agrees up to rounding. Old vertices may be renumbered. The report speaks of the new points, or of all of them if the
-// diagram had no vertices or had to be rebuilt, which costs as much as the first time: where the new points
-// contradict the old ones, and these are not exactly Voronoi. Else O(n) with a small constant, plus about O(k log k)
-// for k new points. The certificate is of what is new: an old vertex that was wrong stays wrong. Throws InputError as
-// above; whatever is thrown, the diagram is as it was.
+// Adds points to a diagram that any of the algorithms built. The new points are numbered after the existing ones; old
+// vertices may be renumbered. The result agrees with a rebuild up to rounding.
+// The report covers the new points, or all points if the diagram had no vertices or was rebuilt. A rebuild, which costs
+// as much as the first build, is necessary if the new points contradict the old vertices because these are not exactly
+// Voronoi. The certificate covers what is new: an old vertex that was wrong remains wrong.
+// Throws InputError as highest_first_voronoi() does; after an exception, the diagram is unchanged. Takes O(n) with a
+// small constant, plus about O(k log k) for k new points.
 InsertionReport insert_points(VoronoiDiagram& diagram, std::span<const Point> points);
 
 }  // namespace orchard

@@ -5,22 +5,33 @@
 
 #include "orchard/geometry/mesh.h"
 
+// The report of the incremental Voronoi algorithms.
 namespace orchard {
 
-// What an incremental algorithm had to do. Every point that was inserted counts under one of the insertions but the
-// first four. Inagaki's are all constrained ones, Bowyer's all certified.
+// How the points were inserted, and what is certified of the diagram. Every inserted point after the first four counts
+// under exactly one of the four kinds of insertions. All insertions of inagaki_voronoi() are constrained ones, and all
+// of bowyer_voronoi() certified ones.
 struct InsertionReport {
-  int dimension = 0;                         // of what the points span; below 3 there are no vertices
-  std::uint64_t certified_insertions = 0;    // every sign on the cavity's border was beyond doubt
-  std::uint64_t settled_insertions = 0;      // some vertex was marginal: leaving all such gave a consistent cell
-  std::uint64_t exact_insertions = 0;        // the same, after exact arithmetic had settled doubts
-  std::uint64_t constrained_insertions = 0;  // the search under the five constraints decided
-  // All insertions were made with exact signs: a sample was in doubt, too many needed them, or it was too wrong.
+  // The dimension that the points span. If it is below 3, the diagram has no vertices.
+  int dimension = 0;
+  // Insertions in which every sign on the border of the cavity was beyond doubt.
+  std::uint64_t certified_insertions = 0;
+  // Insertions with marginal vertices in which keeping all of them gave a consistent cell.
+  std::uint64_t settled_insertions = 0;
+  // Insertions of the same kind after exact arithmetic had decided doubtful signs.
+  std::uint64_t exact_insertions = 0;
+  // Insertions that the search under the five constraints decided.
+  std::uint64_t constrained_insertions = 0;
+  // Whether all insertions used exact signs, because a sample was in doubt, too many insertions needed exact signs, or
+  // the diagram was too inaccurate without.
   bool exact_signs = false;
-  double certified_intrusion =
-      0;  // over the bounding radius: no point lies deeper in a sphere or farther beyond the hull
-  std::uint64_t coplanar_centers = 0;            // circumcentres approximated by a neighbour's position
-  std::vector<std::array<Index, 2>> duplicates;  // (point left out, point it coincides with), ascending
+  // The certified bound, over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the
+  // hull.
+  double certified_intrusion = 0;
+  // Circumcentres that were approximated by the position of a neighbour.
+  std::uint64_t coplanar_centers = 0;
+  // Pairs of a point that was left out and the point that it coincides with, ascending.
+  std::vector<std::array<Index, 2>> duplicates;
 };
 
 }  // namespace orchard

@@ -6,13 +6,14 @@
 
 #include "orchard/geometry/mesh.h"
 
+// The power diagram of balls, clipped by a box.
 namespace orchard {
 
-// The power diagram of balls: each place belongs to the ball of the least |p - c|^2 - r^2. Cells are those of places
-// within a box; what lies far outside of it is cut off.
+// The power diagram of balls: each place belongs to the ball with the smallest |p - c|^2 - r^2. The cells contain the
+// places within a box; parts far outside it are cut off.
 struct PowerDiagram {
   struct Vertex {
-    std::array<Index, 4> balls;  // ascending; so below
+    std::array<Index, 4> balls;  // Ascending, as in edges and facets.
     Point position;
   };
   struct Edge {
@@ -21,17 +22,18 @@ struct PowerDiagram {
   };
   struct Facet {
     std::array<Index, 2> balls;
-    std::vector<Point> corners;  // in their order around it; flat and convex up to rounding
+    // The corners in order around the facet, which is flat and convex up to rounding.
+    std::vector<Point> corners;
   };
   std::vector<Vertex> vertices;
   std::vector<Edge> edges;
   std::vector<Facet> facets;
-  std::vector<std::uint8_t> holds_center;  // of each ball: whether its centre is in its own cell
+  std::vector<std::uint8_t> holds_center;  // For each ball, whether its centre is in its own cell.
 };
 
-// By CGAL's regular triangulation, with exact predicates; positions are rounded. Items are in ascending order of their
-// balls. O(n log n) in practice. Precondition: centres and radii are finite. Where five balls or more meet in one
-// place, the diagram is one that a perturbation gives, with edges and facets of no size.
+// Builds the power diagram of balls by CGAL's regular triangulation with exact predicates; positions are rounded. The
+// items are in ascending order of their balls. If five balls or more meet in one place, the diagram is that of a
+// perturbation, with edges and facets of size zero. Precondition: centres and radii are finite. O(n log n) in practice.
 PowerDiagram power_diagram(std::span<const Sphere> balls, const Box& box);
 
 }  // namespace orchard

@@ -4,20 +4,20 @@
 
 #include "orchard/voronoi/diagram.h"
 
-// The edges, faces and cells of a diagram, walked in place: nothing is allocated but one table of indices for the
-// cells. Views refer to the diagram, which must outlive them and be consistent (validate()). All are input ranges:
+// Ranges over the edges, faces and cells of a diagram. They need no memory except one table of indices for the cells. A
+// view refers to its diagram, which must outlive the view and be consistent (validate()). All views are input ranges:
 //   for (const VoronoiFace& face : faces(diagram)) for (Index vertex : face) ...
 namespace orchard {
 
-// An edge of the diagram: two neighbouring vertices, at most one of them at infinity, and the three points whose cells
-// meet along it.
+// An edge of a diagram: two neighbouring vertices, and the three points whose cells meet along the edge.
 struct VoronoiEdge {
-  std::array<Index, 2> vertices;  // lower index first
-  std::array<Index, 3> points;    // kInfinitePoint among them where both vertices are at infinity
+  std::array<Index, 2> vertices;  // The lower index comes first.
+  // If both vertices are at infinity, one of the points is kInfinitePoint.
+  std::array<Index, 3> points;
 };
 
-// A face: the polygon between the cells of two points. Iterating gives its vertices in order, counter-clockwise seen
-// from the second point, each once; an unbounded face has two neighbouring ones at infinity.
+// The polygon between the cells of two points. Iteration visits each vertex once, in order, counter-clockwise seen from
+// the second point. An unbounded face contains two neighbouring vertices at infinity.
 class VoronoiFace {
  public:
   class Iterator {
@@ -35,12 +35,13 @@ class VoronoiFace {
     const VoronoiDiagram* diagram_ = nullptr;
     std::array<Index, 2> points_{};
     Index at_ = kNone, start_ = kNone;
-    unsigned leave_ = 0;  // the neighbour that comes next
-    unsigned pivot_ = 0;  // the forming point that it is reached around
+    unsigned leave_ = 0;  // The neighbour that comes next.
+    unsigned pivot_ = 0;  // The forming point around which it is reached.
   };
 
   VoronoiFace() = default;
-  // The face between the cells of two forming points, given by their places in a vertex.
+  // Constructs the face between the cells of two forming points of a vertex. `first` and `second` are their positions
+  // in VoronoiVertex::forming_points, 0..3.
   VoronoiFace(const VoronoiDiagram& diagram, Index vertex, unsigned first, unsigned second);
   Index first_point() const { return points_[0]; }
   Index second_point() const { return points_[1]; }
@@ -55,7 +56,7 @@ class VoronoiFace {
   unsigned leave_ = 0, pivot_ = 0;
 };
 
-// Every edge once. O(n) for all.
+// A range that visits every edge once. Takes O(n) for all edges.
 class VoronoiEdges {
  public:
   class Iterator {
@@ -86,14 +87,15 @@ class VoronoiEdges {
  private:
   const VoronoiDiagram* diagram_;
 };
+// Returns the edges of a diagram.
 inline VoronoiEdges edges(const VoronoiDiagram& diagram) { return VoronoiEdges(diagram); }
 
-// Faces that the given vertices are on, each at its lowest vertex, so that each comes once: of a whole diagram, or of
-// one cell, which then is the first point's.
+// A range of faces, each of which is visited once, at its lowest vertex. The range contains all faces of a diagram, or
+// the faces of one cell; then the cell's point is the first point of each face.
 class VoronoiFaceRange {
   struct Source {
     const VoronoiDiagram* diagram = nullptr;
-    const Index* vertices = nullptr;  // null: all
+    const Index* vertices = nullptr;  // Null stands for all vertices.
     std::size_t size = 0;
     Index point = kNone;
   };
@@ -132,18 +134,22 @@ class VoronoiFaceRange {
  private:
   Source source_;
 };
-// Every face once, in the order of its lowest vertex; O(n) for all. voronoi_faces() gives them as arrays.
+// Returns the faces of a diagram, in the order of their lowest vertices. Takes O(n) for all. voronoi_faces() returns
+// the same faces as arrays.
 inline VoronoiFaceRange faces(const VoronoiDiagram& diagram) { return VoronoiFaceRange(diagram); }
 
-// The cells. Made in O(n) with one table of 4 + 4 * (vertices a cell) bytes a point; then nothing is allocated.
+// The cells of a diagram. The constructor takes O(n) and allocates one table of 4 + 4 * (vertices of the cell) bytes
+// for each point; the other functions allocate no memory.
 class VoronoiCells {
  public:
   explicit VoronoiCells(const VoronoiDiagram& diagram) : diagram_(&diagram), vertices_(vertices_of_points(diagram)) {}
   Index size() const { return vertices_.size(); }
-  // Of a point's cell, ascending; none if the point was merged with another.
+  // Returns the vertices of a point's cell, ascending. There are none if the point was merged with another.
   std::span<const Index> vertices(Index point) const { return vertices_[point]; }
-  // Each is the cell's face towards its second point.
+  // Returns the faces of a cell. The first point of each face is `point`, and the second one is that of the adjacent
+  // cell.
   VoronoiFaceRange faces(Index point) const { return {*diagram_, point, vertices_[point]}; }
+  // Returns whether the cell has no vertex at infinity.
   bool bounded(Index point) const;
 
  private:

@@ -2,9 +2,10 @@
 #include "orchard/voronoi/diagram.h"
 #include "orchard/voronoi/insertion_report.h"
 
+// The result type of the four Voronoi algorithms.
 namespace orchard {
 
-// What the four algorithms give back: a diagram, and what it took to make it.
+// A Voronoi diagram, and how it was built.
 struct VoronoiBuild {
   VoronoiDiagram diagram;
   InsertionReport report;
