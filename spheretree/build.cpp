@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSamplesPerLeaf = 20;
 constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
+constexpr double kCoolStart = 0.05;    // first acceptance where annealing is not to forget what it starts from
 
 TightenOptions tightening_options(const SphereTreeOptions& o) {
   return {o.depth, o.branching, o.spheres, o.effort, o.objective, o.refinement, o.seed};
@@ -52,6 +53,7 @@ class TreeBuilder {
     const SphereTree whole = build_.tree;
     stage("redundant spheres",
           [&] { build_.redundancy = remove_redundant(build_.tree, surface_, options_.redundancy, progress_); });
+    if (options_.anneal) stage("annealing afterwards", [&] { anneal(); });
     if (options_.descent > 0) stage("random descent", [&] { descend(); });
     if (in_frame(options_)) framed_.take_out(build_.tree);
     framed_.take_out(build_.octree);
@@ -157,6 +159,12 @@ class TreeBuilder {
     }
   }
 
+  void anneal() {
+    if (options_.method == TreeMethod::annealing) return;
+    build_.annealing = anneal_tree(build_.tree, surface_, annealing_options(options_), progress_);
+    build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
+  }
+
   void descend() {
     build_.descent = random_descent(build_.tree, surface_, {options_.descent, options_.seed}, progress_);
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
@@ -164,7 +172,7 @@ class TreeBuilder {
 
   // Whether no level may be looser than the one above it or than the octree's.
   bool is_compared() const {
-    return options_.method == TreeMethod::tightened && options_.descent == 0 &&
+    return options_.method == TreeMethod::tightened && options_.descent == 0 && !options_.anneal &&
            detail::goes_on_everywhere(options_.refinement);
   }
 
@@ -221,6 +229,7 @@ AnnealingOptions annealing_options(const SphereTreeOptions& o) {
     annealing.iterations = low ? 20 : 30;
     annealing.cooling = low ? 0.8 : 0.85;
   }
+  if (o.method != TreeMethod::annealing) annealing.first_acceptance = kCoolStart;
   const auto set = [](auto& number, const auto& given) { number = given.value_or(number); };
   const AnnealingTuning& t = o.annealing;
   set(annealing.move, t.move);

@@ -101,7 +101,7 @@ class PathGrower {
 };
 
 // One path for the whole uncovered region, or one for each of its points, whichever grows less.
-double take_in(PathGrower& grower, const detail::UncoveredRegion& uncovered) {
+double grow_over(PathGrower& grower, const detail::UncoveredRegion& uncovered) {
   Points all = uncovered.corners;
   if (all.empty()) all.push_back(uncovered.farthest);
   const double together = grower.cost_of_best_path(all);
@@ -137,7 +137,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
     triangles.clear();
     PathGrower grower(tree, margin, report.rounds < kKeepingRounds ? first_level : 0);
     const auto take = [&](const detail::UncoveredRegion& region) {
-      report.max_growth = std::max(report.max_growth, take_in(grower, region) / radius);
+      report.max_growth = std::max(report.max_growth, grow_over(grower, region) / radius);
     };
     for (const detail::UncoveredRegion& region :
          detail::find_uncovered_regions(surface, coverage, path_balls(tree), tolerance::kCoverMargin * radius))

@@ -29,12 +29,11 @@ constexpr const char* kAnyMesh = "MESH.obj";
 constexpr const char* kAnyFolder = "FOLDER";
 
 const CLI::App& parsed(CLI::App& app, const std::vector<std::string>& words) {
-  std::vector<const char*> typed{"orchard"};
-  for (const std::string& word : words) typed.push_back(word.c_str());
-  const int count = static_cast<int>(typed.size());
-  if (const std::string fault = unknown_word(app, count, typed.data()); !fault.empty()) throw InputError(fault);
+  std::vector<std::string> typed{"orchard"};
+  typed.insert(typed.end(), words.begin(), words.end());
+  if (const std::string fault = unknown_word(app, typed); !fault.empty()) throw InputError(fault);
   try {
-    app.parse(count, typed.data());
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the last first
   } catch (const CLI::Success&) {
     throw InputError("batch: --help behind -- belongs to no mesh; see \"orchard " + words.front() + " --help\"");
   } catch (const CLI::ParseError& error) {

@@ -23,6 +23,11 @@ void add_thickness(CLI::App& app, Request& request);
 void add_spheres(CLI::App& app, Request& request);
 void add_audit(CLI::App& app, Request& request);
 
+// robot_commands.cpp
+void add_robot(CLI::App& app, Request& request);
+// How a robot is read, for each command that reads one; returns the options.
+std::vector<CLI::Option*> add_robot_reading(CLI::App& command, RobotReading& reading);
+
 // batch_commands.cpp
 void add_batch(CLI::App& app, Request& request);
 // How many of the program's words are its own: those behind -- of a batch are the command that it runs, and are taken

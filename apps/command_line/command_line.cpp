@@ -154,6 +154,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_compare(app, request);
   add_spheres(app, request);
   add_audit(app, request);
+  add_robot(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
   add_leaderboard(app, request);

@@ -16,6 +16,7 @@ struct Request {
   InspectCommand inspect;
   SpheresCommand spheres;
   AuditCommand audit;
+  RobotCommand robot;
   CompareCommand compare;
   SampleCommand sample;
   VoronoiCommand voronoi;

@@ -42,8 +42,8 @@ std::string range_in(const std::string& type) {
 
 // Options whose value is a file or folder: their types do not tell.
 bool takes_file(const CLI::Option& option) {
-  static const std::vector<std::string> named{"output",    "points", "diagram", "features",
-                                              "from-axis", "axis",   "beside",  "plot"};
+  static const std::vector<std::string> named{"output", "points", "diagram", "features",     "from-axis", "axis",
+                                              "beside", "plot",   "from",    "package-path", "trajectory"};
   if (option.get_lnames().empty()) return true;
   return std::find(named.begin(), named.end(), option.get_lnames().front()) != named.end();
 }

@@ -13,6 +13,9 @@
 #include "orchard/spheretree/sphere_set.h"
 #include "orchard/voronoi/algorithms.h"
 #include "output/provenance.h"
+#include "robot/bodies.h"
+#include "robot/command/robot_reading.h"
+#include "robot/formats.h"
 
 // The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
 // exit code and one line on stderr.
@@ -69,10 +72,41 @@ struct AuditCommand {
   std::optional<double> buffer;  // on every radius, in place of the file's own
   std::optional<double> join;
   bool picture = false;
-  std::string up = "z";  // the mesh's axis that points up in the picture
+  std::string up = "z";            // the mesh's axis that points up in the picture
+  RobotReading reading;            // where `mesh` is a URDF: the whole robot is audited
+  bool wrap = false;               // likewise: links that are no solids
+  std::vector<std::string> given;  // as of BuildCommand
   Output output;
 };
 ExitCode audit(const AuditCommand& command);
+ExitCode audit_robot(const AuditCommand& command);  // which audit() calls
+
+struct RobotCommand {
+  std::filesystem::path urdf, folder;
+  std::filesystem::path from;  // spheres that are there already; empty: they are made
+  RobotReading reading;
+  bool wrap = true;  // links that are no solids
+  Index spheres = 60;
+  std::string fit = "cover";
+  std::vector<std::string> links, link_fits;  // "NAME=NUMBER", "NAME=FIT"
+  Effort effort = Effort::standard;
+  double padding = 0, buffer = 0;  // metres
+  double density = robot::kUsualDensity;
+  Index states = robot::SelfCollisionOptions{}.states;
+  std::uint64_t seed = 1;
+  std::vector<std::string> exports;      // of robot::formats(); empty: kUsualFormats
+  std::vector<std::string> tool_frames;  // links
+  std::optional<double> acceleration, jerk;
+  Index resolution = robot::FormatOptions{}.resolution;
+  std::vector<std::string> joints;   // "NAME=VALUE": where the robot rests, and is drawn
+  std::filesystem::path trajectory;  // poses to draw as well; empty: none
+  bool trees = false, views = true, picture = true;
+  std::string up = "z";
+  std::vector<std::string> given;  // as of BuildCommand
+  bool accept = false;             // likewise
+  Output output;
+};
+ExitCode robot(const RobotCommand& command);
 
 struct SpheresCommand {
   std::filesystem::path mesh, folder;

@@ -24,8 +24,9 @@ bool decides_nothing(const std::string& name) {
 }
 
 bool names_files(const CLI::App& command, const CLI::Option& option) {
-  static constexpr std::array<std::string_view, 11> kNames{
-      "points", "diagram", "features", "from-axis", "axis", "beside", "plot", "csv", "envelope", "record", "replay"};
+  static constexpr std::array<std::string_view, 15> kNames{
+      "points",   "diagram", "features", "from-axis", "axis",       "beside",       "plot",          "csv",
+      "envelope", "record",  "replay",   "from",      "trajectory", "package-path", "vertex-weights"};
   if (option.get_lnames().empty()) return option.get_name(true) != "scene";
   const std::string& name = option.get_lnames().front();
   return is_one_of(kNames, name) || (name == "tree" && command.get_name() == "simulate");  // elsewhere it is a method

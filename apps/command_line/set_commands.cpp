@@ -180,15 +180,25 @@ void add_audit(CLI::App& app, Request& request) {
   command
       .add_option("spheres", audit.spheres,
                   "Sphere set in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .urdf, "
-                  ".ply with radii, .sph or .orchard")
+                  ".srdf, .xml (MJCF), .mol (LAMMPS), .py (YADE), .ply with radii, .sph or .orchard; of a robot also a "
+                  "folder of MorphIt's files")
       ->required();
-  add_mesh(command, audit.mesh);
+  command
+      .add_option(
+          "mesh", audit.mesh,
+          "Triangle mesh (.obj, .ply, .stl or .off), or a robot's .urdf, with all of whose links the spheres are "
+          "compared")
+      ->required();
   command.add_option("--link", audit.link, "Link to audit, if the file has several");
   command
       .add_option("--buffer", audit.buffer,
                   "Also audit the spheres with this added to every radius, in place of the buffer that the file states")
       ->check(NumberValidator(CLI::Range(-1e15, 1e15)));
   add_join(command, audit.join);
+  add_robot_reading(command, audit.reading);
+  command.add_flag(
+      "--wrap", audit.wrap,
+      "Of a robot: compare links that are no solids as closed skins around them, not by their surface alone");
   auto* folder = command.add_option("-o,--output", audit.folder, "Folder that receives the views and the report");
   auto* picture =
       command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres protrude")
@@ -200,9 +210,11 @@ void add_audit(CLI::App& app, Request& request) {
       "Exit code 3 if some of the surface is open.\n"
       "Examples:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj\n"
       "  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit --picture\n"
-      "  orchard audit robot.yml link.stl --link forearm --buffer 0.01");
+      "  orchard audit robot.yml link.stl --link forearm --buffer 0.01\n"
+      "  orchard audit out/desk-arm/desk-arm-curobo.yml data/desk-arm.urdf");
   command.callback([&request, &command] {
     request.audit.output.run = invocation_of(command, request.typed);
+    request.audit.given = given_of(command);
     request.run = [&request] { request.exit_code = orchard::apps::audit(request.audit); };
   });
 }

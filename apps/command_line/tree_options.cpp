@@ -155,6 +155,9 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(command, "--redundant", kSelections, options.redundancy,
              "Which redundant spheres to remove: all that can be (exhaustive, default), chains without cycles "
              "(acyclic), or only those on which no other removal depends (independent, the dissertation's)");
+  command.add_flag("--anneal", options.anneal,
+                   "Anneal each set of siblings of the tree that the method has built, which makes none looser. Takes "
+                   "about as long as --method annealing");
   command
       .add_option("--descent", options.descent,
                   "Trials per sphere of a random descent that follows any method. More trials tighten the tree a "

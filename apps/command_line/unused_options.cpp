@@ -90,10 +90,14 @@ void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
 
 void refuse_unused_options(const BuildCommand& command) {
   const TreeMethod method = command.options.method;
+  if (command.options.anneal && method == TreeMethod::annealing)
+    throw InputError("--anneal has no effect on --method annealing, which anneals anyway; leave it out");
   for (const auto& [option, methods] : own_options()) {
-    if (among(option, command.given) && std::find(methods.begin(), methods.end(), method) == methods.end())
-      throw InputError(
-          fmt::format("--{} has no effect on --method {}; it is for {}", option, name(method), names_of(methods)));
+    const auto is_for = [&, &own = methods](TreeMethod m) { return std::find(own.begin(), own.end(), m) != own.end(); };
+    const bool anneals = is_for(TreeMethod::annealing);
+    if (!among(option, command.given) || is_for(method) || (anneals && command.options.anneal)) continue;
+    throw InputError(fmt::format("--{} has no effect on --method {}; it is for {}{}", option, name(method),
+                                 names_of(methods), anneals ? ", and for others with --anneal" : ""));
   }
   Names sources;
   for (const char* source : {"points", "diagram", "from-axis"})

@@ -181,7 +181,7 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
   if (result.method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
   if (options.method == TreeMethod::merging && options.closing == MergeClosing::refit)
     report["merging"] = merging_json(result.merging);
-  if (options.method == TreeMethod::annealing)
+  if (options.method == TreeMethod::annealing || options.anneal)
     report["annealing"] = {{"changes", result.annealing.changes},
                            {"refused_as_uncovering", result.annealing.uncovering},
                            {"accepted", result.annealing.accepted},

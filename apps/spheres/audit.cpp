@@ -118,6 +118,10 @@ void write(const AuditCommand& command, const Plan& plan, const Surface& surface
 }  // namespace
 
 ExitCode audit(const AuditCommand& command) {
+  if (lower_extension(command.mesh) == ".urdf") return audit_robot(command);
+  for (const char* option : {"package-path", "visual", "ignore-units", "ignore-up", "wrap"})
+    if (std::find(command.given.begin(), command.given.end(), option) != command.given.end())
+      throw InputError(fmt::format("--{} has no effect on a mesh: it belongs to robots, .urdf", option));
   const Plan plan = check(command);
   const SphereFile file = read_sphere_file(command.spheres);
   const SphereGroup& group = group_named(file, command.spheres, command.link);

@@ -22,11 +22,9 @@ std::string link_of(const SpheresCommand& command) {
   return command.link.empty() ? command.mesh.stem().string() : command.link;
 }
 
-void write_tree(const SpheresCommand& command, const runtime::PackedSphereTree& packed, const char* what,
-                Outputs& outputs) {
+std::string bytes_of(const runtime::PackedSphereTree& packed) {
   const auto bytes = runtime::serialize(packed);
-  write_file(outputs.add(named(command.mesh, kTreeEnding), what),
-             std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 }  // namespace
@@ -67,21 +65,32 @@ void write_set(const SpheresCommand& command, const Provenance& provenance, cons
   }
 }
 
-void write_cover_tree(const SpheresCommand& command, const Surface& surface, std::span<const Sphere> spheres,
-                      Outputs& outputs) {
+std::string cover_tree(const Surface& surface, std::span<const Sphere> spheres) {
   SphereTree tree = ball_tree(spheres);
   measure(tree, surface);
   const ProvenTree proven = pack_proven(tree, surface);
   if (!proven.proof.ok()) throw Error("the tree over the spheres is not proven to hold the surface");
-  write_tree(command, proven.packed, "a tree over them that holds the surface, for the run-time", outputs);
+  return bytes_of(proven.packed);
 }
 
-void write_union_tree(const SpheresCommand& command, std::span<const Sphere> spheres, Outputs& outputs) {
+std::string union_tree(std::span<const Sphere> spheres) {
   const BallTree tree = pack_balls(spheres);
   if (tree.balls_unproven > 0 || tree.bounds_unproven > 0)
     throw Error(
         fmt::format("the tree is not proven to hold {} of the {} spheres", tree.balls_unproven, spheres.size()));
-  write_tree(command, tree.packed, "a tree of which the union of the spheres is the object, for the run-time", outputs);
+  return bytes_of(tree.packed);
+}
+
+void write_cover_tree(const SpheresCommand& command, const Surface& surface, std::span<const Sphere> spheres,
+                      Outputs& outputs) {
+  write_file(outputs.add(named(command.mesh, kTreeEnding), "a tree over them that holds the surface, for the run-time"),
+             cover_tree(surface, spheres));
+}
+
+void write_union_tree(const SpheresCommand& command, std::span<const Sphere> spheres, Outputs& outputs) {
+  write_file(outputs.add(named(command.mesh, kTreeEnding),
+                         "a tree of which the union of the spheres is the object, for the run-time"),
+             union_tree(spheres));
 }
 
 }  // namespace orchard::apps

@@ -22,10 +22,15 @@ std::vector<std::string> set_file_names(const SpheresCommand& command);
 // As text, and in the formats of --export.
 void write_set(const SpheresCommand& command, const Provenance& provenance, const SetToWrite& set, Outputs& outputs);
 
-// An .orchard file over a cover of a surface: with its triangles, and proven to hold it. Throws Error if it is not.
+// The bytes of an .orchard file over a cover of a surface: with its triangles, and proven to hold it. Throws Error if
+// it is not.
+std::string cover_tree(const Surface& surface, std::span<const Sphere> spheres);
+// The same over spheres whose union is the object.
+std::string union_tree(std::span<const Sphere> spheres);
+
+// Writes one of these.
 void write_cover_tree(const SpheresCommand& command, const Surface& surface, std::span<const Sphere> spheres,
                       Outputs& outputs);
-// The same over spheres whose union is the object.
 void write_union_tree(const SpheresCommand& command, std::span<const Sphere> spheres, Outputs& outputs);
 
 // Whether the input's name is one of sets of spheres rather than of meshes.

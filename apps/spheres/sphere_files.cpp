@@ -3,46 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "input/input_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/ply_tables.h"
-#include "orchard/geometry/text_lines.h"
 #include "output/sphere_lists.h"
 
 namespace orchard::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool begins_number(std::string_view word) {
-  return !word.empty() &&
-         (std::isdigit(static_cast<unsigned char>(word[0])) != 0 || word[0] == '-' || word[0] == '+' || word[0] == '.');
-}
-
-SphereFile read_text(const fs::path& file) {
-  std::string text = content_of(file);
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-  // A header has no number where the first coordinate is to be; its line stays, so that lines count as they do in the
-  // file.
-  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf\"");
-  if (first != std::string::npos && text[first] != '#' && !begins_number(std::string_view(text).substr(first, 4)) &&
-      text.compare(first, 3, "nan") != 0 && text.compare(first, 3, "inf") != 0) {
-    const std::size_t end = std::min(text.find('\n', first), text.size());
-    std::fill(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
-  }
-  TextLines lines(file.string(), std::move(text));
-  SphereGroup group;
-  while (lines.next()) {
-    Point center;
-    for (int axis = 0; axis < 3; ++axis) center[axis] = lines.real("a coordinate");
-    add_sphere(group, center, lines.real("a radius, the fourth number"), file.string());
-  }
-  return {"text, x y z r", {std::move(group)}};
-}
 
 SphereFile read_ply(const fs::path& file) {
   const PlyTables ply(file);
@@ -76,12 +47,41 @@ SphereFile read_by_ending(const fs::path& file) {
   if (ending == ".json") return read_json_spheres(file);
   if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return read_yaml_spheres(file);
   if (ending == ".urdf") return read_urdf_spheres(file);
+  if (ending == ".srdf") return read_srdf_spheres(file);
+  if (ending == ".xml") return read_mjcf_spheres(file);
+  if (ending == ".mol") return read_lammps_spheres(file);
+  if (ending == ".py") return read_yade_spheres(file);
   if (ending == ".ply") return read_ply(file);
   if (ending == ".sph" || ending == ".orchard") return read_tree(file);
-  if (ending == ".txt" || ending == ".csv" || ending == ".xyz") return read_text(file);
+  if (ending == ".txt" || ending == ".csv" || ending == ".xyz") return read_text_spheres(file);
   throw InputError(file.string() +
-                   ": spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .urdf, .ply, .sph and "
-                   ".orchard; name it so");
+                   ": spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .urdf, .srdf, .xml, .mol, "
+                   ".py, .ply, .sph and .orchard; name it so");
+}
+
+// MorphIt's, one file a mesh.
+SphereFile read_folder(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (lower_extension(entry.path()) == ".json") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  SphereFile result{"MorphIt's JSON", {}};
+  for (const fs::path& file : files) {
+    const std::string stem = file.stem().string();
+    const std::size_t bar = stem.rfind('_');
+    const std::string digits = bar == std::string::npos ? "" : stem.substr(bar + 1);
+    if (digits.empty() || digits.size() > 4 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
+    SphereFile one = read_json_spheres(file);
+    if (one.groups.size() != 1 || !one.groups.front().name.empty())
+      throw InputError(file.string() + ": is to hold the spheres of one mesh, as centers and radii");
+    SphereGroup& group = result.groups.emplace_back(std::move(one.groups.front()));
+    group.name = stem.substr(0, bar);
+    group.frame = SphereFrame::mesh;
+    group.element = static_cast<Index>(std::stoul(digits));
+  }
+  if (result.groups.empty())
+    throw InputError(folder.string() + ": is a folder without files LINK_K.json, as MorphIt writes them");
+  return result;
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ void add_sphere(SphereGroup& group, const Point& center, double radius, const st
 }
 
 SphereFile read_sphere_file(const fs::path& file) {
-  SphereFile spheres = read_by_ending(file);
+  SphereFile spheres = fs::is_directory(file) ? read_folder(file) : read_by_ending(file);
   std::erase_if(spheres.groups,
                 [](const SphereGroup& group) { return group.spheres.empty() && group.switched_off == 0; });
   if (spheres.groups.empty()) throw InputError(file.string() + ": holds no sphere");

@@ -70,6 +70,11 @@ void add_any(SphereGroup& group, const json& value, const std::string& where) {
   }
 }
 
+// What VAMP's generator reads: a URDF whose collision geometry is spheres, and more.
+bool names_urdf(const json& root) {
+  return root.is_object() && root.contains("urdf") && root.contains("srdf") && root.at("urdf").is_string();
+}
+
 SphereFile spheres_of(const json& root, const std::string& file) {
   if (root.is_object() && root.contains("collision_spheres")) return spheres_of(root.at("collision_spheres"), file);
   SphereFile result{"JSON", {}};
@@ -91,7 +96,9 @@ SphereFile spheres_of(const json& root, const std::string& file) {
 SphereFile read_json_spheres(const std::filesystem::path& file) {
   const std::string text = content_of(file);
   try {
-    return spheres_of(json::parse(text), file.string());
+    const json root = json::parse(text);
+    if (names_urdf(root)) return read_urdf_spheres(file.parent_path() / root.at("urdf").get<std::string>());
+    return spheres_of(root, file.string());
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     throw InputError(fmt::format("{}, line {}: is no JSON; correct it or export it again", file.string(),

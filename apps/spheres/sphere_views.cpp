@@ -81,6 +81,19 @@ void write_sphere_views(const std::filesystem::path& mesh, const std::string& pr
       files);
 }
 
+void draw_spheres(const std::string& name, const std::string& title, const std::string& up, const Surface& surface,
+                  std::span<const Sphere> spheres, Outputs& outputs) {
+  const SphereTree tree = ball_tree(spheres, static_cast<Index>(std::max<std::size_t>(2, spheres.size())));
+  PipelinePicture picture;
+  picture.values.surface = &surface;
+  picture.values.tree = &tree;
+  picture.title = title;
+  picture.up = parse_up(up);
+  picture.progress = cancelled_by_interrupts();
+  if (is_drawn(draw_pipeline(outputs.staged(name), picture)))
+    outputs.add(name, "the mesh and the spheres as a picture");
+}
+
 void draw_holes(const std::filesystem::path& mesh, const std::string& up, const Surface& surface,
                 std::span<const Sphere> spheres, Outputs& outputs) {
   const double diagonal = surface.bounding_box().diagonal().norm();
@@ -107,6 +120,11 @@ void draw_holes(const std::filesystem::path& mesh, const std::string& up, const 
 #else
 void write_sphere_views(const std::filesystem::path&, const std::string&, const Surface&, std::span<const Sphere>,
                         Outputs&) {}
+
+void draw_spheres(const std::string&, const std::string&, const std::string&, const Surface&, std::span<const Sphere>,
+                  Outputs&) {
+  fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
+}
 
 void draw_holes(const std::filesystem::path&, const std::string&, const Surface&, std::span<const Sphere>, Outputs&) {
   fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");

@@ -18,6 +18,10 @@ std::vector<std::string> sphere_view_endings(const std::string& prefix);
 void write_sphere_views(const std::filesystem::path& mesh, const std::string& prefix, const Surface& surface,
                         std::span<const Sphere> spheres, Outputs& outputs);
 
+// `name`: the mesh and the spheres around it as a picture. `up`: x, y or z.
+void draw_spheres(const std::string& name, const std::string& title, const std::string& up, const Surface& surface,
+                  std::span<const Sphere> spheres, Outputs& outputs);
+
 // MODEL-audit.png: where the surface is open, and which spheres stick out, each from two sides. `up`: x, y or z.
 void draw_holes(const std::filesystem::path& mesh, const std::string& up, const Surface& surface,
                 std::span<const Sphere> spheres, Outputs& outputs);

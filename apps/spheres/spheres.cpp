@@ -13,10 +13,8 @@
 #include "orchard/geometry/clip.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
-#include "orchard/spheretree/ball_tree.h"
 #include "output/json_values.h"
 #include "output/outputs.h"
-#include "output/picture.h"
 #include "output/report.h"
 #include "spheres/audit_report.h"
 #include "spheres/particle_report.h"
@@ -83,26 +81,6 @@ void write_tree(const SpheresCommand& command, const Surface& surface, const Sph
   else
     write_union_tree(command, set.spheres, outputs);
 }
-
-#ifdef ORCHARD_HAS_VIZ
-void draw(const SpheresCommand& command, const Surface& surface, const SphereSetBuild& set, Outputs& outputs) {
-  if (!command.picture) return;
-  const SphereTree tree = ball_tree(set.spheres, kMaxSetSpheres);
-  PipelinePicture picture;
-  picture.values.surface = &surface;
-  picture.values.tree = &tree;
-  picture.title = command.mesh.stem().string();
-  picture.up = parse_up(command.up);
-  picture.progress = cancelled_by_interrupts();
-  const std::string file = named(command.mesh, "-set.png");
-  if (is_drawn(draw_pipeline(outputs.staged(file), picture)))
-    outputs.add(file, "the mesh and the spheres as a picture");
-}
-#else
-void draw(const SpheresCommand& command, const Surface&, const SphereSetBuild&, Outputs&) {
-  if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
-}
-#endif
 
 void write_curve(const SpheresCommand& command, const Surface& surface, const std::vector<SphereSetBuild>& sets,
                  Outputs& outputs) {
@@ -199,7 +177,9 @@ ExitCode spheres(const SpheresCommand& command) {
   write_tree(command, surface, set, outputs);
   write_curve(command, surface, sets, outputs);
   if (command.views) write_sphere_views(command.mesh, "-set", surface, set.spheres, outputs);
-  draw(command, surface, set, outputs);
+  if (command.picture)
+    draw_spheres(named(command.mesh, "-set.png"), command.mesh.stem().string(), command.up, surface, set.spheres,
+                 outputs);
   if (!report["certified_mesh"].is_null())
     write_obj(outputs.add(report["certified_mesh"], "the mesh that the promise is about"), surface.mesh());
   outputs.add_report(report, "this report as JSON");

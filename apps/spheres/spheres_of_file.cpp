@@ -26,7 +26,8 @@ void refuse_idle(const SpheresCommand& command) {
 }  // namespace
 
 bool names_spheres(const fs::path& input) {
-  constexpr std::array kEndings{".txt", ".csv", ".xyz", ".json", ".yml", ".yaml", ".xrdf", ".urdf", ".sph", ".orchard"};
+  constexpr std::array kEndings{".txt",  ".csv",  ".xyz", ".json", ".yml", ".yaml", ".xrdf",
+                                ".urdf", ".srdf", ".xml", ".mol",  ".py",  ".sph",  ".orchard"};
   const std::string ending = lower_extension(input);
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }

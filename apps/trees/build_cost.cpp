@@ -87,6 +87,13 @@ Rates rates(const SphereTreeOptions& options) {
   return {};
 }
 
+// As much as the method annealing.
+double annealing_afterwards(SphereTreeOptions options, double triangles) {
+  options.method = TreeMethod::annealing;
+  const Rates rate = rates(options);
+  return steps(options, 0) * rate.step + triangles * rate.triangle_once;
+}
+
 std::string of_time(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} seconds", std::ceil(seconds / 10) * 10);
   if (seconds < 5400) return fmt::format("{:.0f} minutes", std::ceil(seconds / 60));
@@ -105,6 +112,7 @@ BuildCost estimated_cost(const SphereTreeOptions& options, double points, double
   const double of_triangle = kSecondsPerTriangle + rate.triangle * std::sqrt(spheres) + rate.triangle_once;
   cost.seconds = points * seconds_per_point(options) + spheres * (rate.step + options.descent * kSecondsPerTrial) +
                  triangles * of_triangle;
+  if (options.anneal) cost.seconds += annealing_afterwards(options, triangles);
   cost.bytes =
       kBytes + points * kBytesPerPoint + spheres * kBytesPerSphere + triangles * bytes_per_triangle(options.method);
   return cost;

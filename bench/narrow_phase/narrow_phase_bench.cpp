@@ -134,6 +134,7 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
   add(bullet(tree, tree));
   add(cgal(tree, tree));
   if (tree.triangles.size() <= max_for_bsp) add(bsp_trees(tree, tree));
+  add(octree(tree, tree));
   measure(engines, queries.size());
   print_table("boolean", queries, engines, ours, ours + 1);
   for (const auto& rival : rivals) {

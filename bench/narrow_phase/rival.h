@@ -60,5 +60,6 @@ std::unique_ptr<PairRival> cgal(const runtime::TreeView& a, const runtime::TreeV
 enum class BspHeuristic { fewest_splits, balanced };
 std::unique_ptr<PairRival> bsp_trees(const runtime::TreeView& a, const runtime::TreeView& b,
                                      BspHeuristic heuristic = BspHeuristic::fewest_splits);
+std::unique_ptr<PairRival> octree(const runtime::TreeView& a, const runtime::TreeView& b);
 
 }  // namespace orchard::bench

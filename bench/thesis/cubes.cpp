@@ -50,22 +50,45 @@ double adaptive_step(Place& place, const Vec3& force, double& step) {
 
 }  // namespace
 
-Cubes::Cubes(std::size_t count, double ball, std::uint64_t seed) {
-  runtime::test::Draw draw(seed);
-  for (std::size_t i = 0; i < count; ++i) {
-    Cube cube{draw.in_ball(ball), draw.uniform(5, 15) * draw.direction(), 0, kDetection, {}, {}};
+Cubes::Period Cubes::period_after(const Period& last, Relation relation, runtime::test::Draw& draw) {
+  constexpr double kTurn = 0.5, kChange = 0.1;  // sine of 30 degrees; share
+  switch (relation) {
+    case Relation::steady:
+      return last;
+    case Relation::turning: {
+      const Vec3 turned = last.half_space + draw.uniform(0, kTurn) * draw.direction();
+      return {last.bound * draw.uniform(1 - kChange, 1 + kChange), (1 / std::sqrt(dot(turned, turned))) * turned};
+    }
+    case Relation::alternating:
+      return {last.bound, -1.0 * last.half_space};
+    case Relation::none:
+    case Relation::shared:
+      break;
+  }
+  return {draw.uniform(0, 4), draw.direction()};
+}
+
+Cubes::Cubes(const CubeScene& scene) {
+  runtime::test::Draw draw(scene.seed);
+  std::vector<Period> shared;
+  for (std::size_t i = 0; i < scene.count; ++i) {
+    Cube cube{draw.in_ball(scene.ball), draw.uniform(5, 15) * draw.direction(), 0, kDetection, {}, {}};
     for (double begin = 0; begin < kEnd + kPeriod; begin += kPeriod) {
-      const Period period{draw.uniform(0, 4), draw.direction()};
+      const std::size_t p = cube.periods.size();
+      Period period =
+          period_after(p == 0 ? Period{} : cube.periods.back(), p == 0 ? Relation::none : scene.relation, draw);
+      if (scene.relation == Relation::shared && i > 0) period = shared[p];
       for (int f = 0; f < kForces; ++f) {
         const Vec3 force = draw.uniform(0, period.bound) * draw.direction();
         cube.forces.push_back(dot(force, period.half_space) > 0 ? -1.0 * force : force);
       }
       cube.periods.push_back(period);
     }
+    if (i == 0) shared = cube.periods;
     cubes_.push_back(std::move(cube));
     halves.push_back(draw.uniform(0.5, 1.5));
   }
-  positions.resize(count);
+  positions.resize(scene.count);
 }
 
 void Cubes::solve_all(double time) {
@@ -140,10 +163,10 @@ static Run run(Cubes& cubes, double end, bool stop, const std::function<double(d
   return result;
 }
 
-Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const MakeBroadPhase& make, double end, bool stop) {
-  Cubes cubes(count, ball, seed);
+Run run_bounds(const CubeScene& scene, const MakeBroadPhase& make, double end, bool stop) {
+  Cubes cubes(scene);
   runtime::BroadPhase world = make(cubes.source());
-  for (std::size_t i = 0; i < count; ++i) world.add();
+  for (std::size_t i = 0; i < scene.count; ++i) world.add();
   Run result = run(cubes, end, stop, [&](double time) {
     double first = -1;
     for (auto report = world.advance(time); !report.pairs.empty(); report = world.advance(time)) {
@@ -160,28 +183,45 @@ Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const MakeBro
   return result;
 }
 
-Run run_hash(std::size_t count, double ball, std::uint64_t seed, std::size_t memory, double cell, double end,
-             bool stop) {
-  Cubes cubes(count, ball, seed);
+Run run_rival(const CubeScene& scene, const MakeRival& make, double end, bool stop) {
+  Cubes cubes(scene);
   cubes.solve_all(0);
   cubes.solver_seconds = 0;
-  const std::size_t entries = count * 48;  // what the bodies themselves need
-  SpatialHash::Options options{
-      cell, memory == 0 ? 0 : std::max<std::size_t>(256, memory > entries ? memory - entries : 0), true};
-  SpatialHash hash(cubes.positions, cubes.halves, options);
+  const std::unique_ptr<Rival> rival = make(cubes);
   std::vector<BodyPair> pairs;
   double next = 0;
   Run result = run(cubes, end, stop, [&](double time) {
     for (; next <= time + 1e-9; next += kDetection) {
       cubes.solve_all(next);
       pairs.clear();
-      hash.find(pairs);
+      rival->find(pairs);
       if (!pairs.empty() && stop) return next;
     }
     return -1.0;
   });
-  result.memory = hash.memory_bytes();
+  result.memory = rival->memory_bytes();
   return result;
+}
+
+MakeRival hash_of(std::size_t memory, double cell) {
+  return [=](const Cubes& cubes) {
+    const std::size_t entries = cubes.size() * 48;  // what the bodies themselves need
+    const std::size_t table = memory == 0 ? 0 : std::max<std::size_t>(256, memory > entries ? memory - entries : 0);
+    return std::make_unique<SpatialHash>(cubes.positions, cubes.halves, SpatialHash::Options{cell, table, true});
+  };
+}
+
+double best_cell(const CubeScene& scene) {
+  Cubes cubes(scene);
+  cubes.solve_all(0);
+  const double spacing = scene.ball * std::cbrt(4.18879 / static_cast<double>(scene.count));
+  return SpatialHash::best_cell_size(cubes.positions, cubes.halves, spacing, {1, 0, true});
+}
+
+MakeRival octree_of(MovingOctree::Upkeep upkeep) {
+  return [=](const Cubes& cubes) {
+    return std::make_unique<MovingOctree>(cubes.positions, cubes.halves, MovingOctree::Options{upkeep, true});
+  };
 }
 
 }  // namespace orchard::bench

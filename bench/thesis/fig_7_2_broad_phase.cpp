@@ -1,5 +1,5 @@
 // Figures 7.2 to 7.10: isothetic cubes under forces until two collide or 3 seconds have passed, space-time bounds
-// against Turk's spatial hash:
+// against Turk's spatial hash, and octrees (2.3.2) too:
 //   fig_7_2_broad_phase [folder for CSV and SVG] [share of the trials]
 // As published: 30, 100 and 300 cubes in 100, 200 and 100 trials, frames of dt_r = 0.02, dt_d = dt_r / 2 for both,
 // forces in subsequences with known M and d that start and end at the same times for all, 4th-order Runge-Kutta with
@@ -42,7 +42,13 @@ constexpr Setting kSettings[] = {
 struct Way {
   const char* name;
   MakeBroadPhase make;
+  MakeRival rival = {};  // instead
 };
+
+Run run(const Way& way, const CubeScene& scene, double end = kEnd, bool stop = true) {
+  return way.rival ? run_rival(scene, way.rival, end, stop) : run_bounds(scene, way.make, end, stop);
+}
+
 std::vector<Way> ways() {
   const auto sleeping = [](SleepingMethod method, Rebuild rebuild = Rebuild::what_intersected) {
     return [=](MotionSource source) {
@@ -56,6 +62,8 @@ std::vector<Way> ways() {
           {"hybrid", sleeping(SleepingMethod::hybrid)},
           {"quadratic faces", sleeping(SleepingMethod::quadratic)},
           {"horns", sleeping(SleepingMethod::horns)},
+          {"octree, rebuilt at each step", {}, octree_of(MovingOctree::Upkeep::rebuilt)},
+          {"octree, updated", {}, octree_of(MovingOctree::Upkeep::updated)},
           {"events", [](MotionSource source) { return BroadPhase(std::move(source), {.time_step = kDetection}); }}};
 }
 
@@ -73,13 +81,6 @@ Run best_of(const std::function<Run()>& make) {
     for (std::size_t i = 0; i < best.frames.size(); ++i) best.frames[i] = std::min(best.frames[i], again.frames[i]);
   }
   return best;
-}
-
-double best_cell(std::size_t count, double ball) {
-  Cubes cubes(count, ball, 1);
-  cubes.solve_all(0);
-  const double spacing = ball * std::cbrt(4.18879 / static_cast<double>(count));
-  return SpatialHash::best_cell_size(cubes.positions, cubes.halves, spacing, {1, 0, true});
 }
 
 Series histogram(const std::string& name, const std::vector<double>& frames, double width) {
@@ -106,10 +107,10 @@ bool run_trial(const Setting& setting, int trial, double cell, Outcome& outcome,
   std::size_t memory = 0;
   std::vector<Run> runs;
   for (const Way& way : all) {
-    runs.push_back(best_of([&] { return run_bounds(setting.cubes, setting.ball, seed, way.make); }));
+    runs.push_back(best_of([&] { return run(way, {setting.cubes, setting.ball, seed}); }));
     if (memory == 0) memory = runs.back().memory;  // projection's
   }
-  const Run hash = best_of([&] { return run_hash(setting.cubes, setting.ball, seed, memory, cell); });
+  const Run hash = best_of([&] { return run_rival({setting.cubes, setting.ball, seed}, hash_of(memory, cell)); });
   const auto append = [](std::vector<double>& to, const Run& run) {
     to.insert(to.end(), run.frames.begin(), run.frames.end());
   };
@@ -190,7 +191,7 @@ void draw(const Setting& setting, const Outcome& outcome, const std::filesystem:
 }
 
 bool run_setting(const Setting& setting, double share, const std::filesystem::path& folder, std::ofstream& csv) {
-  const double cell = best_cell(setting.cubes, setting.ball);
+  const double cell = best_cell({setting.cubes, setting.ball, 1});
   const int trials = std::max(1, static_cast<int>(setting.trials * share));
   Outcome outcome(ways().size());
   bool right = true;
@@ -204,17 +205,17 @@ bool run_setting(const Setting& setting, double share, const std::filesystem::pa
 void run_large(std::ofstream& csv) {
   std::printf(
       "\n| cubes | hash, ms a frame | events | projection | hybrid | quadratic faces | horns "
-      "|\n|---|---|---|---|---|---|---|\n");
+      "| octree, rebuilt | octree, updated |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const std::size_t count : {1000u, 10000u, 100000u}) {
     const double ball = 288 * std::cbrt(static_cast<double>(count) / 300);
     const double end = count > 10000 ? 0.1 : count > 1000 ? 0.5 : 1;
     const double frames = end / kFrame + 1;
-    const double cell = best_cell(count, ball);
-    const Run hash = run_hash(count, ball, 1, 0, cell, end, false);
+    const double cell = best_cell({count, ball, 1});
+    const Run hash = run_rival({count, ball, 1}, hash_of(0, cell), end, false);
     std::printf("| %zu | %.3f ", count, 1e3 * hash.detection / frames);
     const std::vector<Way> all = ways();
-    for (const std::size_t w : {6u, 0u, 3u, 4u, 5u}) {
-      const Run own = run_bounds(count, ball, 1, all[w].make, w == 6 ? kEnd : end, false);
+    for (const std::size_t w : {8u, 0u, 3u, 4u, 5u, 6u, 7u}) {
+      const Run own = run(all[w], {count, ball, 1}, w == 8 ? kEnd : end, false);
       const double per_frame = own.detection / static_cast<double>(own.frames.size());
       std::printf("| %.3f: %.2f times ", 1e3 * per_frame, hash.detection / frames / per_frame);
       std::fflush(stdout);

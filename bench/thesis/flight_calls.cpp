@@ -16,7 +16,7 @@ std::vector<Query> flight_calls(const runtime::TreeView& tree, std::size_t count
     for (std::uint32_t a = 0; a < world->bodies.size(); ++a) {
       for (std::uint32_t b = a + 1; b < world->bodies.size() && calls.size() < count; ++b) {
         const simulation::Body &one = world->bodies[a], &two = world->bodies[b];
-        if (simulation::length(one.position - two.position) > one.radius + two.radius) continue;
+        if (runtime::length(one.position - two.position) > one.radius + two.radius) continue;
         calls.push_back({pose_of(one, world->shapes[0]), pose_of(two, world->shapes[0]), 0});
       }
     }

@@ -61,9 +61,9 @@ double median(std::vector<double> values) {
 }
 
 Run best_of_three(std::uint64_t seed, const MakeBroadPhase& make) {
-  Run best = run_bounds(kCubes, kBall, seed, make);
+  Run best = run_bounds({kCubes, kBall, seed}, make);
   for (int round = 0; round < 2; ++round)
-    best.detection = std::min(best.detection, run_bounds(kCubes, kBall, seed, make).detection);
+    best.detection = std::min(best.detection, run_bounds({kCubes, kBall, seed}, make).detection);
   return best;
 }
 

@@ -5,12 +5,14 @@
 
 #include "construction.h"
 #include "input/repair_distance.h"
+#include "orchard/geometry/clip.h"
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/repair.h"
 #include "orchard/geometry/sampling.h"
 #include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/surface_distance.h"
+#include "orchard/geometry/unite.h"
 #include "orchard/geometry/wrap.h"
 
 namespace orchard::python {
@@ -120,6 +122,24 @@ py::tuple wrap(const SurfacePointer& surface, double alpha, double offset, py::o
   return py::make_tuple(wrapped, to_input.upper, from_input.upper);
 }
 
+SurfacePointer clip(const SurfacePointer& surface, const std::array<double, 3>& normal, double offset) {
+  const HalfSpace kept{Vector(normal[0], normal[1], normal[2]), offset};
+  const py::gil_scoped_release release;
+  return std::make_shared<Surface>(clip_solid(surface->mesh(), kept), surface->ball_kind());
+}
+
+// Nothing where no parts cut each other, or no union can be made of them.
+py::object unite(const SurfacePointer& surface, py::object progress) {
+  std::optional<UnitedMesh> united;
+  const SurfacePointer whole = watched(std::move(progress), [&](const Progress& watch) -> SurfacePointer {
+    united = unite_parts(surface->mesh(), watch);
+    if (!united) return nullptr;
+    return std::make_shared<Surface>(std::move(united->mesh), surface->ball_kind());
+  });
+  if (!whole) return py::none();
+  return py::make_tuple(whole, united->parts, united->cut_before, united->cut_left);
+}
+
 // In chunks, between which Ctrl-C is noticed; each on all processors.
 template <class Work>
 void for_each_point(std::size_t count, const Progress& progress, const Work& work) {
@@ -216,6 +236,8 @@ void bind_mesh(py::module_& module) {
   module.def("inspect", &inspect);
   module.def("repair", &repair);
   module.def("wrap", &wrap);
+  module.def("clip", &clip);
+  module.def("unite", &unite);
   module.def("closest", &closest);
   module.def("sample", &sample);
   module.def("write_obj", [](const std::filesystem::path& file, const SurfacePointer& surface) {

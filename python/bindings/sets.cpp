@@ -78,19 +78,73 @@ Effort effort_named(const std::string& name) {
   return named<Effort>("effort", name, {{"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}});
 }
 
-py::dict build(const SurfacePointer& surface, Index spheres, const std::string& fit, double error, double volume_error,
-               bool solid, double padding, double min_radius, const std::string& effort, std::uint64_t seed,
-               py::object progress) {
-  SphereSetOptions options{.spheres = spheres,
-                           .error = error,
-                           .volume_error = volume_error,
-                           .solid = solid,
-                           .padding = padding,
-                           .min_radius = min_radius,
-                           .effort = effort_named(effort),
-                           .seed = seed};
-  options.fit = named<SphereFit>(
-      "fit", fit, {{"cover", SphereFit::cover}, {"inside", SphereFit::inside}, {"balanced", SphereFit::balanced}});
+// Rows of a ball or a box and a factor, as parse_weight() has them on the command line.
+SetWeights weights_of(const py::buffer& balls, const py::buffer& boxes, const py::buffer& of_vertices) {
+  SetWeights weights;
+  const Input<double> of_balls(balls, 5), of_boxes(boxes, 7), factors(of_vertices, 0);
+  for (std::size_t i = 0; i < of_balls.size(); ++i) {
+    const double* row = of_balls.row(i);
+    weights.regions.push_back({Sphere{Point(row[0], row[1], row[2]), row[3]}, row[4]});
+  }
+  for (std::size_t i = 0; i < of_boxes.size(); ++i) {
+    const double* row = of_boxes.row(i);
+    Box box(Point(row[0], row[1], row[2]));
+    box.extend(Point(row[3], row[4], row[5]));
+    weights.regions.push_back({box, row[6]});
+  }
+  for (std::size_t i = 0; i < factors.size(); ++i) weights.of_vertices.push_back(*factors.row(i));
+  return weights;
+}
+
+ParticleOptions particles_of(const py::dict& given) {
+  ParticleOptions options;
+  options.overlap = given["overlap"].cast<double>();
+  options.equal_radii = given["equal"].cast<bool>();
+  options.density = given["density"].cast<double>();
+  options.density_of = named<ParticleOptions::DensityOf>(
+      "density_of", given["density_of"].cast<std::string>(),
+      {{"solid", ParticleOptions::DensityOf::solid}, {"balls", ParticleOptions::DensityOf::balls}});
+  options.own_masses = given["masses"].cast<bool>();
+  options.center_error = given["center_error"].cast<double>();
+  options.inertia_error = given["inertia_error"].cast<double>();
+  return options;
+}
+
+SphereSetOptions options_of(const py::dict& given) {
+  SphereSetOptions options{.spheres = given["spheres"].cast<Index>(),
+                           .error = given["error"].cast<double>(),
+                           .volume_error = given["volume_error"].cast<double>(),
+                           .solid = given["solid"].cast<bool>(),
+                           .padding = given["padding"].cast<double>(),
+                           .min_radius = given["min_radius"].cast<double>(),
+                           .effort = effort_named(given["effort"].cast<std::string>()),
+                           .seed = given["seed"].cast<std::uint64_t>()};
+  options.fit = named<SphereFit>("fit", given["fit"].cast<std::string>(),
+                                 {{"cover", SphereFit::cover},
+                                  {"inside", SphereFit::inside},
+                                  {"balanced", SphereFit::balanced},
+                                  {"particles", SphereFit::particles}});
+  return options;
+}
+
+py::dict to_python(const ParticleFigures& figures) {
+  py::dict result;
+  result["masses"] = figures.masses;
+  result["body"] = mass(figures.body);
+  result["wanted_mass"] = figures.wanted_mass;
+  result["center_error"] = figures.center_error;
+  result["inertia_error"] = figures.inertia_error;
+  result["largest_overlap"] = figures.largest_overlap;
+  result["overlap_proven"] = figures.overlap_proven;
+  result["filled"] = figures.filled;
+  return result;
+}
+
+py::dict build(const SurfacePointer& surface, const py::dict& given, const py::dict& particles, const py::buffer& balls,
+               const py::buffer& boxes, const py::buffer& of_vertices, py::object progress) {
+  SphereSetOptions options = options_of(given);
+  options.particles = particles_of(particles);
+  options.weights = weights_of(balls, boxes, of_vertices);
   require_usable(options);
   const SphereSetBuild found =
       watched(std::move(progress), [&](const Progress& watch) { return build_sphere_set(*surface, options, watch); });
@@ -98,6 +152,8 @@ py::dict build(const SurfacePointer& surface, Index spheres, const std::string& 
   result["spheres"] = own_rows<double>(to_rows(found.spheres));
   result["kept"] = found.kept;
   result["error_reached"] = found.error_reached;
+  result["enough"] = found.enough ? py::cast(*found.enough) : py::none();
+  result["particles"] = found.particles ? py::object(to_python(*found.particles)) : py::none();
   result["audit"] = to_python(found.audit);
   return result;
 }

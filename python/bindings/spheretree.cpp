@@ -68,6 +68,7 @@ SphereTreeOptions to_options(const py::dict& given, Tuning tuning, bool from_axi
              {"acyclic", Selection::acyclic},
              {"exhaustive", Selection::exhaustive}});
   set(given, "descent", options.descent);
+  set(given, "anneal", options.anneal);
   set(given, "error", options.refinement.error);
   set_annealing(given, options.annealing);
   if (given.contains("regions")) {

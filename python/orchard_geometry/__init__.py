@@ -24,7 +24,7 @@ if typing.TYPE_CHECKING:
     from ._medial import (MedialAxis, Quality, Skeleton, Structure, box_mesh, medial_axis, tuning_options)
     from ._mesh import (Mesh, closest_points, contains, inspect, load, repair, sample_surface, set_threads,
                         signed_distance, wrap)
-    from ._sets import Audit, SphereSet, audit, sphere_set
+    from ._sets import Audit, Particles, SphereSet, audit, sphere_set
     from ._spheretree import Certificate, SphereTree, sphere_tree
     from ._thickness import LocalThickness, Thickness, local_thickness, thickness
     from ._voronoi import Voronoi, voronoi
@@ -38,7 +38,7 @@ _CONSTRUCTION = {
     "_medial": ("MedialAxis", "Quality", "Skeleton", "Structure", "box_mesh", "medial_axis", "tuning_options"),
     "_thickness": ("LocalThickness", "Thickness", "local_thickness", "thickness"),
     "_spheretree": ("Certificate", "SphereTree", "sphere_tree"),
-    "_sets": ("Audit", "SphereSet", "audit", "sphere_set"),
+    "_sets": ("Audit", "Particles", "SphereSet", "audit", "sphere_set"),
 }
 _HOME = {name: module for module, names in _CONSTRUCTION.items() for name in names}
 

@@ -199,6 +199,31 @@ class Mesh:
                                                            number("offset", offset, 1e-9, 0.999), progress)
         return Wrap(Mesh._of(surface, self._name), to_input, from_input)
 
+    def clip(self, normal: Anything, offset: float) -> Mesh:
+        """The part of a solid where normal . p is `offset` or more, closed by the plane. normal: (3,), of any length;
+        the offset counts in it. MeshError unless the mesh is solid and something of it is left.
+
+        >>> from orchard_geometry import box_mesh
+        >>> round(box_mesh().clip([0, 0, 1], 0).volume, 6)
+        4.0
+        """
+        self._require_solid()
+        direction = floats("normal", [normal], 3)[0].tolist()
+        return Mesh._of(_construction.clip(self._surface, direction, number("offset", offset, -1e300, 1e300)),
+                        self._name)
+
+    def unite(self, *, progress: Progress = None) -> Mesh:
+        """The mesh with closed parts that cut each other replaced by their union; the mesh itself where none do, or
+        where a part cuts itself. MeshError unless the mesh is solid.
+
+        >>> from orchard_geometry import box_mesh
+        >>> len(box_mesh().unite().faces)
+        12
+        """
+        self._require_solid()
+        united = _construction.unite(self._surface, progress)
+        return self if united is None else Mesh._of(united[0], self._name)
+
     def closest_points(self, points: Anything, *, progress: Progress = None) -> ClosestPoints:
         """The nearest place of the surface for each of (n, 3) points.
 

@@ -121,6 +121,8 @@ def _tree_options(options: dict[str, typing.Any]) -> dict[str, typing.Any]:
             value = whole(name, value, *ranges[name])
         elif name in reals:
             value = number(name, value, *reals[name])
+        elif name == "anneal":
+            value = bool(value)
         elif name == "spheres":
             value = [whole("spheres", count, 2, 2**31 - 1) for count in value]
         elif name == "regions":
@@ -135,11 +137,14 @@ def _tree_options(options: dict[str, typing.Any]) -> dict[str, typing.Any]:
 def _refuse_idle(method: str, options: dict[str, typing.Any], tuning: dict[str, str]) -> None:
     """As the command does: an option that would have no effect is refused by name."""
     of_method = {"spheres": "tightened", "objective": "tightened", "closing": "merging", "energy": "annealing"}
+    anneals = options.get("anneal", False)
+    if anneals and method == "annealing":
+        raise ValueError("anneal has no effect with method='annealing', which anneals anyway")
     for name in options:
         owner = "annealing" if name.startswith("anneal_") else of_method.get(name, method)
-        if owner != method:
+        if owner != method and not (anneals and owner == "annealing"):
             raise ValueError(f"{name} has no effect with method={method!r}")
-    if "effort" in options and method in ("merging", "octree"):
+    if "effort" in options and not anneals and method in ("merging", "octree"):
         raise ValueError(f"effort has no effect with method={method!r}")
     if "spheres" in options and ("depth" in options or "branching" in options):
         raise ValueError("spheres excludes depth and branching")
@@ -164,6 +169,7 @@ def sphere_tree(
     energy: str | None = None,
     redundant: str | None = None,
     descent: int | None = None,
+    anneal: bool | None = None,
     error: float | None = None,
     regions: Anything = None,
     seconds: float | None = None,
@@ -192,7 +198,7 @@ def sphere_tree(
     "annealing"; "octree". depth (3): levels below the root. branching (8): children of a sphere. spheres: how many each
     level may have, in place of both. effort: "low", "default", "high". objective: what to keep low, "balanced",
     "maximum", "mean" or "volume". error: no children for a sphere whose inaccuracy is this or less, in mesh units;
-    regions: rows x y z r error, the same within balls. seconds: the tightest tree after so long, at whatever effort.
+    regions: rows x y z r error, the same within balls. anneal: simulated annealing afterwards, after any other method. seconds: the tightest tree after so long, at whatever effort.
     axis: start from this medial axis (merging). points: start from your own surface points, (n, 3). Tuning options of
     medial_axis() are keywords, too: samples and seed of all, others of merging.
 
@@ -210,7 +216,7 @@ def sphere_tree(
             raise TypeError(f"sphere_tree() has no option {name!r}")
     options = _tree_options({
         "depth": depth, "branching": branching, "spheres": spheres, "effort": effort, "objective": objective,
-        "closing": closing, "energy": energy, "redundant": redundant, "descent": descent, "error": error,
+        "closing": closing, "energy": energy, "redundant": redundant, "descent": descent, "anneal": anneal, "error": error,
         "regions": regions, "anneal_distance": anneal_distance, "anneal_move": anneal_move,
         "anneal_min_scale": anneal_min_scale, "anneal_max_scale": anneal_max_scale,
         "anneal_first_trials": anneal_first_trials, "anneal_first_acceptance": anneal_first_acceptance,

@@ -174,6 +174,36 @@ def test_sets_of_spheres(box, tmp_path):
             call()
 
 
+def test_particles_and_weights_of_sets(box):
+    found = og.sphere_set(box, 12, fit="particles", particles=og.Particles(overlap=10, masses=True), effort="low")
+    assert found.particles is not None and len(found.particles["masses"]) == 12
+    assert found.particles["largest_overlap"] <= 0.1 and found.audit["protrusion"][1] < 1e-6
+    assert sum(found.particles["masses"]) == pytest.approx(box.volume)
+    corner = box.vertices[0]
+    heavy = og.sphere_set(box, 6, weights=[(*corner, 0.5, 20.0)], effort="low")
+    plain = og.sphere_set(box, 6, effort="low")
+    assert heavy.kept and not numpy.array_equal(heavy.spheres, plain.spheres)
+    missed = og.sphere_set(box, 1, fit="inside", error=3, effort="low")
+    assert not missed.error_reached and (missed.enough is None or missed.enough > 1)
+    for call in (lambda: og.sphere_set(box, 4, weights=[(0, 0, 0, 1)]), lambda: og.sphere_set(box, 4, vertex_weights=[1]),
+                 lambda: og.sphere_set(box, 4, weights=[(0, 0, 0, -1, 2)]),
+                 lambda: og.sphere_set(box, 4, fit="particles", particles=og.Particles(overlap=-1))):
+        with pytest.raises(ValueError):
+            call()
+
+
+def test_solids_are_clipped_and_united(box):
+    half = box.clip([0, 0, 2], 0)
+    assert half.solid and half.volume == pytest.approx(box.volume / 2)
+    both = og.Mesh(numpy.concatenate([box.vertices, box.vertices * 0.5 + [0.9, 0.2, 0.1]]),
+                   numpy.concatenate([box.faces, box.faces + len(box.vertices)]))
+    united = both.unite()
+    assert united.solid and united.volume < both.volume and og.inspect(united)["self_intersections"] == 0
+    assert box.unite() is box
+    with pytest.raises(og.MeshError):
+        box.clip([0, 0, 1], 100)
+
+
 def test_progress_is_reported_and_can_stop(lamp):
     seen = []
     og.medial_axis(lamp, samples=500, progress=lambda stage, done: seen.append((stage, done)))

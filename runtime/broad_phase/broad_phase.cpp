@@ -137,7 +137,7 @@ BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
   return valid() && index < pool.slots() && pool.alive(index) ? pool.id_of(index) : kNoBody;
 }
 
-BodyId BroadPhase::take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
+BodyId BroadPhase::add_body(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
   detail::BodyPool& pool = state_->pool;
   const BodyIndex body = pool.add(importance, filter, place);
   if (body == kNoIndex) return kNoBody;
@@ -150,11 +150,11 @@ BodyId BroadPhase::take_in(std::uint8_t importance, const BodyFilter& filter, co
 }
 
 BodyId BroadPhase::add(std::uint8_t importance, const BodyFilter& filter) {
-  return may_change() && state_->pool.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
+  return may_change() && state_->pool.has_source() ? add_body(importance, filter, nullptr) : kNoBody;
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, const BodyFilter& filter) {
-  return may_change() && is_valid(place) ? take_in(importance, filter, &place) : kNoBody;
+  return may_change() && is_valid(place) ? add_body(importance, filter, &place) : kNoBody;
 }
 
 bool BroadPhase::remove(BodyId body) {

@@ -55,6 +55,15 @@ Motion speed_bounded(const Vec3& position, double radius, double max_speed, doub
   return motion;
 }
 
+Motion position_bounded(const Vec3& center, double reach, double radius, double expiry) noexcept {
+  constexpr double outward = 1 + 0x1p-50;  // for the rounding of the sum
+  Motion motion;
+  motion.position = center;
+  motion.radius = (reach + radius) * outward;
+  motion.expiry = expiry;
+  return motion;
+}
+
 namespace detail {
 
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept {

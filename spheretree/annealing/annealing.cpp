@@ -8,140 +8,19 @@
 #include "octants.h"
 #include "orchard/covering/incremental_cover.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/random.h"
-#include "orchard/geometry/sphere_distance.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/redundancy.h"
-#include "random_direction.h"
+#include "sibling_schedule.h"
 
 namespace orchard {
 namespace {
-
-constexpr std::uint64_t kStage = 400;  // of the random numbers
-// A child that has become redundant would shrink for ever.
-constexpr double kMinRadius = 1e-3;  // of its parent's radius
-
-// Anneals the children of one node.
-class Schedule {
- public:
-  Schedule(SphereTree& tree, Index parent, const Surface& surface, const AnnealingOptions& options,
-           IncrementalCover& cover, AnnealingReport& report)
-      : tree_(tree),
-        parent_(tree.nodes[parent]),
-        surface_(surface),
-        options_(options),
-        cover_(cover),
-        report_(report),
-        random_(options.seed, kStage + parent_.level, parent) {
-    for (Index k = 0; k < parent_.child_count; ++k) energies_.push_back(energy_of(child(k).sphere));
-    energy_ = energy_of_set();
-  }
-
-  void run(int iterations) {
-    double temperature = first_temperature();
-    for (int i = 0; i < iterations && temperature > 0; ++i, temperature *= options_.cooling) {
-      int accepted = 0, rejected = 0, uncovering = 0;
-      while (accepted < options_.max_accepted && rejected < options_.max_rejected &&
-             uncovering < options_.max_uncovering) {
-        switch (try_change(temperature)) {
-          case Outcome::accepted:
-            ++accepted;
-            break;
-          case Outcome::rejected:
-            ++rejected;
-            break;
-          case Outcome::uncovering:
-            ++uncovering;
-            break;
-        }
-      }
-    }
-  }
-
- private:
-  enum class Outcome { accepted, rejected, uncovering };
-
-  SphereNode& child(Index k) { return tree_.nodes[parent_.first_child + k]; }
-  double energy_of(const Sphere& ball) const {
-    switch (options_.distance) {
-      case SphereEnergy::samples:
-        return sampled_sphere_distance(surface_, ball);
-      case SphereEnergy::corrected_samples:
-        return corrected_sphere_distance(surface_, ball);
-      case SphereEnergy::lemma:
-        break;
-    }
-    return std::max(0.0, convex_sphere_distance(surface_, ball));
-  }
-  double energy_of_set() const {
-    double energy = 0;
-    for (const double e : energies_) energy = options_.energy == SetEnergy::sum ? energy + e : std::max(energy, e);
-    return energy;
-  }
-
-  Sphere changed(const Sphere& ball) {
-    Sphere next = ball;
-    next.center += random_.uniform() * options_.move * parent_.sphere.radius * random_direction(random_);
-    next.radius *= random_.uniform(options_.min_scale, options_.max_scale);
-    next.radius = std::max(next.radius, kMinRadius * parent_.sphere.radius);
-    return next;
-  }
-
-  // The temperature at which the mean rise over some changes would pass with the wanted probability.
-  double first_temperature() {
-    double sum = 0;
-    for (int i = 0; i < options_.first_trials; ++i) {
-      const auto k = static_cast<Index>(random_.below(parent_.child_count));
-      const double before = energies_[k];
-      energies_[k] = energy_of(changed(child(k).sphere));
-      sum += std::abs(energy_of_set() - energy_);
-      energies_[k] = before;
-    }
-    return -sum / options_.first_trials / std::log(options_.first_acceptance);
-  }
-
-  // As written: first whether the surface stays covered, of what would not be accepted, too; for what is not covered is
-  // tried again, and must not count as rejected.
-  Outcome try_change(double temperature) {
-    ++report_.changes;
-    const auto k = static_cast<Index>(random_.below(parent_.child_count));
-    const Index node = parent_.first_child + k;
-    const Sphere next = changed(child(k).sphere);
-    if (!cover_.try_change(node, next)) {
-      ++report_.uncovering;
-      return Outcome::uncovering;
-    }
-    const double before = energies_[k];
-    energies_[k] = energy_of(next);
-    const double energy = energy_of_set(), rise = energy - energy_;
-    if (rise > 0 && random_.uniform() >= std::exp(-rise / temperature)) {
-      energies_[k] = before;
-      cover_.change(node, child(k).sphere);
-      return Outcome::rejected;
-    }
-    ++report_.accepted;
-    child(k).sphere = next;
-    energy_ = energy;
-    return Outcome::accepted;
-  }
-
-  SphereTree& tree_;
-  const SphereNode parent_;
-  const Surface& surface_;
-  const AnnealingOptions& options_;
-  IncrementalCover& cover_;
-  AnnealingReport& report_;
-  Random random_;
-  std::vector<double> energies_;
-  double energy_ = 0;
-};
 
 class Annealer {
  public:
   Annealer(const Surface& surface, const AnnealingOptions& options)
       : surface_(surface), options_(options), margin_(tolerance::kCoverMargin * surface.bounding_radius()) {}
 
-  AnnealingBuild run(const Progress& progress) {
+  AnnealingBuild build(const Progress& progress) {
     tree_.branching = options_.branching;
     tree_.nodes.push_back({.sphere = surface_.bounding_ball()});
     tree_.nodes[0].sphere.radius += margin_;
@@ -151,13 +30,23 @@ class Annealer {
         if (tree_.nodes[node].level + 1 == level && wants_children(options_.refinement, surface_, ball(node)))
           add_children(node);
       if (tree_.nodes.size() == above) break;
-      anneal_level(level, progress);
+      anneal_level(level, options_.depth, KeepBest::no, progress);
       report_.redundant += remove_redundant(tree_, surface_, options_.redundancy).removed;
     }
     return {std::move(tree_), report_};
   }
 
+  AnnealingReport tighten(SphereTree& tree, const Progress& progress) {
+    tree_ = std::move(tree);
+    const Index depth = tree_.nodes.back().level;
+    for (Index level = 1; level <= depth; ++level) anneal_level(level, depth, KeepBest::yes, progress);
+    tree = std::move(tree_);
+    return report_;
+  }
+
  private:
+  using KeepBest = detail::KeepBest;
+
   const Sphere& ball(Index node) const { return tree_.nodes[node].sphere; }
 
   // The octants of the bounding box, or of the cube around the parent, that meet triangles inside the balls above.
@@ -193,7 +82,7 @@ class Annealer {
 
   // Children of two parents that no triangle meets both of cannot uncover what the others hold: such parents are
   // annealed at the same time, each with a cover of its own triangles.
-  void anneal_level(Index level, const Progress& progress) {
+  void anneal_level(Index level, Index depth, KeepBest keep, const Progress& progress) {
     std::vector<Index> parents;
     for (Index node = 0; node < tree_.nodes.size(); ++node)
       if (tree_.nodes[node].level + 1 == level && tree_.nodes[node].child_count > 0) parents.push_back(node);
@@ -204,13 +93,13 @@ class Annealer {
     std::size_t done = 0;
     for (const std::vector<std::size_t>& group : apart(triangles)) {
       report_progress(progress, "annealing",
-                      (level - 1 + static_cast<double>(done) / static_cast<double>(parents.size())) / options_.depth);
+                      (level - 1 + static_cast<double>(done) / static_cast<double>(parents.size())) / depth);
       const std::vector<PathBall> balls = path_balls(tree_);
       tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t k) {
         const std::size_t i = group[k];
         IncrementalCover cover(surface_, triangles[i], balls);
-        Schedule(tree_, parents[i], surface_, options_, cover, reports[i])
-            .run(level == 1 ? options_.iterations_first : options_.iterations);
+        detail::SiblingSchedule(tree_, parents[i], surface_, options_, cover, reports[i])
+            .run(level == 1 ? options_.iterations_first : options_.iterations, keep);
       });
       done += group.size();
     }
@@ -262,7 +151,15 @@ void check(const AnnealingOptions& o) {
 
 AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& options, const Progress& progress) {
   check(options);
-  return Annealer(surface, options).run(progress);
+  return Annealer(surface, options).build(progress);
+}
+
+AnnealingReport anneal_tree(SphereTree& tree, const Surface& surface, const AnnealingOptions& options,
+                            const Progress& progress) {
+  check(options);
+  if (!surface.solid())
+    throw InputError("annealing needs a solid: " + surface.report().faults() + "; repair the mesh first");
+  return Annealer(surface, options).tighten(tree, progress);
 }
 
 }  // namespace orchard

@@ -38,7 +38,7 @@ class SetBuilder {
     result.fit = own.fit;
     time_stage(result.seconds, "fitting", [&] { fit(own, result); });
     time_stage(result.seconds, "certificate",
-               [&] { result.audit = audit_spheres(surface_, result.spheres, {}, progress_); });
+               [&] { result.audit = audit_spheres(surface_, result.spheres, own.audit, progress_); });
     result.kept = is_kept(result);
     result.error_reached = !asks_for_error() || excess(result) <= 1;
     for (Sphere& ball : result.spheres) ball.radius += own.padding;

@@ -104,7 +104,7 @@ void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, L
 
 }  // namespace
 
-void take_in(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
+void close_regions(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
              bool hold, LevelBalls& balls) {
   const CandidateSearch search(balls, objective, surface.bounding_radius());
   const std::vector<Taking> takings =

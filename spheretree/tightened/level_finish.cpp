@@ -22,7 +22,7 @@ class Finish {
 
   // Finds uncovered regions and has the balls take them in, until only those are left that the last growth fills. In
   // the first rounds, the search goes on with what was found among its samples.
-  void take_in_uncovered(TightenReport::Level& report) {
+  void close_uncovered(TightenReport::Level& report) {
     Coverage coverage;
     std::vector<Sphere> changed_balls;
     const int rounds = options_.searching_rounds + options_.tightening_rounds + kTakingRounds;
@@ -39,7 +39,7 @@ class Finish {
       ++report.closing_rounds;
       const std::vector<LevelBall> before = solver_.balls();
       const bool search = round < options_.searching_rounds;
-      solver_.take_in(uncovered, !search);
+      solver_.close_regions(uncovered, !search);
       if (round < options_.searching_rounds + options_.tightening_rounds) solver_.tighten();
       if (search) {
         solver_.search(options_.search_trials);
@@ -123,7 +123,7 @@ class Finish {
 void finish_level(const Surface& surface, LevelSolver& solver, PartialTree& partial, const FinishOptions& options,
                   TightenReport::Level& report) {
   Finish finish(surface, solver, partial, options);
-  finish.take_in_uncovered(report);
+  finish.close_uncovered(report);
   finish.grow(report);
   finish.tighten_closed();
   for (LevelNode& node : partial.last()) node.sphere.radius += 0.5 * kLastGrowth * surface.bounding_radius();

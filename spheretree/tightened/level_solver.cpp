@@ -26,8 +26,8 @@ void LevelSolver::search(Index trials, const Progress& progress) { search_.run(b
 
 void LevelSolver::tighten() { tighten_to_samples(surface_, balls_); }
 
-void LevelSolver::take_in(const std::vector<UncoveredRegion>& uncovered, bool hold) {
-  detail::take_in(surface_, objective_, uncovered, hold, balls_);
+void LevelSolver::close_regions(const std::vector<UncoveredRegion>& uncovered, bool hold) {
+  detail::close_regions(surface_, objective_, uncovered, hold, balls_);
 }
 
 void LevelSolver::take_radii(const LevelCover& cover) {

@@ -24,7 +24,7 @@ class LevelSolver {
   void search(Index trials, const Progress& progress = {});
   void tighten();  // each ball to the samples that it alone holds
   // `hold` as in level_closing.h.
-  void take_in(const std::vector<UncoveredRegion>& uncovered, bool hold);
+  void close_regions(const std::vector<UncoveredRegion>& uncovered, bool hold);
 
   // From here on the balls cover the surface, and go on doing so: `cover` holds the same balls, perhaps larger.
   void take_radii(const LevelCover& cover);

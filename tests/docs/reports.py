@@ -40,6 +40,11 @@ f 4 1 5
 f 4 5 8
 """
 
+ROBOT = """<robot name="two"><link name="a"><collision><geometry><mesh filename="box.obj"/></geometry></collision></link>
+<link name="b"><collision><geometry><cylinder radius="1" length="2"/></geometry></collision></link>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0 0 3"/></joint></robot>
+"""
+
 # Definition of the schema, command line; the files that earlier lines wrote are read by later ones.
 RUNS = [
     ("build", "build box.obj -o tree --depth 2 --samples 300"),
@@ -62,6 +67,8 @@ RUNS = [
     ("inspect_points", "inspect points.xyz"),
     ("audit", "audit spheres/box-set.txt box.obj"),
     ("audit", "audit spheres/box-set.txt box.obj --buffer 0.01"),
+    ("robot", "robot robot.urdf -o robot --spheres 3 --effort low --states 20 --no-picture"),
+    ("audit_robot", "audit robot/robot-curobo.yml robot.urdf"),
     ("sample", "sample box.obj -o points --samples 200"),
     ("voronoi", "voronoi box.obj --samples 100"),
     ("voronoi", "voronoi points.xyz --compare"),
@@ -107,6 +114,7 @@ def main():
     folder.mkdir(parents=True)
     (folder / "few").mkdir()
     (folder / "box.obj").write_text(BOX)
+    (folder / "robot.urdf").write_text(ROBOT)
     (folder / "points.xyz").write_text("".join(f"{i % 5} {i // 5 % 5} {i // 25 + 0.1 * i}\n" for i in range(60)))
     schema = json.loads(pathlib.Path(schema_file).read_text())
     faults = list(faults_of(program, schema, folder))

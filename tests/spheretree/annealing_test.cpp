@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/sphere_distance.h"
 #include "orchard/spheretree/descent.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/octree.h"
@@ -178,6 +179,53 @@ TEST(AnnealedTree, RefusesOptionsThatMakeNoSchedule) {
 TEST(AnnealedTree, StopsWhenCancelled) {
   const Surface surface(l_shape());
   EXPECT_THROW(annealed_tree(surface, quick(), [](std::string_view, double) { return false; }), Cancelled);
+}
+
+// By what the energy is, of each set of siblings.
+std::vector<double> set_energies(const SphereTree& tree, const Surface& surface, SetEnergy kind) {
+  std::vector<double> energies;
+  for (const SphereNode& parent : tree.nodes) {
+    double energy = 0;
+    for (Index k = 0; k < parent.child_count; ++k) {
+      const double e = std::max(0.0, convex_sphere_distance(surface, tree.nodes[parent.first_child + k].sphere));
+      energy = kind == SetEnergy::sum ? energy + e : std::max(energy, e);
+    }
+    energies.push_back(energy);
+  }
+  return energies;
+}
+
+TEST(AnnealingAfterwards, MakesNoSetOfSiblingsLooserAndKeepsThePathRule) {
+  for (const SetEnergy kind : {SetEnergy::sum, SetEnergy::maximum}) {
+    for (const TriangleMesh& mesh : {torus(12, 6), l_shape()}) {
+      const Surface surface(mesh);
+      SphereTree tree = octree(surface, {.depth = 2});
+      const std::vector<double> before = set_energies(tree, surface, kind);
+      AnnealingOptions options = quick();
+      options.energy = kind, options.first_acceptance = 0.1;
+      const AnnealingReport report = anneal_tree(tree, surface, options);
+      expect_conservative(tree, surface, "annealed afterwards");
+      const std::vector<double> after = set_energies(tree, surface, kind);
+      double sum_before = 0, sum_after = 0;
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_LE(after[i], before[i] * (1 + 1e-12));
+        sum_before += before[i], sum_after += after[i];
+      }
+      EXPECT_LT(sum_after, 0.98 * sum_before);
+      EXPECT_GT(report.accepted, 0u);
+    }
+  }
+}
+
+TEST(AnnealingAfterwards, RepeatsItselfForASeedAndRefusesWhatIsNoSolid) {
+  const Surface surface(l_shape());
+  SphereTree one = octree(surface, {.depth = 2}), two = one;
+  anneal_tree(one, surface, quick());
+  anneal_tree(two, surface, quick());
+  EXPECT_TRUE(same_tree(one, two));
+  TriangleMesh open = l_shape();
+  open.triangles.pop_back();
+  EXPECT_THROW(anneal_tree(one, Surface(open), quick()), InputError);
 }
 
 TEST(RandomDescent, MakesNoBallLooserAndKeepsThePathRule) {

@@ -166,7 +166,7 @@ TEST(LevelBalls, TakeTheNewSamplesThatTheyHold) {
   EXPECT_EQ(balls.held_only_by(last), (std::vector<Index>{4, 7}));
 }
 
-// Against a look at all of them, with multipliers drawn anew each time.
+// Against a look at all of them, with fresh multipliers each time.
 TEST(BallPlaces, NameAllBallsThatMayBeAmongTheNearest) {
   for (std::uint64_t k = 0; k < 300 * test::more(); ++k) {
     const std::uint64_t seed = test::first_seed() + k;

@@ -174,9 +174,10 @@ const Intersections& IntersectionFinder::find(std::span<const SpaceTimeBound> bo
   Scratch& s = *scratch_;
   s.result.initial.clear();
   s.result.earliest = {kNoContact, 0, 0};
+  s.result.counts = {};
   s.settled.clear();
   s.find_initial(bounds, duration, options, filter);
-  Search search{bounds, duration, options.shape, s.settled, s.result.earliest, filter};
+  Search search{bounds, duration, options.shape, s.settled, s.result.earliest, filter, s.result.counts};
   if (s.result.earliest.time > 0) s.search(search, options);
   return s.result;
 }

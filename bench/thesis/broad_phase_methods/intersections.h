@@ -25,6 +25,7 @@ struct Search {
   PairSet& settled;  // pairs whose contact is known: those that meet at the start, those with planes
   BoundContact& earliest;
   const BoundFilter& filter;  // none: all are compared
+  SearchCounts& counts;
 
   double limit() const noexcept { return earliest.time < duration ? earliest.time : duration; }
   double half(std::uint32_t body, double t) const noexcept {

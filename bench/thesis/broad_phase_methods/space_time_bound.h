@@ -72,12 +72,20 @@ struct IntersectionOptions {
   std::uint32_t base_case = 32;  // n_b of 4.2.4: faces in a cell that is not divided further
 };
 
+// What a search did, for growth curves that no clock blurs.
+struct SearchCounts {
+  std::size_t crossings = 0;       // of projected segments, which the sweeps processed
+  std::size_t base_cells = 0;      // of the subdivision, that were not divided further
+  std::size_t faces_in_cells = 0;  // in all of those together; a face counts in each
+};
+
 struct Intersections {
   // All pairs whose cubes (horns: balls) meet at t = 0 (4.3), each with its first_contact(), which is later than 0 or
   // never where a cutting plane keeps them apart. In ascending order of pairs.
   std::vector<BoundContact> initial;
   // The earliest contact of all, those included; time kNoContact if there is none. Of several at the same time, any.
   BoundContact earliest{kNoContact, 0, 0};
+  SearchCounts counts;
 };
 
 // False: the two, a < b, are not to be compared. It has to answer alike while find() runs.

@@ -71,6 +71,8 @@ void Subdivision::run_axis(Search& search, std::size_t axis, std::uint32_t base_
     const Cell cell = std::move(queue.back());
     queue.pop_back();
     if (cell.faces.size() <= base_case || cell.level >= (hybrid ? kHybridLevels : kDeepest)) {
+      ++search.counts.base_cells;
+      search.counts.faces_in_cells += cell.faces.size();
       if (hybrid) {
         some_.clear();
         for (const std::uint32_t f : cell.faces) some_.push_back(faces[f]);

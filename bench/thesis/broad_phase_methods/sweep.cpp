@@ -69,6 +69,7 @@ void Sweep::run(Search& search, std::size_t axis, std::span<const Face> faces, d
     if (a.bend != b.bend && !crossed_.insert(below, above)) continue;
     order_[place] = above, order_[place + 1] = below;
     place_[above] = place, place_[below] = place + 1;
+    ++search.counts.crossings;
     if (a.upper && !b.upper && a.body != b.body) search.faces_meet(a.body, b.body, axis, begin + std::max(0.0, time));
     if (place > 0) expect(order_[place - 1], above);
     if (place + 2 < count) expect(below, order_[place + 2]);

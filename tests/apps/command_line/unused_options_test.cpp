@@ -92,7 +92,8 @@ TEST(UnusedOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
        {{"--closing", "growth"}, "--closing has no effect on --method tightened; it is for merging"},
        {{"--energy", "sum"}, "it is for annealing"},
        {{"--anneal-move", "0.1"}, "--anneal-move has no effect on --method tightened; it is for annealing"},
-       {{"--method", "octree", "--anneal-cooling", "0.8"}, "it is for annealing"},
+       {{"--method", "octree", "--anneal-cooling", "0.8"}, "it is for annealing, and for others with --anneal"},
+       {{"--method", "annealing", "--anneal"}, "which anneals anyway; leave it out"},
        {{"--method", "octree", "--gaps", "none"}, "--gaps has no effect on --method octree, which builds from no"},
        {{"--method", "octree", "--samples", "500"}, "it is for tightened and merging"},
        {{"--method", "annealing", "--prune-angle", "20"}, "--prune-angle has no effect on --method annealing"},
@@ -105,6 +106,11 @@ TEST(UnusedOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
        {{"--wrap-alpha", "0.02"}, "--wrap-alpha requires --wrap"},
        {{"--strict", "--wrap-alpha", "0.02"}, "--wrap-alpha requires --wrap"}});
   EXPECT_EQ(here.run(test::quick_build(mesh, (here / "out").string(), {"--seed", "3"})).exit_code, 0);
+  const Words annealed{"build",      mesh,       "-o",       (here / "out").string(),
+                       "--no-views", "--method", "octree",   "--depth",
+                       "1",          "--anneal", "--energy", "sum",
+                       "--effort",   "low"};
+  EXPECT_EQ(here.run(annealed).exit_code, 0);
 }
 
 TEST(UnusedOptions, SampleAndVoronoiRefuseThemToo) {

@@ -267,7 +267,7 @@ class BroadPhase {
              const MotionArrays* arrays = nullptr);
   Advance process(double t_now, const Budget* budget, std::uint64_t replay);
   Advance process_steps(double t_now, const Budget* budget, std::uint64_t replay);
-  BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
+  BodyId add_body(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= max_time_; }
   std::int64_t step_reported() const noexcept;
   void validate_up_to(std::int64_t step);

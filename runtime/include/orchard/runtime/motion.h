@@ -36,6 +36,12 @@ bool is_valid(const Motion& motion) noexcept;
 // 8.2: only the speed is bounded. The bound is the ball that the body can reach.
 Motion speed_bounded(const Vec3& position, double radius, double max_speed, double expiry) noexcept;
 
+// 8.2: only the position is bounded. The body's centre stays within `reach` of `center` until `expiry`, and jumps there
+// as it likes: a door, a lift, a robot on its stand. The bound is a body at rest whose sphere has the radius reach +
+// radius, so a broad phase reports a pair as long as the regions meet, whether or not the bodies do now. Lengths are
+// not negative; the expiry is a time, in seconds.
+Motion position_bounded(const Vec3& center, double reach, double radius, double expiry) noexcept;
+
 // "Really overlap": closed, in double, from two positions at the same time.
 inline bool spheres_touch(const Motion& a, const Motion& b) noexcept {
   const Vec3 apart = b.position - a.position;

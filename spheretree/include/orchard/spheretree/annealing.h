@@ -61,4 +61,13 @@ struct AnnealingBuild {
 AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& options = {},
                              const Progress& progress = {});
 
+// Makes a tree of any builder tighter by annealing the children of each node, from the top down (dissertation 8.2). The
+// changes are those of annealed_tree(), from the tree's own spheres in place of octants, and each set of siblings ends
+// as the best one that it has been: no set gets a larger energy than it had. Take a low first_acceptance, or what the
+// builder found is forgotten first. Precondition: the tree is conservative, nodes in breadth-first order; it stays so.
+// `depth`, `branching`, `redundancy` and `refinement` have no meaning here. Bounds and inaccuracies become stale: call
+// measure() afterwards. Throws InputError unless surface.solid(). Deterministic as above.
+AnnealingReport anneal_tree(SphereTree& tree, const Surface& surface, const AnnealingOptions& options = {},
+                            const Progress& progress = {});
+
 }  // namespace orchard

@@ -43,6 +43,7 @@ struct SphereTreeOptions {
   MergeClosing closing = MergeClosing::refit;  // merging
   Refinement refinement{};
   Index descent = 0;       // trials of random descent for each node, after any method
+  bool anneal = false;     // whether to anneal each set of siblings afterwards (anneal_tree), after any other method
   std::uint64_t seed = 1;  // of the tree's own random choices; medial.sampling has its own
   MedialBuildOptions medial{};
   // tightened: whether to make a medial axis, too. The tree is the same without, and there sooner, for it is fitted to
@@ -57,6 +58,7 @@ struct SphereTreeOptions {
 bool samples_surface(TreeMethod method);
 
 // What the annealing runs with: the dissertation's schedule with high effort, otherwise a share of it, and the tuning.
+// Of a tree that there is already, the first acceptance is 0.05 unless the tuning says otherwise.
 AnnealingOptions annealing_options(const SphereTreeOptions& options);
 
 // How many surface points a method and its depth need: 5000, or for tightened trees 20 for each ball of the last level,
@@ -83,7 +85,7 @@ struct SphereTreeBuild {
   SphereTree octree;  // of the same depth, to compare with: measured for its inaccuracy alone
   TightenReport tightening;
   MergeReport merging;
-  AnnealingReport annealing;
+  AnnealingReport annealing;  // also of options.anneal
   DescentReport descent;
   CoverReport cover;
   RedundancyReport redundancy;

@@ -45,6 +45,9 @@ struct SphereSetOptions {
   // made.
   bool find_enough = true;
   std::uint64_t seed = 1;
+  // How closely the result is measured. It does not change what a cover or a set of spheres inside is, nor whether they
+  // are kept; the volume of a balanced set is judged by audit.rays.
+  SphereAuditOptions audit{};
 };
 
 struct SphereSetBuild {

@@ -1,0 +1,90 @@
+#include "orchard/runtime/motion_filter.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace orchard::runtime {
+namespace {
+
+// The length, in standard deviations of a coordinate, that a normal vector of three dimensions exceeds with this
+// probability.
+double exceeded_with(double probability) noexcept {
+  double low = 0, high = 40;  // beyond it the probability is 0 in double
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    const double beyond = std::erfc(middle / std::numbers::sqrt2) +
+                          std::sqrt(2 / std::numbers::pi) * middle * std::exp(-middle * middle / 2);
+    (beyond > probability ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+MotionFilter::MotionFilter(const MotionFilterOptions& options) noexcept : options_(options) {
+  const double doubt = (1 - options.confidence) / 3;
+  width_ = exceeded_with(doubt);
+  walk_width_ = exceeded_with(doubt / 2);
+}
+
+// Constant acceleration, and what white jerk adds to the covariance.
+MotionFilter::State MotionFilter::predicted(double s) const noexcept {
+  const double q = options_.jerk_density, s2 = s * s, s3 = s2 * s;
+  const Covariance& c = state_.covariance;
+  State next = state_;
+  next.position = state_.position + s * state_.velocity + (s2 / 2) * state_.acceleration;
+  next.velocity = state_.velocity + s * state_.acceleration;
+  const double xv = c.xv + s * (c.vv + c.xa) + s2 * 1.5 * c.va + s3 / 2 * c.aa;
+  next.covariance = {.xx = c.xx + 2 * s * c.xv + s2 * (c.vv + c.xa) + s3 * c.va + s2 * s2 / 4 * c.aa + q * s2 * s3 / 20,
+                     .xv = xv + q * s2 * s2 / 8,
+                     .xa = c.xa + s * c.va + s2 / 2 * c.aa + q * s3 / 6,
+                     .vv = c.vv + 2 * s * c.va + s2 * c.aa + q * s3 / 3,
+                     .va = c.va + s * c.aa + q * s2 / 2,
+                     .aa = c.aa + q * s};
+  return next;
+}
+
+bool MotionFilter::add(double time, const Vec3& position) noexcept {
+  const double sum = time + position[0] + position[1] + position[2];
+  if (!std::isfinite(sum) || (!empty_ && !(time > time_))) return false;
+  const double noise = options_.noise * options_.noise;
+  if (empty_) {
+    const double speed = options_.max_speed, acceleration = options_.max_acceleration;
+    state_ = {position, {}, {}, {noise, 0, 0, speed * speed, 0, acceleration * acceleration}};
+  } else {
+    state_ = predicted(time - time_);
+    Covariance& c = state_.covariance;
+    const double of_sample = c.xx + noise, kept = noise / of_sample;
+    const Vec3 surprise = (1 / of_sample) * (position - state_.position);
+    state_.position = state_.position + c.xx * surprise;
+    state_.velocity = state_.velocity + c.xv * surprise;
+    state_.acceleration = state_.acceleration + c.xa * surprise;
+    c = {.xx = c.xx * kept,
+         .xv = c.xv * kept,
+         .xa = c.xa * kept,
+         .vv = c.vv - c.xv * c.xv / of_sample,
+         .va = c.va - c.xv * c.xa / of_sample,
+         .aa = c.aa - c.xa * c.xa / of_sample};
+  }
+  time_ = time;
+  empty_ = false;
+  return true;
+}
+
+Motion MotionFilter::motion(double radius, double time, double horizon) const noexcept {
+  const State now = predicted(time - time_);
+  const Covariance& c = now.covariance;
+  const double size = length(now.acceleration);
+  const double change = walk_width_ * std::sqrt(c.aa + options_.jerk_density * horizon);
+  Motion motion;
+  motion.position = now.position;
+  motion.velocity = now.velocity;
+  motion.radius = radius + width_ * std::sqrt(c.xx);
+  motion.drift = width_ * std::sqrt(c.vv);
+  motion.acceleration = size + change;
+  if (size > change) motion.half_space = -1.0 * now.acceleration;
+  motion.expiry = time + horizon;
+  return motion;
+}
+
+}  // namespace orchard::runtime
