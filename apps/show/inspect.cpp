@@ -158,13 +158,23 @@ std::string unit_of(const std::string& key, const std::string& unit) {
   return {};
 }
 
+// A value as a reader wants it: eight digits, words without quotes.
+std::string in_words(const json& value) {
+  if (value.is_number_float()) return fmt::format("{:.8g}", value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const json& item : value) text += (text.empty() ? "" : ", ") + in_words(item);
+  return value.size() > 0 && value[0].is_array() ? text : "(" + text + ")";
+}
+
 void print(const std::filesystem::path& file, const std::string& unit, const json& report) {
   fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
   if (report.contains("reading"))
     for (const json& line : report["reading"]["lines"]) fmt::print("{}: {}\n", file.string(), line.get<std::string>());
   for (const auto& [key, value] : report.items()) {
     if (key == "kind" || key == "levels" || key == "faults" || key == "repair" || key == "reading") continue;
-    fmt::print("  {:24} {}{}\n", key, value.dump(), unit_of(key, unit));
+    fmt::print("  {:24} {}{}\n", key, in_words(value), unit_of(key, unit));
   }
   if (report.contains("levels")) print_levels(report["levels"]);
   if (report.contains("faults")) print_verdict(report);

@@ -19,15 +19,10 @@ def test_every_link_has_spheres_that_are_proven(arm):
 def test_spheres_move_with_their_links(arm):
     rest, poses = arm.spheres(), arm.poses()
     assert rest.shape == (20, 4) and set(arm.links) <= set(poses)
-    joints = {}
-    for candidate in ("shoulder", "turn", "base_joint", "base to shoulder"):
-        try:
-            arm.poses({candidate: 0.1})
-            joints = {candidate: 0.1}
-        except og.OrchardError:
-            continue
-    for rows in arm.poses(joints).values():
+    for rows in arm.poses({"turn": 0.5, "lift": 0.3}).values():
         assert rows[:3, :3] @ rows[:3, :3].T == pytest.approx(numpy.eye(3))
+    turned = arm.spheres({"turn": numpy.pi})
+    assert turned[:, 2] == pytest.approx(rest[:, 2]) and abs(turned - rest).max() > 0.01
     with pytest.raises(og.OrchardError, match="elbow of a snail"):
         arm.poses({"elbow of a snail": 1})
 
