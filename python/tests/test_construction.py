@@ -180,8 +180,8 @@ def test_particles_and_weights_of_sets(box):
     assert found.particles["largest_overlap"] <= 0.1 and found.audit["protrusion"][1] < 1e-6
     assert sum(found.particles["masses"]) == pytest.approx(box.volume)
     corner = box.vertices[0]
-    heavy = og.sphere_set(box, 6, weights=[(*corner, 0.5, 20.0)], effort="low")
-    plain = og.sphere_set(box, 6, effort="low")
+    heavy = og.sphere_set(box, 6, fit="inside", weights=[(*corner, 1.0, 1000.0)], effort="low")
+    plain = og.sphere_set(box, 6, fit="inside", effort="low")
     assert heavy.kept and not numpy.array_equal(heavy.spheres, plain.spheres)
     missed = og.sphere_set(box, 1, fit="inside", error=3, effort="low")
     assert not missed.error_reached and (missed.enough is None or missed.enough > 1)

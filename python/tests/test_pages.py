@@ -31,8 +31,8 @@ def test_public_names_say_what_they_are(name):
 def test_there_is_a_version():
     assert orchard_geometry.__version__.count(".") == 2
     assert "collide" in dir(orchard_geometry) and "medial_axis" in dir(orchard_geometry)
-    with pytest.raises(AttributeError, match="robot"):
-        orchard_geometry.robot
+    with pytest.raises(AttributeError, match="orchid"):
+        orchard_geometry.orchid
 
 
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda script: script.name)

@@ -23,7 +23,7 @@ def test_spheres_move_with_their_links(arm):
         assert rows[:3, :3] @ rows[:3, :3].T == pytest.approx(numpy.eye(3))
     turned = arm.spheres({"turn": numpy.pi})
     assert turned[:, 2] == pytest.approx(rest[:, 2]) and abs(turned - rest).max() > 0.01
-    with pytest.raises(og.OrchardError, match="elbow of a snail"):
+    with pytest.raises(og.MeshError, match="elbow of a snail"):
         arm.poses({"elbow of a snail": 1})
 
 
