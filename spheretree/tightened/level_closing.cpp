@@ -104,8 +104,8 @@ void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, L
 
 }  // namespace
 
-void close_regions(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
-             bool hold, LevelBalls& balls) {
+void close_regions(const Surface& surface, const LevelObjective& objective,
+                   const std::vector<UncoveredRegion>& uncovered, bool hold, LevelBalls& balls) {
   const CandidateSearch search(balls, objective, surface.bounding_radius());
   const std::vector<Taking> takings =
       find_cover_candidates(uncovered, [&](const UncoveredRegion& region) { return search.cheapest(region); });

@@ -13,7 +13,7 @@ namespace orchard::detail {
 // farthest point alone; where not even that has a ball, it is left for the levels above to mend.
 // The closing of a merged level (merging/merge_closing.h) finds candidates by the same rule, but down a tree, and runs
 // its rounds to the end. This is one round, after which the search may go on and balls may let go of what they took in.
-void close_regions(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
-             bool hold, LevelBalls& balls);
+void close_regions(const Surface& surface, const LevelObjective& objective,
+                   const std::vector<UncoveredRegion>& uncovered, bool hold, LevelBalls& balls);
 
 }  // namespace orchard::detail
