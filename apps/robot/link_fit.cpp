@@ -17,9 +17,7 @@ namespace {
 constexpr double kDigits = 1e7;  // of metres: a tenth of a micrometre
 constexpr int kMaxGrowths = 3;
 
-// While spheres are made, nothing but the cover is judged; in the end, means to about a percent: with few large spheres
-// they take longest of all.
-const SphereAuditOptions kQuickAudit{.max_cells = 2000, .rays = 400, .surface_samples = 200, .sphere_samples = 400};
+// At the end, means to about a percent: with few large spheres they take longest of all.
 const SphereAuditOptions kFinalAudit{.surface_samples = 4000, .sphere_samples = 8000};
 
 double to_digits(double value) { return std::round(value * kDigits) / kDigits; }

@@ -38,6 +38,10 @@ struct LinkFit {
 // that lies in it, or, where the radius is too small for that, radius 0.
 Sphere rounded(const Sphere& sphere, bool outward);
 
+// How sets are measured while they are made: nothing but how far they protrude is asked for.
+inline constexpr SphereAuditOptions kQuickAudit{
+    .max_cells = 2000, .rays = 400, .surface_samples = 200, .sphere_samples = 400};
+
 // How many spheres each shape gets: the next one goes to the shape whose spheres stick out farthest (of `inside`: leave
 // most open), by covers of low effort of as many spheres as a first estimate says, and between these by a law of
 // powers. Throws InputError if there are fewer spheres than shapes, or the links that are to have a number of their own

@@ -105,7 +105,7 @@ class Sharer {
     if (fixed_[i] || looseness_[i].knows(spheres) || !shapes_[i].surface.solid()) return;
     SphereSetOptions own{.fit = SphereFit::cover, .spheres = spheres, .effort = Effort::low, .find_enough = false};
     own.seed = options_.seed;
-    own.audit = {.max_cells = 2000, .rays = 400, .surface_samples = 200, .sphere_samples = 400};
+    own.audit = kQuickAudit;
     looseness_[i].note(spheres, build_sphere_set(shapes_[i].surface, own).audit.beside_solid->protrusion.upper);
   }
 
