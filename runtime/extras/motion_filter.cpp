@@ -1,5 +1,6 @@
 #include "orchard/runtime/motion_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,9 +20,20 @@ double exceeded_with(double probability) noexcept {
   return high;
 }
 
+// Numbers that are not finite are in none of the ranges.
+bool is_usable(const MotionFilterOptions& o) noexcept {
+  const auto within = [](double value, double least) { return value >= least && value <= kMaxNumber; };
+  return o.noise > 0 && within(o.noise, 0) && o.jerk_density > 0 && within(o.jerk_density, 0) &&
+         within(o.max_speed, 0) && within(o.max_acceleration, 0) && o.confidence > 0 && o.confidence < 1;
+}
+
+// A variance that rounding has made negative is zero.
+double deviation(double variance) noexcept { return std::sqrt(std::max(0.0, variance)); }
+
 }  // namespace
 
-MotionFilter::MotionFilter(const MotionFilterOptions& options) noexcept : options_(options) {
+MotionFilter::MotionFilter(const MotionFilterOptions& options) noexcept
+    : options_(options), usable_(is_usable(options)) {
   const double doubt = (1 - options.confidence) / 3;
   width_ = exceeded_with(doubt);
   walk_width_ = exceeded_with(doubt / 2);
@@ -46,7 +58,7 @@ MotionFilter::State MotionFilter::predicted(double s) const noexcept {
 
 bool MotionFilter::add(double time, const Vec3& position) noexcept {
   const double sum = time + position[0] + position[1] + position[2];
-  if (!std::isfinite(sum) || (!empty_ && !(time > time_))) return false;
+  if (!usable_ || !std::isfinite(sum) || (!empty_ && !(time > time_))) return false;
   const double noise = options_.noise * options_.noise;
   if (empty_) {
     const double speed = options_.max_speed, acceleration = options_.max_acceleration;
@@ -75,12 +87,12 @@ Motion MotionFilter::motion(double radius, double time, double horizon) const no
   const State now = predicted(time - time_);
   const Covariance& c = now.covariance;
   const double size = length(now.acceleration);
-  const double change = walk_width_ * std::sqrt(c.aa + options_.jerk_density * horizon);
+  const double change = walk_width_ * deviation(c.aa + options_.jerk_density * horizon);
   Motion motion;
   motion.position = now.position;
   motion.velocity = now.velocity;
-  motion.radius = radius + width_ * std::sqrt(c.xx);
-  motion.drift = width_ * std::sqrt(c.vv);
+  motion.radius = radius + width_ * deviation(c.xx);
+  motion.drift = width_ * deviation(c.vv);
   motion.acceleration = size + change;
   if (size > change) motion.half_space = -1.0 * now.acceleration;
   motion.expiry = time + horizon;

@@ -140,5 +140,18 @@ TEST(MotionFilter, RefusesSamplesThatAreLateOrNotFiniteAndIsTheSameAfterwards) {
   EXPECT_TRUE(filter.add(1, {0, 0, 0}));
 }
 
+TEST(MotionFilter, TakesNoSampleIfAnOptionIsOutOfItsRange) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (const MotionFilterOptions& options :
+       {MotionFilterOptions{.noise = 0}, MotionFilterOptions{.noise = nan}, MotionFilterOptions{.jerk_density = -1},
+        MotionFilterOptions{.max_speed = -1}, MotionFilterOptions{.max_acceleration = infinity},
+        MotionFilterOptions{.confidence = 0}, MotionFilterOptions{.confidence = 1},
+        MotionFilterOptions{.confidence = nan}}) {
+    MotionFilter filter(options);
+    EXPECT_FALSE(filter.add(1, {0, 0, 0}));
+    EXPECT_TRUE(filter.empty());
+  }
+}
+
 }  // namespace
 }  // namespace orchard::runtime

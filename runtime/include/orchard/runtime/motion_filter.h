@@ -5,13 +5,14 @@
 
 namespace orchard::runtime {
 
-// What is known of a tracked object before its first sample, and of the tracker. Lengths, seconds.
+// What is known of a tracked object before its first sample, and of the tracker. Units are those of lengths and
+// seconds.
 struct MotionFilterOptions {
-  double noise = 1e-3;            // standard deviation of each coordinate of a sample; positive
-  double jerk_density = 1;        // within s seconds each coordinate of the acceleration changes at random, with the
-                                  // variance jerk_density s; positive. Higher values trust old samples less
-  double max_speed = 10;          // standard deviation of each coordinate of the velocity before the first sample
-  double max_acceleration = 100;  // the same of the acceleration
+  double noise = 1e-3;      // standard deviation of each coordinate of a sample; positive
+  double jerk_density = 1;  // within s seconds each coordinate of the acceleration changes at random, with the
+                            // variance jerk_density s; positive. Higher values trust old samples less
+  double max_speed = 10;    // standard deviation of each coordinate of the velocity before the first sample; 0 or more
+  double max_acceleration = 100;  // the same of the acceleration; 0 or more
   double confidence = 0.99;       // probability with which a motion's bound holds; above 0, below 1
 };
 
@@ -24,8 +25,8 @@ class MotionFilter {
  public:
   explicit MotionFilter(const MotionFilterOptions& options = {}) noexcept;
 
-  // Adds a sample. Returns false, and changes nothing, if its time is not later than the last one's or a number is not
-  // finite.
+  // Adds a sample. Returns false, and changes nothing, if its time is not later than the last one's, a number is not
+  // finite, or an option is out of its range.
   bool add(double time, const Vec3& position) noexcept;
   // Forgets all samples: the object has jumped, or another one is tracked.
   void reset() noexcept { empty_ = true; }
@@ -54,6 +55,7 @@ class MotionFilter {
   State predicted(double seconds) const noexcept;
 
   MotionFilterOptions options_;
+  bool usable_;                // the options
   double width_, walk_width_;  // standard deviations that a vector stays within, and a random walk
   State state_{};
   double time_ = 0;
