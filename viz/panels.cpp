@@ -52,9 +52,8 @@ Panel axis_panel(vtkPolyData* mesh, vtkPolyData* faces, double size, double line
   return panel;
 }
 
-Panel level_panel(vtkPolyData* spheres, int level, double size, double bounding_radius) {
-  Panel panel{make_renderer(size), "sphere-tree, level " + std::to_string(level),
-              level_figures(spheres, bounding_radius)};
+Panel spheres_panel(const std::string& title, vtkPolyData* spheres, double size, double bounding_radius) {
+  Panel panel{make_renderer(size), title, level_figures(spheres, bounding_radius)};
   panel.renderer->AddActor(make_level(spheres));
   return panel;
 }
@@ -91,7 +90,13 @@ Panels make_panels(const std::filesystem::path& vtm, const PanelOptions& options
   if (faces != nullptr) result.panels.push_back(axis_panel(mesh, faces, result.size, line_width));
   for (int level = std::max(first, 0); level <= std::min(last, kLevelsShown); ++level) {
     extend(result.extents, levels[static_cast<std::size_t>(level)], "radius");
-    result.panels.push_back(level_panel(levels[static_cast<std::size_t>(level)], level, result.size, bounding_radius));
+    result.panels.push_back(spheres_panel("sphere-tree, level " + std::to_string(level),
+                                          levels[static_cast<std::size_t>(level)], result.size, bounding_radius));
+  }
+  if (const Data spheres = blocks["spheres"]; spheres != nullptr) {
+    extend(result.extents, spheres, "radius");
+    if (mesh == nullptr && levels.empty()) result.size = 0.5 * spheres->GetLength();
+    result.panels.push_back(spheres_panel("spheres", spheres, result.size, bounding_radius));
   }
   return result;
 }

@@ -187,6 +187,7 @@ std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const
       write_tree_level(add("tree level " + number, "-level-" + number + ".vtp"), *values.tree, level);
     }
   }
+  if (values.spheres != nullptr) write_tree_level(add("spheres", "-spheres.vtp"), *values.spheres, 1);
   write_multiblock(with_ending(prefix, ".vtm"), files);
   if (values.tree != nullptr && !values.tree->nodes.empty()) write_levels_in_time(prefix, values.tree->depth());
   if (values.surface != nullptr) write_paraview_script(prefix, values);

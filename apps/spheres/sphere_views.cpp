@@ -83,10 +83,10 @@ void write_sphere_views(const std::filesystem::path& mesh, const std::string& pr
 
 void draw_spheres(const std::string& name, const std::string& title, const std::string& up, const Surface& surface,
                   std::span<const Sphere> spheres, Outputs& outputs) {
-  const SphereTree tree = ball_tree(spheres, static_cast<Index>(std::max<std::size_t>(2, spheres.size())));
+  const SphereTree set = ball_tree(spheres, static_cast<Index>(std::max<std::size_t>(2, spheres.size())));
   PipelinePicture picture;
   picture.values.surface = &surface;
-  picture.values.tree = &tree;
+  picture.values.spheres = &set;
   picture.title = title;
   picture.up = parse_up(up);
   picture.progress = cancelled_by_interrupts();

@@ -77,15 +77,17 @@ struct PipelineValues {
   const SurfaceSampling* sampling = nullptr;
   const MedialAxis* axis = nullptr;
   const SphereTree* tree = nullptr;
+  // A sphere set, as the first level of a tree: see ball_tree().
+  const SphereTree* spheres = nullptr;
   // The axis of the mesh that points up in ParaView.
   UpAxis up = UpAxis::y;
 };
 
 // Writes all values: PREFIX-mesh.vtp, PREFIX-points.vtp, PREFIX-medial-{vertices,edges,faces}.vtp, PREFIX-level-N.vtp
-// for every level, and PREFIX.vtm, which opens them; PREFIX.pvd with the levels as steps of time; and PREFIX-view.py,
-// which shows the spheres around the mesh (paraview --script, pvbatch).
-// Returns the files in the order of the .vtm, which names them "mesh", "surface points", "medial vertices", "medial
-// edges", "medial faces", "tree level N".
+// for every level, PREFIX-spheres.vtp, and PREFIX.vtm, which opens them; PREFIX.pvd with the levels as steps of time;
+// and PREFIX-view.py, which shows the spheres around the mesh (paraview --script, pvbatch). Returns the files in the
+// order of the .vtm, which names them "mesh", "surface points", "medial vertices", "medial edges", "medial faces",
+// "tree level N", "spheres".
 std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values);
 
 // Writes PREFIX.pvsm, a state of ParaView (5.11 or later) that opens by a double click. It shows the spheres of the
