@@ -114,7 +114,7 @@ def distance_to_step(place):
 
 
 def merging():
-    picture = Picture("Merging: two balls become the smallest one around the points that they touch")
+    picture = Picture("Merging: two balls become one around all points that they touch")
     first, second = (54 + 112j, 38), (108 + 78j, 28)
     points = [circle[0] + cmath.rect(circle[1], math.radians(angle)) for circle, angles in ((first, (75, 155, 250)), (second, (15, 150, 285)))
               for angle in angles]
