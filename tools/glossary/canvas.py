@@ -45,7 +45,8 @@ NARROW, WIDE = set("ijlt.,:;'|()[]fr I-"), set("mwMW")
 
 
 def number(value):
-    text = f"{value:.1f}".rstrip("0").rstrip(".")
+    """One decimal; the last bits of sines and cosines, which differ between libraries, decide nothing."""
+    text = f"{round(value, 6):.1f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 

@@ -58,7 +58,7 @@ def covered_arcs(disks, own, triangle, steps=180):
     runs = []
     for i in range(steps + 1):
         place = center + cmath.rect(radius, math.tau * i / steps)
-        inside = all(((b - a).conjugate() * (place - a)).imag >= 0 for a, b in zip(triangle, triangle[1:] + triangle[:1]))
+        inside = all(((b - a).conjugate() * (place - a)).imag >= -1e-9 for a, b in zip(triangle, triangle[1:] + triangle[:1]))
         covered = any(abs(place - c) < r for j, (c, r) in enumerate(disks) if j != own)
         state = covered if inside else None
         if runs and runs[-1][0] == state:
@@ -155,7 +155,7 @@ def redundant_sphere():
 
 
 def aunt():
-    picture = Picture("An aunt is a sibling of a ball's parent; here she covers all of the surface that her niece covers")
+    picture = Picture("An aunt is a sibling of a ball's parent; this one covers all of the surface that its niece covers")
     picture.path(box(12, 14, 308, 72), "inside", closed=True)
     picture.line(12 + 72j, 308 + 72j, "surface")
     parent, other, niece = (112 + 84j, 78), (212 + 84j, 78), (164 + 82j, 26)
