@@ -36,7 +36,7 @@ def path_rule():
                 (math.radians(begin + (end - begin) * i / 14) for i in range(15))]
 
     picture.path(part(0, 180) + part(180, 360)[1:-1], "solid", closed=True)
-    for begin in range(-90, 270, 60):
+    for begin in (-90, -30):
         picture.circle(*min_circle(part(begin, begin + 60)), "circle-thin")
     picture.circle(*min_circle(part(90, 270)), "circle-thin")
     root, child, leaf = min_circle(part(0, 346)), min_circle(part(-90, 90)), min_circle(part(30, 90))
