@@ -116,6 +116,9 @@ std::vector<ComparedAxis> compared_axes(const CompareCommand& command, const Sur
             fmt::format("orchard has no axis of {} balls: the topology of the solid needs more", size));
       continue;
     }
+    // Simplified to different numbers, an axis may have the same number of balls.
+    const auto same = [&](const ComparedAxis& one) { return one.own && one.mesh.size() == mine->second.size(); };
+    if (std::any_of(all.begin(), all.end(), same)) continue;
     ComparedAxis& added =
         all.emplace_back(ComparedAxis{.name = "orchard", .own = true, .mesh = std::move(mine->second)});
     added.whole = size;

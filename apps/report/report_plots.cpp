@@ -81,8 +81,8 @@ std::vector<Plot> tree_plots(const json& report) {
 
 // Points of several systems or runs: what each has against its number of balls.
 Plot against_balls(const std::string& title) {
-  Plot plot = titled(title, "balls", "% of the diagonal", true);
-  plot.log_x = true;
+  Plot plot = titled(title, "balls", "% of the diagonal", false);
+  plot.log_x = plot.log_y_if_wide = true;
   return plot;
 }
 
