@@ -14,18 +14,18 @@ using nlohmann::json;
 using test::Finished;
 using test::Workplace;
 
-// The axis of an L, raw, as that of another system.
+// The axis of a box, raw, as that of another system.
 struct Axes {
   Workplace here;
-  std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string(), theirs, small;
+  std::string mesh = here.add("l.obj", test::box({0, 0, 0}, {3, 2, 1})), out = (here / "out").string(), theirs, small;
   Axes() {
-    const Finished run = here.run({"medial", mesh, "-o", (here / "raw").string(), "--samples", "300", "--raw",
-                                   "--vertices", "30", "--no-views", "--quiet"});
+    const Finished run = here.run({"medial", mesh, "-o", (here / "raw").string(), "--samples", "150", "--raw",
+                                   "--vertices", "12", "--no-views", "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     theirs = (here / "raw/l.ma").string(), small = (here / "raw/l-simplified.ma").string();
   }
   Finished compare(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"compare", mesh, theirs, small, "--samples", "500", "--quality-samples", "300"};
+    std::vector<std::string> words{"compare", mesh, theirs, small, "--samples", "200", "--quality-samples", "200"};
     words.insert(words.end(), more.begin(), more.end());
     return here.run(words);
   }
@@ -33,26 +33,26 @@ struct Axes {
 
 TEST(CompareAxes, MeasuresEachBesideOrchardsOfTheSameSize) {
   const Axes axes;
-  const Finished run = axes.compare({"--vertices", "50", "--json"});
+  const Finished run = axes.compare({"--vertices", "20", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json report = json::parse(run.out);
   ASSERT_EQ(report["axes"].size(), 2u);
   for (const json& axis : report["axes"]) {
     const bool large = axis["file"] == "l.ma";
     EXPECT_EQ(axis["simplified"], large);
-    EXPECT_LE(axis["balls"], large ? 50 : 30);
+    EXPECT_LE(axis["balls"], large ? 20 : 12);
     EXPECT_EQ(large, axis["balls_of_file"] > axis["balls"]);
     const auto& own = report["own_axes"];
     EXPECT_TRUE(std::any_of(own.begin(), own.end(), [&](const json& o) { return o["balls"] <= axis["balls"]; }));
   }
-  const Finished printed = axes.compare({"--vertices", "50"});
+  const Finished printed = axes.compare({"--vertices", "20"});
   EXPECT_NE(printed.out.find("simplified from"), std::string::npos) << printed.out;
 }
 
 TEST(CompareAxes, WritesTablePictureAndPageAndATableOfSeveralModels) {
   const Axes axes;
   const std::string table = (axes.here / "all.csv").string();
-  const Finished run = axes.compare({"--vertices", "20", "-o", axes.out, "--csv", table, "--report", "--quiet"});
+  const Finished run = axes.compare({"--vertices", "12", "-o", axes.out, "--csv", table, "--report", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto files = axes.here.files("out");
   for (const char* name : {"l-compare.csv", "l-compare.json", "l-compare-report.html"})
@@ -62,12 +62,12 @@ TEST(CompareAxes, WritesTablePictureAndPageAndATableOfSeveralModels) {
   // Another model, before the first by its name; and the first again, whose rows are replaced.
   const std::string other = (axes.here / "k.obj").string();
   std::filesystem::copy_file(axes.mesh, other);
-  const Finished second = axes.here.run({"compare", other, axes.small, "--vertices", "20", "--samples", "500",
-                                         "--quality-samples", "300", "--csv", table, "--quiet"});
+  const Finished second = axes.here.run({"compare", other, axes.small, "--vertices", "12", "--samples", "200",
+                                         "--quality-samples", "200", "--csv", table, "--quiet"});
   ASSERT_EQ(second.exit_code, 0) << second.err;
   const std::string both = test::without_provenance(axes.here.files(".").at("all.csv"));
   EXPECT_LT(both.find("\nk,"), both.find("\nl,"));
-  ASSERT_EQ(axes.compare({"--vertices", "20", "--csv", table, "--quiet"}).exit_code, 0);
+  ASSERT_EQ(axes.compare({"--vertices", "12", "--csv", table, "--quiet"}).exit_code, 0);
   EXPECT_EQ(test::without_provenance(axes.here.files(".").at("all.csv")), both);
 }
 
@@ -87,27 +87,29 @@ TEST(CompareAxes, RefusesWhatDoesNotFitBeforeItWorks) {
   }
 }
 
-TEST(Medial, AdviceEndsWhereItWasTriedOrGainsLittle) {
+TEST(Medial, AdviceEndsWhereItWasTried) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
-  const auto report = [&](const std::string& samples) {
-    const Finished run = here.run({"medial", mesh, "-o", out, "--report", "--samples", samples, "--quality-samples",
-                                   "500", "--no-views", "--json"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto report = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "medial", mesh, "-o", out, "--report", "--samples", "200", "--quality-samples", "300", "--no-views", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished run = here.run(words);
+    EXPECT_TRUE(run.exit_code == 0 || run.exit_code == 5) << run.err;
     return json::parse(run.out);
   };
-  const auto advises = [](const json& found, const std::string& words) {
-    for (const json& place : found["worst_places"])
-      if (place["advice"].get<std::string>().find(words) != std::string::npos) return true;
-    return false;
-  };
-  const json first = report("300");
-  ASSERT_TRUE(advises(first, "--samples 600")) << first["worst_places"];
+  const json first = report({});
+  ASSERT_FALSE(first["worst_places"].empty());
+  const std::string advice = first["worst_places"][0]["advice"];  // "--linear-error 0.017"
+  const std::size_t space = advice.find(' ');
+  ASSERT_TRUE(advice.starts_with("--") && space != std::string::npos) << advice;
+  const std::string option = advice.substr(0, space), value = advice.substr(space + 1, advice.find(',') - space - 1);
   EXPECT_EQ(first["trials"].size(), 1u);
-  EXPECT_EQ(report("600")["trials"].size(), 2u);
-  const json again = report("300");
+  EXPECT_EQ(report({option, value})["trials"].size(), 2u);
+  const json again = report({});
   EXPECT_EQ(again["trials"].size(), 2u) << "the same options are one run";
-  EXPECT_TRUE(advises(again, "no more: --samples 600 was tried")) << again["worst_places"];
+  const std::string ended = again["worst_places"][0]["advice"];
+  EXPECT_TRUE(ended.starts_with("no more: " + option + " " + value + " was tried")) << ended;
 }
 
 }  // namespace

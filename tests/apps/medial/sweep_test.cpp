@@ -33,7 +33,7 @@ struct Sweep {
 
 TEST(MedialSweep, VariesTheNumberOfBallsOfOneAxis) {
   const Sweep sweep;
-  const json report = sweep.report({"--samples", "300", "--sweep", "vertices=10,40,20", "--sort-by", "balls"});
+  const json report = sweep.report({"--samples", "150", "--sweep", "vertices=10,40,20", "--sort-by", "balls"});
   ASSERT_EQ(report["runs"].size(), 3u);
   EXPECT_EQ(report["swept"], json({"vertices"}));
   for (const json& run : report["runs"]) EXPECT_LE(run["balls"], std::stoi(run["vertices"].get<std::string>()));
@@ -48,7 +48,7 @@ TEST(MedialSweep, VariesTheNumberOfBallsOfOneAxis) {
 
 TEST(MedialSweep, LeavesOutWhatIsTheSameInAllRuns) {
   const Sweep sweep;
-  sweep.report({"--samples", "300", "--sweep", "vertices=10,20"});
+  sweep.report({"--samples", "150", "--sweep", "vertices=10,20"});
   const std::string csv = sweep.here.files("out").at("l-sweep.csv"), head = csv.substr(0, csv.find('\n'));
   EXPECT_NE(head.find(",balls"), std::string::npos);
   EXPECT_EQ(head.find("topology_right"), std::string::npos) << head;
@@ -86,7 +86,7 @@ TEST(MedialSweep, GoesOnWhereItWasStopped) {
 
 TEST(MedialSweep, KeepsTheFilesOfEachRunOnRequest) {
   const Sweep sweep;
-  const std::vector<std::string> words{"--samples", "300", "--sweep", "vertices=10,20", "--keep", "--export", "ply"};
+  const std::vector<std::string> words{"--samples", "150", "--sweep", "vertices=10,20", "--keep", "--export", "ply"};
   const json report = sweep.report(words);
   for (const char* vertices : {"10", "20"}) {
     const auto files = sweep.here.files("out/l-sweep/vertices=" + std::string(vertices));
@@ -100,7 +100,7 @@ TEST(MedialSweep, KeepsTheFilesOfEachRunOnRequest) {
   EXPECT_EQ(sweep.report(words)["runs_taken_over"], 2);
   std::filesystem::remove(sweep.here / "out/l-sweep/vertices=10/l.ma");
   EXPECT_EQ(sweep.report(words)["runs_taken_over"], 1) << "what is missing is made again";
-  const Finished alone = sweep.run({"--keep"});
+  const Finished alone = sweep.here.run({"medial", sweep.mesh, "-o", sweep.out, "--keep"});
   EXPECT_EQ(alone.exit_code, 2);
   EXPECT_NE(alone.err.find("--keep has no effect without --sweep"), std::string::npos) << alone.err;
 }

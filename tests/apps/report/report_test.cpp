@@ -109,13 +109,12 @@ TEST(ReportCommand, RefusesWhatIsNoReport) {
   json cut = json::parse(model.here.files("out").at("box.json")), old = cut;
   cut.erase("octree_levels");
   old["provenance"]["schema_version"] = 1;
-  for (const auto& [name, text, word] :
-       {std::tuple{"garbage.json", std::string("{\"a\": "), "is no JSON at byte"},
-        {"other.json", std::string("{\"a\": 1}"), "is no report of orchard"},
-        {"list.json", std::string("[1, 2]"), "is no report of orchard"},
-        {"odd.json", std::string("{\"provenance\": 3}"), "is no report of orchard"},
-        {"cut.json", cut.dump(), "lacks values"},
-        {"old.json", old.dump(), "version 1 of the keys"}}) {
+  for (const auto& [name, text, word] : {std::tuple{"garbage.json", std::string("{\"a\": "), "is no JSON at byte"},
+                                         {"other.json", std::string("{\"a\": 1}"), "is no report of orchard"},
+                                         {"list.json", std::string("[1, 2]"), "is no report of orchard"},
+                                         {"odd.json", std::string("{\"provenance\": 3}"), "is no report of orchard"},
+                                         {"cut.json", cut.dump(), "lacks values"},
+                                         {"old.json", old.dump(), "version 1 of the keys"}}) {
     const std::string file = model.here.add(name, text);
     const Finished run = model.here.run({"report", model.out + "/box.json", file, "-o", page});
     EXPECT_EQ(run.exit_code, 2) << name;
