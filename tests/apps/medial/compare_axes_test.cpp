@@ -45,8 +45,6 @@ TEST(CompareAxes, MeasuresEachBesideOrchardsOfTheSameSize) {
     const auto& own = report["own_axes"];
     EXPECT_TRUE(std::any_of(own.begin(), own.end(), [&](const json& o) { return o["balls"] <= axis["balls"]; }));
   }
-  const Finished printed = axes.compare({"--vertices", "20"});
-  EXPECT_NE(printed.out.find("simplified from"), std::string::npos) << printed.out;
 }
 
 TEST(CompareAxes, WritesTablePictureAndPageAndATableOfSeveralModels) {
