@@ -9,6 +9,7 @@
 #include "command_line/list_option.h"
 #include "command_line/number_validator.h"
 #include "command_line/shared_options.h"
+#include "command_line/sweep_option.h"
 #include "command_line/tree_options.h"
 #include "medial/axis_export.h"
 
@@ -73,8 +74,11 @@ void add_sweep_tree(CLI::App& command, std::optional<TreeRequest>& tree) {
 void add_sweep(CLI::App& command, MedialCommand& medial) {
   command
       .add_option("--sweep", medial.sweep,
-                  "NAME=A,B,..: build once for each value of a tuning option and compare. May be repeated")
+                  "NAME=A,B,..: build once for each value of an option, such as samples or vertices, and compare. May "
+                  "be repeated. Runs that the folder has already are not computed again")
       ->allow_extra_args(false);
+  command.add_flag("--keep", medial.keep,
+                   "With --sweep: also keep the axis and report of each run, in MODEL-sweep/NAME=VALUE,..");
   command
       .add_option("--sort-by", medial.best,
                   "Measure by which the rows of --sweep are sorted, best first. Rows with the right topology come "
@@ -277,7 +281,9 @@ void add_medial(CLI::App& app, Request& request) {
   add_mesh_options(command, medial.reading);
   add_side(command, medial);
   add_features(command, medial);
-  command.add_flag("--report", medial.report, "Measure the quality of the axis (docs/reference/medial-measures.md)");
+  command.add_flag("--report", medial.report,
+                   "Measure the quality of the axis (docs/reference/medial-measures.md) and write an .html page with "
+                   "tables, plots and a picture");
   command.add_option("--beside", medial.beside, "Measure this axis of another system beside this one. May be repeated")
       ->allow_extra_args(false);
   CLI::Option* picture = command.add_flag("--picture", medial.picture,
@@ -309,10 +315,12 @@ void add_medial(CLI::App& app, Request& request) {
       "  orchard medial data/lamp.obj -o out/lamp --report --beside other.ma --beside older.ma --picture\n"
       "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
       "  orchard medial data/lamp.obj -o out/lamp --vertices 200 --envelope out/lamp/envelope.obj\n"
-      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000 --sweep prune-angle=0,20");
+      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000 --sweep prune-angle=0,20\n"
+      "  orchard medial data/lamp.obj -o out/lamp --sweep vertices=50,100,200 --keep --quality-samples 5000");
   command.callback([&request, &command] {
     request.medial.output.run = invocation_of(command, request.typed);
     request.medial.given = given_of(command);
+    expand_sweep(command, request.medial);
     request.run = [&request] { request.exit_code = orchard::apps::medial(request.medial); };
   });
 }
@@ -346,6 +354,7 @@ void add_leaderboard(CLI::App& app, Request& request) {
       ->capture_default_str()
       ->check(CLI::Range(10, 10'000'000));
   command.add_option("--seed", leaderboard.seed, "Seed of all random choices")->capture_default_str();
+  add_report(command, leaderboard.report);
   add_force(command, leaderboard.output);
   add_output_flags(command, leaderboard.output);
   command.footer(
@@ -370,6 +379,7 @@ void add_thickness(CLI::App& app, Request& request) {
   thickness.reading.unite = true;
   add_mesh_options(command, thickness.reading);
   add_threads(command, request);
+  add_report(command, thickness.report);
   command.add_flag("!--no-views", thickness.views, "Do not write files for ParaView");
   add_force(command, thickness.output);
   add_output_flags(command, thickness.output);

@@ -106,6 +106,23 @@ void add_view(CLI::App& app, Request& request) {
   });
 }
 
+void add_report_command(CLI::App& app, Request& request) {
+  CLI::App& command =
+      *app.add_subcommand("report", "Write one page of HTML about several runs of any commands, from their reports");
+  ReportCommand& report = request.report;
+  command
+      .add_option("reports", report.reports,
+                  "Reports that commands wrote (.json), or that --json printed. A picture of the same name beside a "
+                  "report is shown, too")
+      ->required();
+  command.add_option("-o,--output", report.page, "Page to write (.html)")->required();
+  command.add_flag("--quiet", report.quiet, "Print errors only");
+  command.footer(
+      "Examples:\n  orchard report out/lamp/lamp.json out/lamp/lamp-medial.json -o out/lamp/page.html\n"
+      "  orchard report out/lamp/lamp-medial.json out/fine/lamp-medial.json -o compared.html");
+  command.callback([&request] { request.run = [&request] { orchard::apps::report(request.report); }; });
+}
+
 void add_completion(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("completion", "Print a completion script for a shell");
   command.add_option("shell", request.shell, "Shell to make the script for")
@@ -160,6 +177,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_leaderboard(app, request);
   add_thickness(app, request);
   add_view(app, request);
+  add_report_command(app, request);
   add_completion(app, request);
   add_reference(app, request);
   add_profile(app, request);

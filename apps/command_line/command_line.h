@@ -24,6 +24,7 @@ struct Request {
   LeaderboardCommand leaderboard;
   ThicknessCommand thickness;
   ViewCommand view;
+  ReportCommand report;
   std::string shell, format;  // of completion and reference
   ProfileCommand profile;
   SimulateCommand simulate;

@@ -4,7 +4,9 @@
 #include <cctype>
 #include <set>
 
+#include "command_line/sweep_option.h"
 #include "command_line/text.h"
+#include "medial/sweep_columns.h"
 
 namespace orchard::apps {
 namespace {
@@ -42,10 +44,23 @@ std::string range_in(const std::string& type) {
 
 // Options whose value is a file or folder: their types do not tell.
 bool takes_file(const CLI::Option& option) {
-  static const std::vector<std::string> named{"output", "points", "diagram", "features",     "from-axis", "axis",
-                                              "beside", "plot",   "from",    "package-path", "trajectory"};
+  static const std::vector<std::string> named{"output", "points", "diagram", "features", "from-axis",    "axis",
+                                              "beside", "plot",   "csv",     "from",     "package-path", "trajectory"};
   if (option.get_lnames().empty()) return true;
   return std::find(named.begin(), named.end(), option.get_lnames().front()) != named.end();
+}
+
+// Values that an option takes beside others, or that its value begins with.
+std::vector<std::string> usual_values(const CLI::App& command, const CLI::Option& option) {
+  const std::string name = option.get_lnames().empty() ? "" : option.get_lnames().front();
+  std::vector<std::string> values;
+  if (name == "sweep")
+    for (const std::string& swept : sweepable_options(command)) values.push_back(swept + "=");
+  if (name == "sort-by")
+    for (const Column& column : all_columns({}))
+      if (column.rates) values.push_back(column.name);
+  if (name == "color") values = {"radius", "structure", "structure_kind", "error", "inaccuracy", "level"};
+  return values;
 }
 
 std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
@@ -56,7 +71,7 @@ std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
   return names;
 }
 
-OptionEntry entry_of(const CLI::Option& option) {
+OptionEntry entry_of(const CLI::App& command, const CLI::Option& option) {
   OptionEntry entry;
   for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
@@ -75,6 +90,7 @@ OptionEntry entry_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   entry.choices = choices_in(type);
   if (!entry.choices.empty()) entry.file = false;
+  entry.usual = usual_values(command, option);
   entry.value = range_in(type);
   if (entry.value.empty() || !entry.choices.empty()) entry.value = type.substr(0, type.find(':'));
   return entry;
@@ -84,7 +100,7 @@ CommandEntry entry_of(const CLI::App& command) {
   CommandEntry entry{
       .name = command.get_name(), .help = command.get_description(), .footer = command.get_footer(), .options = {}};
   for (const CLI::Option* option : command.get_options())
-    if (!option->get_group().empty()) entry.options.push_back(entry_of(*option));
+    if (!option->get_group().empty()) entry.options.push_back(entry_of(command, *option));
   std::stable_partition(entry.options.begin(), entry.options.end(),
                         [](const OptionEntry& option) { return option.positional; });
   return entry;

@@ -13,7 +13,8 @@ struct OptionEntry {
   std::string group;                 // the heading of --help that it stands under
   std::string value;                 // what it takes: "" for a flag, "TEXT", "UINT"; its range, if it has one
   std::vector<std::string> choices;  // not empty: one of these
-  std::string standard;              // its value unless it is given; may be empty
+  std::vector<std::string> usual;  // what a shell completes where there are no choices; "samples=" wants more behind it
+  std::string standard;            // its value unless it is given; may be empty
   bool flag = false, positional = false, required = false, repeats = false;
   bool file = false;                         // its value is a file or folder
   std::vector<std::string> needs, excludes;  // other options, sorted by name

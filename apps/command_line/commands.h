@@ -40,7 +40,7 @@ struct BuildCommand {
   bool picture = false;               // a .png as well
   bool page = false;                  // an .html page with pictures, tables and plots
   bool cost = false;                  // say what it will cost, and build nothing
-  std::vector<std::string> exports;   // sph (always written), json, urdf
+  std::vector<std::string> exports;   // sph (always written), json, urdf, npz, csv
   std::optional<Index> export_level;  // of the urdf; the last one
   std::string up = "y";               // the mesh's axis that points up in the picture
   std::vector<std::string> given;     // the options on the command line, by their long names, without dashes
@@ -73,6 +73,7 @@ struct AuditCommand {
   std::optional<double> buffer;  // on every radius, in place of the file's own
   std::optional<double> join;
   bool picture = false;
+  bool report = false;             // a page
   std::string up = "z";            // the mesh's axis that points up in the picture
   RobotReading reading;            // where `mesh` is a URDF: the whole robot is audited
   bool wrap = false;               // likewise: links that are no solids
@@ -101,7 +102,7 @@ struct RobotCommand {
   Index resolution = robot::FormatOptions{}.resolution;
   std::vector<std::string> joints;   // "NAME=VALUE": where the robot rests, and is drawn
   std::filesystem::path trajectory;  // poses to draw as well; empty: none
-  bool trees = false, views = true, picture = true;
+  bool trees = false, views = true, picture = true, report = false;
   std::string up = "z";
   std::vector<std::string> given;  // as of BuildCommand
   bool accept = false;             // likewise
@@ -119,10 +120,10 @@ struct SpheresCommand {
   std::vector<double> clip;              // normal and offset of the half-space that is kept; empty: all
   std::filesystem::path vertex_weights;  // a number for each vertex; empty: none
   std::vector<Index> curve;              // numbers of spheres to try as well
-  std::vector<std::string> exports;      // json, csv, urdf, yaml; x y z r as text always
+  std::vector<std::string> exports;      // json, csv, npz, urdf, yaml; x y z r as text always
   std::string link;                      // the name in robots' files; empty: the mesh's
   bool tree = false;                     // an .orchard file over the spheres; of a file of spheres, too
-  bool views = true, picture = false;
+  bool views = true, picture = false, report = false;
   std::string up = "z";
   std::vector<std::string> given;  // as of BuildCommand
   bool accept = false;             // likewise
@@ -162,6 +163,12 @@ struct VoronoiCommand {
 };
 void voronoi(const VoronoiCommand& command);
 
+// An option that a sweep varies, and what it takes in turn.
+struct SweptOption {
+  std::string name;
+  std::vector<std::string> values;
+};
+
 struct MedialCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
@@ -173,7 +180,7 @@ struct MedialCommand {
   std::filesystem::path axis;                 // not empty: the axis of a file to judge; nothing is built
   bool connect = false;                       // balls of files without cells, by their power diagram
   std::vector<std::string> exports;           // of the axis: ma, ply, obj, graphml, vtp, npz, csv
-  bool report = false;                        // judge what was built
+  bool report = false;                        // judge what was built, and write a page
   std::vector<std::filesystem::path> beside;  // axes of files to judge by the same measures, in the same table
   bool picture = false;                       // of where the judged axis is worst
   std::string up = "y";                       // the mesh's axis that points up in the picture
@@ -185,6 +192,10 @@ struct MedialCommand {
   std::filesystem::path envelope;      // .obj: the surface of what the axis stands for; empty: none
   double envelope_cell = 0.5;          // % of the diagonal
   std::vector<std::string> sweep;      // NAME=VALUE,VALUE,..
+  std::vector<SweptOption> swept;      // what it says
+  std::vector<MedialCommand> runs;     // of a sweep: the command of each combination, the last option fastest
+  std::vector<std::string> choice;     // of such a run: the values of the options that are swept
+  bool keep = false;                   // of a sweep: write the axis of each run as well
   std::string best = "hausdorff_max";  // of a sweep: the measure that its rows are printed by, the best first
   std::optional<TreeRequest> tree;     // of a sweep: the tree to build from each axis
   bool views = true;                   // ParaView files, where the program was built with them
@@ -204,25 +215,39 @@ struct LeaderboardCommand {
   Index quality_samples = 20'000;       // surface points of each judgement
   Index samples = kStandardSamples;     // surface points of orchard's axes
   std::uint64_t seed = 1;
+  bool report = false;  // a page
   Output output;
 };
 void leaderboard(const LeaderboardCommand& command);
 
 struct CompareCommand {
   std::filesystem::path mesh;
-  std::vector<std::filesystem::path> trees;  // .orchard, .sph, or .json lists of spheres
+  std::vector<std::filesystem::path> files;  // trees (.orchard, .sph, or .json lists of spheres), or axes
   MeshOptions reading;
-  std::filesystem::path plot;  // .svg; empty: none
+  std::filesystem::path plot;        // .svg; empty: none
+  std::filesystem::path folder;      // for the report, its page and of axes also table and picture; empty: none
+  bool report = false;               // a page
+  Index vertices = 0;                // of axes: to simplify each to at most this many balls; 0: to none
+  std::filesystem::path csv;         // of axes: a table to which the rows of this mesh are added; empty: none
+  Index quality_samples = 100'000;   // of axes: surface points at which to measure
+  Index samples = kStandardSamples;  // of axes: surface points of orchard's own
+  std::uint64_t seed = 1;            // of axes
+  bool connect = false;              // of axes, as of MedialCommand
+  std::string up = "y";              // of axes: the mesh's axis that points up in the picture
+  std::vector<std::string> given;    // as of BuildCommand
   Output output;
 };
 void compare(const CompareCommand& command);
+void compare_axes(const CompareCommand& command);  // which compare() calls for axes
 
 struct ProfileCommand {
-  std::filesystem::path a, b;  // .orchard files; b empty: two copies of a
-  unsigned flights = 300;      // of b past a
-  std::uint64_t seed = 1;      // of the flights
-  std::filesystem::path plot;  // .svg; empty: none
-  std::filesystem::path csv;   // every pose and level; empty: none
+  std::filesystem::path a, b;    // .orchard files; b empty: two copies of a
+  unsigned flights = 300;        // of b past a
+  std::uint64_t seed = 1;        // of the flights
+  std::filesystem::path plot;    // .svg; empty: none
+  std::filesystem::path csv;     // every pose and level; empty: none
+  std::filesystem::path folder;  // for the report and its page; empty: none
+  bool report = false;           // a page
   Output output;
 };
 void profile(const ProfileCommand& command);
@@ -236,6 +261,7 @@ struct SimulateCommand {
   std::uint64_t seed = 1;
   std::filesystem::path record, replay;  // what came from outside; empty: neither
   std::filesystem::path folder;          // for the traces; empty: none
+  bool report = false;                   // a page
   bool views = true;                     // frames for ParaView
   Output output;
 };
@@ -249,6 +275,7 @@ struct ThicknessCommand {
   std::optional<double> fail_below;  // the same, and the exit code is kTooThin if it is anywhere
   std::string unit;                  // of the mesh, for what is printed and written; empty: "mesh units"
   Index bins = 50;                   // of the histogram
+  bool report = false;               // a page
   bool views = true;                 // ParaView files, where the program was built with them
   Output output;
 };
@@ -277,6 +304,13 @@ struct InspectCommand {
   Output output;
 };
 void inspect(const InspectCommand& command);
+
+struct ReportCommand {
+  std::vector<std::filesystem::path> reports;  // .json files of any commands
+  std::filesystem::path page;                  // .html
+  bool quiet = false;
+};
+void report(const ReportCommand& command);
 
 struct ViewCommand {
   std::vector<std::filesystem::path> files;  // trees, axes, diagrams, meshes, points: all in one picture

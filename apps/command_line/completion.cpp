@@ -13,8 +13,13 @@ std::string zsh_quoted(std::string text) {
   return text;
 }
 
+// What may stand for a value: its choices, or else what is usual.
+const std::vector<std::string>& completed(const OptionEntry& option) {
+  return option.choices.empty() ? option.usual : option.choices;
+}
+
 std::string zsh_value(const OptionEntry& option) {
-  if (!option.choices.empty()) return "(" + joined(option.choices) + ")";
+  if (!completed(option).empty()) return "(" + joined(completed(option)) + ")";
   return option.file ? "_files" : " ";
 }
 
@@ -48,7 +53,7 @@ std::string bash_completion(const CLI::App& app) {
       std::string pattern;
       for (const std::string& name : option.names)
         pattern += (pattern.empty() ? "'" : " | '") + command.name + " " + name + "'";
-      values += fmt::format("    {}) words='{}' ;;\n", pattern, joined(option.choices));
+      values += fmt::format("    {}) words='{}' ;;\n", pattern, joined(completed(option)));
     }
     options += fmt::format("    {}) words='{}' ;;\n", command.name, joined(all));
   }
@@ -73,6 +78,7 @@ std::string bash_completion(const CLI::App& app) {
       "    compopt -o default 2> /dev/null\n"
       "  else\n"
       "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
+      "    [[ ${{COMPREPLY[0]-}} != *= ]] || compopt -o nospace 2> /dev/null\n"
       "  fi\n"
       "}}\n"
       "complete -F _{0} {0}\n",

@@ -137,6 +137,7 @@ void add_robot(CLI::App& app, Request& request) {
                      "along it, for ParaView");
   command.add_flag("!--no-views", robot.views, "Write no files for ParaView");
   command.add_flag("!--no-picture", robot.picture, "Draw no picture of the robot with its spheres");
+  add_report(command, robot.report);
   add_up(command, robot.up);
   add_threads(command, request);
   add_accept(command, robot.accept);

@@ -144,9 +144,11 @@ void add_spheres(CLI::App& app, Request& request) {
   add_place_options(command, spheres);
   add_particle_options(command, spheres);
   add_mesh_options(command, spheres.reading);
-  add_list(command, "--export", spheres.exports,
-           "Also write the spheres as json, csv, urdf (collision geometry of a link) or yaml (cuRobo's format)",
-           {"json", "csv", "urdf", "yaml"});
+  add_list(
+      command, "--export", spheres.exports,
+      "Also write the spheres as json, csv, npz (for NumPy), urdf (collision geometry of a link) or yaml (cuRobo's "
+      "format)",
+      {"json", "csv", "npz", "urdf", "yaml"});
   command.add_option(
       "--link", spheres.link,
       "Name of the link in urdf and yaml (default: that of the mesh), or the link to read from a file of several");
@@ -155,6 +157,7 @@ void add_spheres(CLI::App& app, Request& request) {
                    "surface, otherwise the union of the spheres");
   command.add_flag("!--no-views", spheres.views, "Do not write files for ParaView");
   command.add_flag("--picture", spheres.picture, "Also draw the spheres to a .png file");
+  add_report(command, spheres.report);
   add_up(command, spheres.up);
   add_threads(command, request);
   add_accept(command, spheres.accept);
@@ -203,6 +206,7 @@ void add_audit(CLI::App& app, Request& request) {
   auto* picture =
       command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres protrude")
           ->needs(folder);
+  add_report(command, audit.report)->needs(folder);
   add_up(command, audit.up)->needs(picture);
   add_force(command, audit.output)->needs(folder);
   add_output_flags(command, audit.output);

@@ -52,6 +52,12 @@ CLI::Option* add_join(CLI::App& command, std::optional<double>& join) {
       ->check(NumberValidator(CLI::Range(0.0, kMaxJoin)));
 }
 
+CLI::Option* add_report(CLI::App& command, bool& report) {
+  return command.add_flag("--report", report,
+                          "Also write the report as an .html page that needs no other file: tables with explanations, "
+                          "plots and pictures");
+}
+
 CLI::Option* add_force(CLI::App& command, Output& output) {
   return command.add_flag("--force", output.force,
                           "Overwrite output files that belong to another input of the same name");

@@ -20,6 +20,7 @@ CLI::Option* add_join(CLI::App& command, std::optional<double>& join);
 void add_threads(CLI::App& command, Request& request);
 CLI::Option* add_up(CLI::App& command, std::string& up);
 void add_accept(CLI::App& command, bool& accept);
+CLI::Option* add_report(CLI::App& command, bool& report);
 CLI::Option* add_force(CLI::App& command, Output& output);
 void add_output_flags(CLI::App& command, Output& output);
 // How axes are tuned: all of it, or what trees have a use for.

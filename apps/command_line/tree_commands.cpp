@@ -36,12 +36,13 @@ void add_build(CLI::App& app, Request& request) {
   add_threads(command, request);
   command.add_flag("!--no-views", build.views, "Do not write files for ParaView");
   command.add_flag("--picture", build.picture, "Also draw the steps from mesh to tree to a .png file");
-  command.add_flag("--report", build.page,
-                   "Also write an .html page with picture, tables, plots, options, repairs, times and certificate");
+  add_report(command, build.page);
   command.add_flag("--cost", build.cost, "Print the expected time and memory and build nothing");
-  add_list(command, "--export", build.exports,
-           "Also write sph (spheres as text), json (spheres by level) or urdf (collision spheres of a link)",
-           {"sph", "json", "urdf"});
+  add_list(
+      command, "--export", build.exports,
+      "Also write sph (spheres as text), json (spheres by level), urdf (collision spheres of a link), npz or csv (a "
+      "row for each sphere: x, y, z, radius, inaccuracy, level, parent)",
+      {"sph", "json", "urdf", "npz", "csv"});
   command.add_option("--export-level", build.export_level,
                      "Level of the tree that --export urdf writes (default: the deepest)");
   command.add_option("--up", build.up, "Axis of the mesh that points up in the picture and in ParaView")
@@ -104,23 +105,60 @@ void add_verify(CLI::App& app, Request& request) {
   });
 }
 
+namespace {
+
+// Of axes alone.
+void add_axes_options(CLI::App& command, CompareCommand& compare) {
+  command
+      .add_option("--vertices", compare.vertices,
+                  "axes: simplify each to at most this many balls, and orchard's own to as many as that one then has "
+                  "(default: the size of each file)")
+      ->check(CLI::Range(1, 100'000'000));
+  command.add_option("--csv", compare.csv,
+                     "axes: add the rows of this mesh to this .csv file, which may have those of other meshes");
+  command
+      .add_option("--quality-samples", compare.quality_samples,
+                  "axes: number of surface points at which each is measured")
+      ->check(CLI::Range(100, 10'000'000))
+      ->capture_default_str();
+  command.add_option("--samples", compare.samples, "axes: number of surface points from which orchard's own is built")
+      ->check(CLI::Range(20, 10'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", compare.seed, "axes: seed of all random choices")->capture_default_str();
+  command.add_flag("--connect", compare.connect,
+                   "axes: connect balls that have no cells by their power diagram within the solid");
+  add_up(command, compare.up);
+}
+
+}  // namespace
+
 void add_compare(CLI::App& app, Request& request) {
-  CLI::App& command =
-      *app.add_subcommand("compare", "Compare how tightly several sphere-trees fit a mesh, level by level");
+  CLI::App& command = *app.add_subcommand(
+      "compare", "Compare how well sphere-trees, level by level, or medial axes of equal size fit a mesh");
   CompareCommand& compare = request.compare;
   add_mesh(command, compare.mesh);
   command
-      .add_option("trees", compare.trees,
-                  "Sphere-trees in the mesh's frame (.orchard, .sph, or .json lists of spheres by level)")
+      .add_option("files", compare.files,
+                  "Sphere-trees in the mesh's frame (.orchard, .sph, or .json lists of spheres by level), or medial "
+                  "axes (.ma, .obj, .ply, ..), each of which is compared with orchard's of the same size")
       ->required();
+  auto* folder = command.add_option("-o,--output", compare.folder,
+                                    "Folder that receives the report, and of axes the table, the picture and orchard's "
+                                    "axes");
+  add_report(command, compare.report)->needs(folder);
   command.add_option("--plot", compare.plot, "Also plot the table to this .svg file");
+  add_axes_options(command, compare);
   add_mesh_options(command, compare.reading);
+  add_threads(command, request);
+  add_force(command, compare.output)->needs(folder);
   add_output_flags(command, compare.output);
   command.footer(
       "Examples:\n  orchard compare data/lamp.obj out/lamp/lamp.orchard other.sph\n  orchard compare data/lamp.obj "
-      "out/lamp/lamp.orchard other.sph --plot out/lamp.svg\n  orchard compare data/lamp.obj spheres.json --json");
+      "out/lamp/lamp.orchard other.sph --plot out/lamp.svg\n  orchard compare data/lamp.obj spheres.json --json\n"
+      "  orchard compare data/lamp.obj other.ma older.ma --vertices 100 -o out/compare --report");
   command.callback([&request, &command] {
     request.compare.output.run = invocation_of(command, request.typed);
+    request.compare.given = given_of(command);
     request.run = [&request] { orchard::apps::compare(request.compare); };
   });
 }
@@ -139,6 +177,9 @@ void add_profile(CLI::App& app, Request& request) {
   command.add_option("--seed", profile.seed, "Seed of the random flights")->capture_default_str();
   command.add_option("--plot", profile.plot, "Also plot the table to this .svg file");
   command.add_option("--csv", profile.csv, "Write every pose and the answer of each level to this .csv file");
+  auto* folder = command.add_option("-o,--output", profile.folder, "Folder that receives the report");
+  add_report(command, profile.report)->needs(folder);
+  add_force(command, profile.output)->needs(folder);
   add_output_flags(command, profile.output);
   command.footer(
       "Examples:\n  orchard profile out/lamp/lamp.orchard --plot out/profile.svg\n  orchard profile "
@@ -176,6 +217,7 @@ void add_simulate(CLI::App& app, Request& request) {
       ->excludes(replay);
   auto* folder =
       command.add_option("-o,--output", simulate.folder, "Folder that receives the traces and the run for ParaView");
+  add_report(command, simulate.report)->needs(folder);
   command.add_flag("!--no-views", simulate.views, "Do not write files for ParaView")->needs(folder);
   add_force(command, simulate.output)->needs(folder);
   add_output_flags(command, simulate.output);

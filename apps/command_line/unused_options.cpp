@@ -77,8 +77,6 @@ void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tu
 // Refuses what a sweep overrides, and what it varies without any column that would tell.
 void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
   for (const std::string& name : swept) {
-    if (std::count(swept.begin(), swept.end(), name) > 1)
-      throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", name));
     if (among(name, command.given))
       throw InputError(fmt::format("--{} has no effect with --sweep {}=.., which sets it", name, name));
   }
@@ -121,7 +119,9 @@ void refuse_unused_options(const MedialCommand& command) {
     throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
   if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
     throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
-  if (!command.exports.empty() && sweeps) throw InputError("--export has no effect with --sweep, which writes no axis");
+  if (!command.exports.empty() && sweeps && !command.keep)
+    throw InputError("--export has no effect with --sweep, which writes no axis without --keep");
+  if (command.keep && !sweeps) throw InputError("--keep has no effect without --sweep: all files are kept");
   if (among("sort-by", command.given) && !sweeps) throw InputError("--sort-by has no effect without --sweep");
   if (command.picture && (sweeps || (!command.report && !judges)))
     throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");

@@ -23,6 +23,8 @@ struct MeshOptions {
   std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
   bool unite = false;                // parts that cut each other become one
   BoundingBall ball = BoundingBall::minimal;
+
+  bool operator==(const MeshOptions&) const = default;
 };
 inline const std::string kDefaultWrap = "0.002";
 inline constexpr double kMaxJoin = 0.01;  // of MeshOptions::join: beyond it, corners that are meant are near enough

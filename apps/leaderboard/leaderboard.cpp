@@ -11,6 +11,7 @@
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 
 namespace orchard::apps {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReport = "leaderboard.json";
+constexpr const char* kPage = "leaderboard-report.html";
 
 std::vector<std::string> models_of(const LeaderboardFolder& found) {
   std::vector<std::string> models;
@@ -67,7 +69,7 @@ void leaderboard(const LeaderboardCommand& command) {
                           .report = kReport,
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
-  std::vector<std::string> names{"leaderboard.md", "leaderboard.csv"};
+  std::vector<std::string> names{"leaderboard.md", "leaderboard.csv", kPage};
   for (const std::string& model : models) {
     names.push_back(plot_name(model));
     names.push_back(state_name(model));
@@ -100,6 +102,7 @@ void leaderboard(const LeaderboardCommand& command) {
   }
   nlohmann::json report = to_json(rows, found.skipped);
   outputs.add_report(report, "the same as JSON");
+  if (command.report) write_report_page(kPage, {.report = report}, outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;

@@ -13,9 +13,9 @@
 #include "medial/medial_measures.h"
 #include "medial/medial_table.h"
 #include "medial/medial_tuning.h"
+#include "medial/own_axis.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
-#include "orchard/medial/build.h"
 #include "orchard/medial/read_axis.h"
 #include "orchard/medial/simplify.h"
 #include "orchard/medial/structure.h"
@@ -30,8 +30,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-constexpr int kCloser = 3;  // times that the errors allowed are halved: more takes long and gains little
 
 std::string checksum_of(const fs::path& file) {
   const std::vector<fs::path> files{file};
@@ -172,15 +170,7 @@ class Model {
     tuning.refine = builder == "refined";
     tuning.samples = options_.samples;
     tuning.options.sampling.seed = options_.seed;
-    MedialMesh axis = medial_mesh(build_medial_axis(surface, build_options(tuning)).axis);
-    for (int closer = 0; tuning.refine && closer < kCloser && axis.size() < most; ++closer) {
-      *tuning.samples *= 2;
-      tuning.refinement.border_loss /= 2;
-      tuning.refinement.tolerance /= 2;
-      tuning.refinement.feature_loss /= 2;
-      axis = medial_mesh(build_medial_axis(surface, build_options(tuning)).axis);
-    }
-    return axis;
+    return axis_with_balls(surface, tuning, most);
   }
 
   // Returns the numbers of balls that there are axes for.

@@ -17,6 +17,7 @@
 #include "medial/medial_run.h"
 #include "medial/medial_simplify.h"
 #include "medial/medial_table.h"
+#include "medial/medial_trials.h"
 #include "medial/medial_views.h"
 #include "medial/medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
@@ -27,6 +28,7 @@
 #include "output/outputs.h"
 #include "output/promises.h"
 #include "output/report.h"
+#include "report/report_page.h"
 
 namespace orchard::apps {
 namespace {
@@ -50,8 +52,10 @@ std::vector<std::string> names_of(const MedialCommand& command) {
   names.insert(names.end(), exports.begin(), exports.end());
   if (!command.axis.empty()) {
     names.push_back(named(command.axis, "-quality.png"));
+    names.push_back(page_name(command.axis, "medial"));
     return names;
   }
+  names.push_back(page_name(command.mesh, "medial"));
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
   for (const char* ending : {".ma", ".graphml", "-features.obj"}) names.push_back(named(command.mesh, ending));
   return names;
@@ -91,8 +95,11 @@ Destination check(const MedialCommand& command) {
   return destination;
 }
 
-void finish(const MedialCommand& command, json& report, Outputs& outputs) {
+void finish(const MedialCommand& command, json& report, const std::string& picture, Outputs& outputs) {
   outputs.add_report(report, "this report as JSON");
+  if (command.report)
+    write_report_page(page_name(command.axis.empty() ? command.mesh : command.axis, "medial"), page_of(report, picture),
+                      outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!command.output.quiet && !command.output.json) outputs.print();
@@ -137,8 +144,9 @@ struct Judged {
 };
 
 // The first axis and those beside it in one table, and where the first one is worst: printed, and into `report`.
-void report_quality(const MedialCommand& command, const SolidMesh& solid, const Judged& first,
-                    const std::vector<AxisFile>& beside, json& report, const Progress& progress, ProgressBar& bar) {
+void report_quality(const MedialCommand& command, const Destination& destination, const SolidMesh& solid,
+                    const Judged& first, const std::vector<AxisFile>& beside, json& report, const Progress& progress,
+                    ProgressBar& bar) {
   std::vector<JudgedAxis> axes{{first.name, first.judgement}};
   json others = json::array();
   StageTimes seconds = first.judgement.seconds;
@@ -154,11 +162,15 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
   }
   if (!beside.empty()) seconds.emplace_back("axes beside it", measuring.seconds());
   bar.clear();
+  std::vector<MedialTrial> trials = earlier_trials(destination.folder / destination.report, destination.provenance);
+  const MedialTrial now = trial_of(destination.provenance, first.judgement.quality.worst);
   std::vector<ReportedPlace> places;
   for (const WorstPlace& place : first.judgement.quality.worst)
-    places.push_back({place, advice(place, solid.surface, first.origin)});
-  report["quality"] = to_json(first.judgement);
-  report["diagonal"] = first.judgement.quality.diagonal;
+    places.push_back({place, advice_after(trials, now, advice(place, solid.surface, first.origin), place)});
+  std::erase_if(trials, [&](const MedialTrial& trial) { return trial.options == now.options; });
+  trials.push_back(now);
+  add_quality(first.judgement, report);
+  report["trials"] = to_json(trials);
   if (!beside.empty()) report["beside"] = std::move(others);
   report["worst_places"] = to_json(places);
   report["report_seconds"] = seconds_json(seconds);
@@ -189,13 +201,13 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
     for (const AxisFile& other : beside) print_notes(other);
   }
   const FewBalls few = make_few_balls(command, solid.surface, mesh, progress);
-  report_quality(command, solid, judged, beside, report, progress, bar);
+  report_quality(command, destination, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_axis_exports(command, mesh, contacts_of(solid.surface, mesh), outputs);
-  write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
-                named(command.axis, "-quality.png"), outputs);
-  finish(command, report, outputs);
+  const std::string picture = write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
+                                            named(command.axis, "-quality.png"), outputs);
+  finish(command, report, picture, outputs);
 }
 
 // What the command promised beside what it made; the line that says so comes last.
@@ -228,7 +240,6 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const SkeletonGraph skeleton = skeleton_graph(build.axis);
-  const MedialStructure structure = medial_structure(mesh);
   const FewBalls few = make_few_balls(command, surface, mesh, progress);
   std::optional<MedialJudgement> judgement;
   if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
@@ -243,19 +254,16 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   const std::string warning = medial_warning(solid, build, findings);
   const Broken broken = broken_promises(command, solid, build, findings, few);
   const std::string last_line = in_one_line(broken);
-  json report{{"mesh", mesh_json(surface)},        {"build", to_json(build)},
-              {"topology", to_json(found)},        {"topology_of_solid", to_json(wanted)},
-              {"promise", to_json(build.promise)}, {"structure", to_json(segments, skeleton, structure)}};
+  json report = axis_report(command, solid, build, mesh);
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
   if (!warning.empty()) report["warning"] = warning;
   report["promise"]["broken"] = broken.what;
-  report["promise"]["kept"] = broken.none();  // what could not be proven is not kept
-  add_solid_json(solid, report);
+  report["promise"]["kept"] = broken.none();
   if (talk) {
     fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
     if (!command.source.points.empty()) fmt::print("points moved onto the mesh by {:.6g} at most\n", own.max_moved);
     print(build);
-    print(structure);
+    print(medial_structure(mesh));
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());
   }
@@ -272,16 +280,14 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                                    .own_points = !command.source.files().empty(),
                                    .cuts_itself = solid.self_intersections.value_or(0) > 0},
                         .name = "this axis"};
-    report_quality(command, solid, judged, beside, report, progress, bar);
+    report_quality(command, destination, solid, judged, beside, report, progress, bar);
   }
   Outputs outputs(destination);
-  write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
-             to_ma(mesh) + to_structure_section(structure) + (last_line.empty() ? "" : "# " + last_line + "\n"));
+  write_axis(command, build, mesh, last_line, outputs);
   if (!build.features.empty())
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
-  write_axis_exports(command, mesh, contacts_of(build.axis), outputs);
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,
               {.surface = surface,
@@ -292,8 +298,9 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                .errors = errors ? &*errors : nullptr,
                .worst = worst},
               outputs);
-  write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
-  finish(command, report, outputs);
+  const std::string picture =
+      write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
+  finish(command, report, picture, outputs);
   if (!warning.empty() && build.promise.keeps_topology())
     fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
   if (!last_line.empty()) fmt::print(stderr, "orchard: {}: {}\n", command.mesh.string(), last_line);
@@ -301,6 +308,35 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
 }
 
 }  // namespace
+
+json axis_report(const MedialCommand& command, const SolidMesh& solid, const MedialBuild& build,
+                 const MedialMesh& mesh) {
+  const MedialSegments segments = medial_segments(build.axis, segment_options(command, solid.surface, build));
+  json report{{"mesh", mesh_json(solid.surface)},
+              {"build", to_json(build)},
+              {"topology", to_json(topology(mesh))},
+              {"topology_of_solid", to_json(solid_topology(solid.surface))},
+              {"promise", to_json(build.promise)},
+              {"structure", to_json(segments, skeleton_graph(build.axis), medial_structure(mesh))}};
+  const Broken broken = apps::broken(build.promise);
+  report["promise"]["broken"] = broken.what;
+  report["promise"]["kept"] = broken.none();  // what could not be proven is not kept
+  add_solid_json(solid, report);
+  return report;
+}
+
+void write_axis(const MedialCommand& command, const MedialBuild& build, const MedialMesh& mesh,
+                const std::string& last_line, Outputs& outputs) {
+  write_file(
+      outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
+      to_ma(mesh) + to_structure_section(medial_structure(mesh)) + (last_line.empty() ? "" : "# " + last_line + "\n"));
+  write_axis_exports(command, mesh, contacts_of(build.axis), outputs);
+}
+
+void add_quality(const MedialJudgement& judgement, json& report) {
+  report["quality"] = to_json(judgement);
+  report["diagonal"] = judgement.quality.diagonal;
+}
 
 QualityOptions quality_options(const MedialCommand& command) {
   QualityOptions options{.seed = command.tuning.options.sampling.seed};
@@ -356,6 +392,10 @@ ExitCode medial(const MedialCommand& command) {
   std::vector<ForeignAxis> foreign = read_axes(command.beside);
   if (!command.axis.empty()) foreign.push_back(read_axis(command.axis));
   ProgressBar bar(!command.output.quiet && !command.output.json);
+  if (!command.sweep.empty()) {
+    sweep_medial(command, destination, bar);
+    return kSucceeded;
+  }
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
@@ -377,9 +417,6 @@ ExitCode medial(const MedialCommand& command) {
     const AxisFile axis = std::move(beside.back());
     beside.pop_back();
     judge_file(command, destination, wanted, beside, axis, bar.callback(), bar);
-  } else if (!command.sweep.empty()) {
-    sweep_medial(command, destination, wanted.surface, bar.callback());
-    bar.clear();
   } else {
     return build_axis(command, destination, wanted, outside ? &solid.surface : nullptr, beside, bar.callback(), bar);
   }

@@ -13,10 +13,16 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kMinTurn = 10 / kDegrees;  // of an edge that sheets might reach: below, it is curvature
 constexpr double kSlack = 1.5;              // times a bound: what is beyond that, the bound does not explain
 
-std::string more_points(const AxisOrigin& origin) {
-  if (origin.own_points) return "more points of your own there";
-  return fmt::format("--samples {}", 2 * origin.tuning->samples.value_or(kStandardSamples));
+Advice option_with(const std::string& option, const std::string& value, const std::string& more = {}) {
+  return {fmt::format("--{} {}{}", option, value, more), option, value};
 }
+
+Advice more_points(const AxisOrigin& origin) {
+  if (origin.own_points) return {"more points of your own there"};
+  return option_with("samples", std::to_string(2 * origin.tuning->samples.value_or(kStandardSamples)));
+}
+
+Advice refine_or_more_points(const AxisOrigin& origin) { return {"no --raw, or " + more_points(origin).text}; }
 
 // The most that the surface turns at a convex edge that comes within `reach` of a place, in radians; 0 if there is
 // none.
@@ -39,38 +45,38 @@ double sharpest_edge_near(const Surface& surface, const Point& position, double 
   return sharpest;
 }
 
-std::string about_protrusion(const WorstPlace& place, const AxisOrigin& origin) {
+Advice about_protrusion(const WorstPlace& place, const AxisOrigin& origin) {
   const MedialTuning& tuning = *origin.tuning;
-  if (!tuning.refine) return "no --raw, or " + more_points(origin);
+  if (!tuning.refine) return refine_or_more_points(origin);
   if (place.value <= kSlack * tuning.refinement.tolerance)
-    return fmt::format("--linear-error {:.2g}", 50 * place.value);
+    return option_with("linear-error", fmt::format("{:.2g}", 50 * place.value));
   return more_points(origin);
 }
 
-std::string about_coverage(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
+Advice about_coverage(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
   const MedialTuning& tuning = *origin.tuning;
-  if (tuning.prune_degrees > 0) return fmt::format("--prune-angle {:.3g}", 0.5 * tuning.prune_degrees);
-  if (tuning.options.prune.scale > 1) return "--prune-scale 1";
-  if (!tuning.refine) return "no --raw, or " + more_points(origin);
+  if (tuning.prune_degrees > 0) return option_with("prune-angle", fmt::format("{:.3g}", 0.5 * tuning.prune_degrees));
+  if (tuning.options.prune.scale > 1) return option_with("prune-scale", "1");
+  if (!tuning.refine) return refine_or_more_points(origin);
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double turn = sharpest_edge_near(surface, place.position, 1e-9 * diagonal + 0.5 * place.value * diagonal);
   if (turn > kMinTurn && place.value < tuning.refinement.feature_loss)
-    return fmt::format("--feature-loss {:.2g}, for the edge here", 50 * place.value);
+    return option_with("feature-loss", fmt::format("{:.2g}", 50 * place.value), ", for the edge here");
   if (turn < kMinTurn && place.value <= kSlack * tuning.refinement.border_loss)
-    return fmt::format("--border-loss {:.2g}", 50 * place.value);
+    return option_with("border-loss", fmt::format("{:.2g}", 50 * place.value));
   return more_points(origin);
 }
 
-std::string about_dent(const AxisOrigin& origin) {
-  if (!origin.tuning->refine) return "no --raw, or " + more_points(origin);
+Advice about_dent(const AxisOrigin& origin) {
+  if (!origin.tuning->refine) return refine_or_more_points(origin);
   return more_points(origin);
 }
 
 }  // namespace
 
-std::string advice(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
-  if (origin.tuning == nullptr) return "nothing here: the axis is a file";
-  if (origin.cuts_itself) return "--wrap, since the mesh cuts itself";
+Advice advice(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
+  if (origin.tuning == nullptr) return {"nothing here: the axis is a file"};
+  if (origin.cuts_itself) return {"--wrap, since the mesh cuts itself"};
   switch (place.kind) {
     case WorstKind::protrusion:
       return about_protrusion(place, origin);

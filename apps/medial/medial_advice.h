@@ -14,7 +14,13 @@ struct AxisOrigin {
   bool cuts_itself = false;              // the mesh does
 };
 
-// What to do about a place where the axis is bad, in a few words: a flag with a value where one helps.
-std::string advice(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin);
+// What to do about a place, in a few words.
+struct Advice {
+  std::string text;
+  std::string option = {}, value = {};  // that the words suggest; empty: no single option
+};
+
+// What to do about a place where the axis is bad: an option with a value where one helps.
+Advice advice(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin);
 
 }  // namespace orchard::apps

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "command_line/commands.h"
+#include "command_line/console.h"
+#include "input/load_solid.h"
 #include "medial/medial_measures.h"
 #include "orchard/medial/build.h"
 #include "output/outputs.h"
@@ -24,16 +26,24 @@ MedialJudgement judge_beside(const MedialCommand& command, const Surface& surfac
 
 // Throws InputError if a combination of the values of command.sweep cannot be run.
 void check_sweep(const MedialCommand& command);
-// The flags that command.sweep varies, by their names. Throws InputError if one cannot be read.
+// The options that command.sweep varies, by their names.
 std::vector<std::string> swept_flags(const MedialCommand& command);
 // The tuning of every combination of the values of command.sweep, its last one's fastest; without a sweep, that of the
-// command. Throws InputError if one cannot be read.
+// command.
 std::vector<MedialTuning> tunings_of(const MedialCommand& command);
 // The files of a sweep, but for its report.
 std::vector<std::string> sweep_names(const MedialCommand& command);
 // Every combination of the values of command.sweep, each judged: MODEL-sweep.csv, in the order of the combinations, and
-// a plot for each metric; in the report and printed with the best by command.best first.
-void sweep_medial(const MedialCommand& command, const Destination& destination, const Surface& surface,
-                  const Progress& progress);
+// plots of what is gained for what it costs; in the report and printed with the best by command.best first.
+void sweep_medial(const MedialCommand& command, const Destination& destination, ProgressBar& bar);
+
+// The report of an axis that was built, without its quality, and its files: MODEL.ma, which ends with `last_line`, and
+// those of --export.
+nlohmann::json axis_report(const MedialCommand& command, const SolidMesh& solid, const MedialBuild& build,
+                           const MedialMesh& mesh);
+void write_axis(const MedialCommand& command, const MedialBuild& build, const MedialMesh& mesh,
+                const std::string& last_line, Outputs& outputs);
+// Sets "quality" and "diagonal".
+void add_quality(const MedialJudgement& judgement, nlohmann::json& report);
 
 }  // namespace orchard::apps

@@ -124,16 +124,21 @@ std::vector<std::string> few_balls_names(const MedialCommand& command) {
   return names;
 }
 
-void check_few_balls(const MedialCommand& command, const Destination& destination,
-                     const std::vector<std::filesystem::path>& inputs) {
-  if (!command.sweep.empty()) {
-    for (const char* option : {"vertices", "error", "balls", "curve", "envelope"}) {
-      if (given(command, option)) throw InputError(fmt::format("--{} has no effect with --sweep", option));
-    }
-  }
+void check_simplification(const MedialCommand& command) {
   if (given(command, "balls") && !simplifies(command) && !command.curve)
     throw InputError("--balls has no effect without --vertices, --error or --curve");
   if (given(command, "error") && !(command.few_error > 0)) throw InputError("--error: expected a percentage above 0");
+}
+
+void check_few_balls(const MedialCommand& command, const Destination& destination,
+                     const std::vector<std::filesystem::path>& inputs) {
+  if (!command.sweep.empty()) {
+    for (const char* option : {"curve", "envelope"}) {
+      if (given(command, option)) throw InputError(fmt::format("--{} has no effect with --sweep", option));
+    }
+    return;  // each run is checked by itself
+  }
+  check_simplification(command);
   if (!command.envelope.empty()) {
     if (command.envelope.extension() != ".obj")
       throw InputError("--envelope " + command.envelope.string() + ": expected a name that ends with .obj");

@@ -28,6 +28,9 @@ std::vector<std::string> few_balls_names(const MedialCommand& command);
 void check_few_balls(const MedialCommand& command, const Destination& destination,
                      const std::vector<std::filesystem::path>& inputs);
 
+// The same of the options of --vertices, --error and --balls alone.
+void check_simplification(const MedialCommand& command);
+
 // What the command asks of the axis in few balls.
 SimplifyOptions few_balls_options(const MedialCommand& command);
 

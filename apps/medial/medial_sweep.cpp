@@ -2,279 +2,184 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <utility>
 
-#include "command_line/list_option.h"
 #include "medial/medial_run.h"
+#include "medial/medial_simplify.h"
 #include "medial/sweep_columns.h"
+#include "medial/sweep_runs.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "output/outputs.h"
-#include "svg_plot.h"
+#include "report/report_page.h"
+#include "report/report_plots.h"
 
 namespace orchard::apps {
 namespace {
 
-struct Dimension {
-  const TuningFlag* flag = nullptr;
-  std::vector<std::string> values;
-};
+using nlohmann::json;
 
-Dimension parse(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) throw InputError("--sweep " + text + ": expected NAME=VALUE,VALUE,..");
-  std::string name = text.substr(0, equals);
-  if (name == "prune") name = "prune-angle";
-  const auto& flags = tuning_flags();
-  const auto flag = std::find_if(flags.begin(), flags.end(), [&](const TuningFlag& f) { return f.name == name; });
-  if (flag == flags.end()) {
-    std::string names;
-    for (const TuningFlag& f : flags) names += (names.empty() ? "" : ", ") + f.name;
-    throw InputError("--sweep: no flag is called " + name + "; there are " + names);
-  }
-  auto values = list_items(text.substr(equals + 1));
-  if (!values) throw InputError(fmt::format("--sweep {}: {}", text, kEmptyItem));
-  Dimension dimension{.flag = &*flag, .values = std::move(*values)};
-  for (const std::string& value : dimension.values) {
-    if (const std::string fault = flag->fault(value); !fault.empty())
-      throw InputError(fmt::format("--sweep {}: {}", name, fault));
-    if (std::count(dimension.values.begin(), dimension.values.end(), value) > 1)
-      throw InputError(fmt::format("--sweep {}: {} is there twice", text, value));
-  }
-  return dimension;
-}
+// The measures of a run, by name, and what was swept.
+struct SweptRun {
+  std::vector<std::string> choice;
+  json measures;
 
-struct Run {
-  std::vector<std::size_t> choice;  // of each dimension's values
-  std::vector<double> metrics;
+  json measure(const std::string& name) const { return measures.value(name, json()); }
+  double value(const std::string& name) const {
+    const json found = measure(name);
+    return found.is_number() ? found.get<double>() : std::nan("");
+  }
 };
 
 std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
-std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
-                   const std::vector<Run>& runs) {
+// Whether a measure tells the runs apart.
+bool differs(const std::string& name, const std::vector<SweptRun>& runs) {
+  return runs.size() < 2 || std::any_of(runs.begin(), runs.end(), [&](const SweptRun& run) {
+           return run.measure(name) != runs.front().measure(name);
+         });
+}
+
+std::string sweep_csv(const MedialCommand& command, const std::vector<Column>& columns,
+                      const std::vector<SweptRun>& runs) {
   std::string text;
-  for (const Dimension& dimension : dimensions) text += dimension.flag->name + ',';
-  for (const Column& column : columns) text += column.name + (&column == &columns.back() ? "\n" : ",");
-  for (const Run& run : runs) {
-    for (std::size_t d = 0; d < dimensions.size(); ++d) text += dimensions[d].values[run.choice[d]] + ',';
-    for (std::size_t m = 0; m < run.metrics.size(); ++m) {
-      text += csv_number(run.metrics[m]) + (m + 1 == run.metrics.size() ? "\n" : ",");
-    }
+  const auto cell = [&](const std::string& value) {
+    text += (text.empty() || text.ends_with('\n') ? "" : ",") + value;
+  };
+  for (const SweptOption& option : command.swept) cell(option.name);
+  for (const Column& column : columns) cell(column.name);
+  text += '\n';
+  for (const SweptRun& run : runs) {
+    for (const std::string& value : run.choice) cell(value);
+    for (const Column& column : columns) text += "," + csv_number(run.value(column.name));
+    text += '\n';
   }
   return text;
 }
 
-nlohmann::json to_json(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
-                       const std::vector<Run>& runs) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const Run& run : runs) {
-    nlohmann::json row;
-    for (std::size_t d = 0; d < dimensions.size(); ++d)
-      row[dimensions[d].flag->name] = dimensions[d].values[run.choice[d]];
-    for (std::size_t m = 0; m < run.metrics.size(); ++m) {
-      row[columns[m].name] = std::isfinite(run.metrics[m]) ? nlohmann::json(run.metrics[m]) : nlohmann::json();
-    }
+json sweep_json(const MedialCommand& command, const std::vector<Column>& columns, const std::vector<SweptRun>& runs) {
+  json rows = json::array();
+  for (const SweptRun& run : runs) {
+    json row;
+    for (const Column& column : columns) row[column.name] = run.measure(column.name);
+    for (std::size_t d = 0; d < command.swept.size(); ++d) row[command.swept[d].name] = run.choice[d];
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-// The first dimension runs along x; each combination of the others is a line.
-plot::Plot plot_of(std::size_t metric, const Column& column, const std::string& model,
-                   const std::vector<Dimension>& dimensions, const std::vector<Run>& runs) {
-  const bool names = !dimensions[0].flag->choices.empty();
-  std::map<std::string, std::vector<std::pair<double, double>>> lines;
-  for (const Run& run : runs) {
-    std::string name;
-    for (std::size_t d = 1; d < dimensions.size(); ++d) {
-      name += (d > 1 ? ", " : "") + dimensions[d].flag->name + ' ' + dimensions[d].values[run.choice[d]];
-    }
-    const double x = names ? static_cast<double>(run.choice[0]) : std::stod(dimensions[0].values[run.choice[0]]);
-    lines[name].emplace_back(x, run.metrics[metric]);
-  }
-  plot::Plot result{.title = model + ": " + column.title,
-                    .x_label = dimensions[0].flag->name,
-                    .y_label = column.title,
-                    .log_x = dimensions[0].flag->name == "samples" || dimensions[0].flag->name == "coalesce",
-                    .log_y_if_wide = true,
-                    .series = {},
-                    .levels = {0},
-                    .x_names = names ? dimensions[0].values : std::vector<std::string>{}};
-  for (auto& [name, points] : lines) {
-    std::sort(points.begin(), points.end());
-    plot::Series& series = result.series.emplace_back();
-    series.name = name;
-    series.kind = plot::Series::Kind::line;
-    for (const auto& [x, y] : points) {
-      series.x.push_back(x);
-      series.y.push_back(y);
-    }
-  }
-  return result;
-}
-
-// Counts through all combinations, the last dimension fastest; false after the last one.
-bool next(std::vector<std::size_t>& choice, const std::vector<Dimension>& dimensions) {
-  for (std::size_t d = choice.size(); d-- > 0;) {
-    if (++choice[d] < dimensions[d].values.size()) return true;
-    choice[d] = 0;
-  }
-  return false;
-}
-
-std::vector<Dimension> dimensions_of(const MedialCommand& command) {
-  std::vector<Dimension> dimensions;
-  for (const std::string& text : command.sweep) dimensions.push_back(parse(text));
-  return dimensions;
-}
-
-MedialTuning tuning_of(const MedialCommand& command, const std::vector<Dimension>& dimensions,
-                       const std::vector<std::size_t>& choice) {
-  MedialTuning tuning = command.tuning;
-  for (std::size_t d = 0; d < dimensions.size(); ++d) dimensions[d].flag->set(tuning, dimensions[d].values[choice[d]]);
-  return tuning;
-}
-
-// From the very axis: its diagram is taken over.
-SphereTreeBuild tree_of(const TreeRequest& wanted, const Surface& surface, const MedialBuildOptions& medial,
-                        MedialBuild build, const Progress& progress) {
-  SphereTreeOptions options = tree_options(wanted, medial.sampling.seed);
-  options.medial = medial;
-  options.samples_by_need = false;
-  MedialBuildInput input;
-  input.diagram = {std::move(build.diagram), std::move(build.sampling)};
-  return build_sphere_tree(surface, options, progress, std::move(input));
-}
-
 // The column of command.best. Throws InputError unless there is one in which less is better.
-std::size_t best_column(const MedialCommand& command, const std::vector<Column>& columns) {
+const Column& best_column(const MedialCommand& command, const std::vector<Column>& columns) {
   std::string names;
-  for (std::size_t m = 0; m < columns.size(); ++m) {
-    if (!columns[m].rates) continue;
-    if (columns[m].name == command.best) return m;
-    names += (names.empty() ? "" : ", ") + columns[m].name;
+  for (const Column& column : columns) {
+    if (!column.rates) continue;
+    if (column.name == command.best) return column;
+    names += (names.empty() ? "" : ", ") + column.name;
   }
   throw InputError(
       fmt::format("--sort-by: {} is no measure that is better or worse; there are {}", command.best, names));
 }
 
-std::size_t column_of(const std::vector<Column>& columns, const char* name) {
-  return static_cast<std::size_t>(
-      std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == name; }) -
-      columns.begin());
-}
-
 // Right topologies before wrong ones, then by the measure, what has none last; equals in the order of the sweep.
-std::vector<Run> best_first(std::vector<Run> runs, std::size_t best, std::size_t topology) {
-  std::stable_sort(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
-    if (a.metrics[topology] != b.metrics[topology]) return a.metrics[topology] > b.metrics[topology];
-    const double x = a.metrics[best], y = b.metrics[best];
+std::vector<SweptRun> best_first(std::vector<SweptRun> runs, const std::string& best) {
+  std::stable_sort(runs.begin(), runs.end(), [&](const SweptRun& a, const SweptRun& b) {
+    const double right = a.value("topology_right"), other = b.value("topology_right");
+    if (right != other) return right > other;
+    const double x = a.value(best), y = b.value(best);
     return std::isnan(y) ? !std::isnan(x) : x < y;
   });
   return runs;
 }
 
-// Some columns for the eye, that of the order first; the file has all of them.
-void print_rows(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns, std::size_t best,
-                const std::vector<Run>& runs) {
-  std::vector<std::size_t> shown{best};
+std::string printed(double value) { return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-"; }
+
+// Some columns for the eye, that of the order first; the file has all that differ, the report all.
+void print_rows(const MedialCommand& command, const std::string& best, const std::vector<SweptRun>& runs) {
+  std::vector<std::string> shown{best};
+  std::string same;
   for (const char* name : {"hausdorff_max", "hausdorff_mean", "coverage_max", "protrusion_max", "radius_error_max",
                            "topology_right", "border_length", "small_pieces", "balls", "stability_99", "seconds"}) {
-    if (const std::size_t m = column_of(columns, name); m != best) shown.push_back(m);
-  }
-  fmt::print("best first, by {}; right topologies before wrong ones\n", columns[best].name);
-  const auto width = [](const std::string& title) { return std::max<std::size_t>(title.size(), 9); };
-  for (const Dimension& dimension : dimensions)
-    fmt::print("{:>{}}  ", dimension.flag->name, width(dimension.flag->name));
-  for (const std::size_t m : shown) fmt::print("{:>{}}  ", columns[m].name, width(columns[m].name));
-  fmt::print("\n");
-  for (const Run& run : runs) {
-    for (std::size_t d = 0; d < dimensions.size(); ++d)
-      fmt::print("{:>{}}  ", dimensions[d].values[run.choice[d]], width(dimensions[d].flag->name));
-    for (const std::size_t m : shown) {
-      const double value = run.metrics[m];
-      fmt::print("{:>{}}  ", std::isfinite(value) ? fmt::format("{:.5g}", value) : "-", width(columns[m].name));
+    if (name == best) continue;
+    if (differs(name, runs)) {
+      shown.emplace_back(name);
+    } else {
+      same += fmt::format("{}{} {}", same.empty() ? "" : ", ", name, printed(runs.front().value(name)));
     }
+  }
+  fmt::print("best first, by {}; right topologies before wrong ones\n", best);
+  if (!same.empty()) fmt::print("the same in all runs: {}\n", same);
+  const auto width = [](const std::string& title) { return std::max<std::size_t>(title.size(), 9); };
+  for (const SweptOption& option : command.swept) fmt::print("{:>{}}  ", option.name, width(option.name));
+  for (const std::string& name : shown) fmt::print("{:>{}}  ", name, width(name));
+  fmt::print("\n");
+  for (const SweptRun& run : runs) {
+    for (std::size_t d = 0; d < command.swept.size(); ++d)
+      fmt::print("{:>{}}  ", run.choice[d], width(command.swept[d].name));
+    for (const std::string& name : shown) fmt::print("{:>{}}  ", printed(run.value(name)), width(name));
     fmt::print("\n");
   }
 }
 
 std::string csv_name(const MedialCommand& command) { return named(command.mesh, "-sweep.csv"); }
-
-std::string plot_name(const MedialCommand& command, const Column& column) {
-  return named(command.mesh, fmt::format("-sweep-{}.svg", column.name));
-}
+std::string plot_name(const MedialCommand& command) { return named(command.mesh, "-sweep.svg"); }
 
 }  // namespace
 
 std::vector<std::string> swept_flags(const MedialCommand& command) {
   std::vector<std::string> names;
-  for (const Dimension& dimension : dimensions_of(command)) names.push_back(dimension.flag->name);
+  for (const SweptOption& option : command.swept) names.push_back(option.name);
   return names;
 }
 
 std::vector<MedialTuning> tunings_of(const MedialCommand& command) {
-  const std::vector<Dimension> dimensions = dimensions_of(command);
   std::vector<MedialTuning> tunings;
-  std::vector<std::size_t> choice(dimensions.size(), 0);
-  do {
-    tunings.push_back(tuning_of(command, dimensions, choice));
-  } while (next(choice, dimensions));
+  for (const MedialCommand& run : command.runs) tunings.push_back(run.tuning);
+  if (tunings.empty()) tunings.push_back(command.tuning);
   return tunings;
 }
 
 void check_sweep(const MedialCommand& command) {
   for (const MedialTuning& tuning : tunings_of(command)) build_options(tuning);
   best_column(command, columns_of(command));
+  if (command.sweep.empty()) return;
+  for (const MedialCommand& run : command.runs) check_simplification(run);
 }
 
 std::vector<std::string> sweep_names(const MedialCommand& command) {
-  std::vector<std::string> names{csv_name(command)};
-  for (const Column& column : columns_of(command)) names.push_back(plot_name(command, column));
-  return names;
+  return {csv_name(command), plot_name(command), sweep_rows_name(command), page_name(command.mesh, "medial-sweep")};
 }
 
-void sweep_medial(const MedialCommand& command, const Destination& destination, const Surface& surface,
-                  const Progress& progress) {
-  const std::vector<Dimension> dimensions = dimensions_of(command);
-  std::vector<Run> runs;
-  std::vector<std::size_t> choice(dimensions.size(), 0);
-  do {
-    const MedialBuildOptions options = build_options(tuning_of(command, dimensions, choice));
-    MedialBuild build = build_medial_axis(surface, options, progress);
-    const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
-    Run& run = runs.emplace_back();
-    run.choice = choice;
-    run.metrics = axis_numbers(build, judgement);
-    if (command.tree) {
-      const SphereTreeBuild tree = tree_of(*command.tree, surface, options, std::move(build), progress);
-      const std::vector<double> numbers = tree_numbers(tree, surface, command.tree->depth);
-      run.metrics.insert(run.metrics.end(), numbers.begin(), numbers.end());
-    }
-  } while (next(choice, dimensions));
-
+void sweep_medial(const MedialCommand& command, const Destination& destination, ProgressBar& bar) {
+  SweepRuns made = make_sweep_runs(command, destination, bar);
+  bar.clear();
+  std::vector<SweptRun> runs;
+  for (std::size_t i = 0; i < made.rows.size(); ++i) runs.push_back({command.runs[i].choice, std::move(made.rows[i])});
   const std::vector<Column> columns = columns_of(command);
-  const std::string csv = to_csv(dimensions, columns, runs);
+  std::vector<Column> differing = columns;
+  std::erase_if(differing, [&](const Column& column) { return !differs(column.name, runs); });
+  const std::string best = best_column(command, columns).name;
+  const std::vector<SweptRun> sorted = best_first(runs, best);
+  json report{{"best_by", best},
+              {"swept", swept_flags(command)},
+              {"runs_taken_over", made.taken_over},
+              {"runs", sweep_json(command, columns, sorted)}};
   Outputs outputs(destination);
-  write_file(outputs.add(csv_name(command)), csv);
-  const std::string model = command.mesh.stem().string();
-  for (std::size_t m = 0; m < columns.size(); ++m)
-    write_file(outputs.add(plot_name(command, columns[m])),
-               plot::to_svg({plot_of(m, columns[m], model, dimensions, runs)}));
-  const std::size_t best = best_column(command, columns);
-  runs = best_first(std::move(runs), best, column_of(columns, "topology_right"));
-  nlohmann::json report{{"best_by", columns[best].name}, {"runs", to_json(dimensions, columns, runs)}};
-  outputs.add_report(report);
+  write_file(outputs.add(csv_name(command), "all measures that differ, a row for each run"),
+             sweep_csv(command, differing, runs));
+  const std::vector<plot::Plot> plots = report_plots("medial_sweep", report);
+  if (!plots.empty())
+    write_file(outputs.add(plot_name(command), "distances against balls, borders and seconds"),
+               plot::to_svg(plots, std::min(3, static_cast<int>(plots.size()))));
+  outputs.add_report(report, "this report as JSON");
+  if (command.report) write_report_page(page_name(command.mesh, "medial-sweep"), {.report = report}, outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (command.output.quiet || command.output.json) return;
-  print_rows(dimensions, columns, best, runs);
-  fmt::print("  {}  ({} runs with all measures, and a plot for each beside it)\n",
-             outputs.place_of(csv_name(command)).string(), runs.size());
+  print_rows(command, best, sorted);
+  if (made.taken_over > 0)
+    fmt::print("{} of {} runs were there already, in {}\n", made.taken_over, runs.size(),
+               outputs.place_of(sweep_rows_name(command)).string());
   outputs.print();
+  if (command.keep) fmt::print("  {}  (the axis of each run)\n", outputs.place_of(sweep_runs_folder(command)).string());
 }
 
 }  // namespace orchard::apps

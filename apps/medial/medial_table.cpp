@@ -25,18 +25,6 @@ std::string cell(double value, const MedialMeasure& measure) {
   return *measure.unit == '\0' ? fmt::format("{:.0f}", value) : fmt::format("{:.5f}", value);
 }
 
-const char* kind_name(WorstKind kind) {
-  switch (kind) {
-    case WorstKind::protrusion:
-      return "protrusion";
-    case WorstKind::coverage:
-      return "coverage";
-    case WorstKind::dent:
-      break;
-  }
-  return "dent";
-}
-
 // "1 0 0 right" says more in a line than four rows.
 void print_topologies(const std::vector<JudgedAxis>& axes, const std::vector<std::size_t>& widths) {
   const auto three = [](const Topology& t) { return fmt::format("{} {} {}", t.components, t.loops, t.cavities); };
@@ -69,6 +57,18 @@ void print_loose_bounds(const JudgedAxis& axis) {
 }
 
 }  // namespace
+
+const char* measure_name(WorstKind kind) {
+  switch (kind) {
+    case WorstKind::protrusion:
+      return "protrusion";
+    case WorstKind::coverage:
+      return "coverage";
+    case WorstKind::dent:
+      break;
+  }
+  return "dent";
+}
 
 json to_json(const MedialJudgement& judgement) {
   json values = json::object();
@@ -113,7 +113,7 @@ json to_json(const std::vector<ReportedPlace>& places) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const WorstPlace& place = places[i].place;
     rows.push_back({{"number", i + 1},
-                    {"measure", kind_name(place.kind)},
+                    {"measure", measure_name(place.kind)},
                     {"value", 100 * place.value},
                     {"position", {place.position.x(), place.position.y(), place.position.z()}},
                     {"advice", places[i].advice}});
@@ -126,7 +126,7 @@ void print(const std::vector<ReportedPlace>& places) {
   fmt::print("worst places  measure      % of the diagonal  at\n");
   for (std::size_t i = 0; i < places.size(); ++i) {
     const WorstPlace& place = places[i].place;
-    fmt::print("  {:>10}  {:<11} {:>18.5f}  {:.6g} {:.6g} {:.6g}: {}\n", i + 1, kind_name(place.kind),
+    fmt::print("  {:>10}  {:<11} {:>18.5f}  {:.6g} {:.6g} {:.6g}: {}\n", i + 1, measure_name(place.kind),
                100 * place.value, place.position.x(), place.position.y(), place.position.z(), places[i].advice);
   }
 }

@@ -20,6 +20,9 @@ nlohmann::json to_json(const MedialJudgement& judgement);
 // no axis defines are left out, but for those in `promised`, by their names.
 void print_table(const std::vector<JudgedAxis>& axes, const std::vector<std::string>& promised);
 
+// "protrusion", "coverage" or "dent".
+const char* measure_name(WorstKind kind);
+
 // A place where the axis is worst, as the report numbers it from 1 on.
 struct ReportedPlace {
   WorstPlace place;

@@ -211,10 +211,10 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
                        state_of(command, views), command.folder);
 }
 
-void write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
-                   const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst, const std::string& name,
-                   Outputs& outputs) {
-  if (!command.picture) return;
+std::string write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                          const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst,
+                          const std::string& name, Outputs& outputs) {
+  if (!command.picture && !(command.report && command.views)) return {};
   SurfaceSampling own;
   if (sampling == nullptr) {
     own = sample_surface(surface, build_options(command.tuning).sampling);
@@ -230,15 +230,17 @@ void write_picture(const MedialCommand& command, const Surface& surface, const M
   picture.title = name.substr(0, name.rfind('.'));
   picture.up = parse_up(command.up);
   picture.progress = cancelled_by_interrupts();
-  if (is_drawn(draw_medial_errors(outputs.staged(name), errors, picture)))
-    outputs.add(name, "where it is worst, in a picture, numbered as above");
+  if (!is_drawn(draw_medial_errors(outputs.staged(name), errors, picture))) return {};
+  outputs.add(name, "where it is worst, in a picture, numbered as above");
+  return outputs.take(name, command.picture);
 }
 #else
 void write_views(const MedialCommand&, const MedialViews&, Outputs&) {}
 
-void write_picture(const MedialCommand& command, const Surface&, const MedialMesh&, const SurfaceSampling*,
-                   const std::vector<WorstPlace>&, const std::string&, Outputs&) {
+std::string write_picture(const MedialCommand& command, const Surface&, const MedialMesh&, const SurfaceSampling*,
+                          const std::vector<WorstPlace>&, const std::string&, Outputs&) {
   if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
+  return {};
 }
 #endif
 

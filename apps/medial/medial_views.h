@@ -37,10 +37,11 @@ struct MedialViews {
 // Where the program was built with VTK.
 void write_views(const MedialCommand& command, const MedialViews& views, Outputs& outputs);
 
-// A picture of where the axis is worst, as `name`, with `worst` numbered from 1 on. Coverage is shown at `sampling`, or
-// at points of its own if that is null. On a machine that cannot draw, a line says why.
-void write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
-                   const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst, const std::string& name,
-                   Outputs& outputs);
+// A picture of where the axis is worst, as `name`, with `worst` numbered from 1 on: with --picture, and for the page of
+// --report unless there are no views. Coverage is shown at `sampling`, or at points of its own if that is null. Returns
+// the bytes; empty if nothing was drawn. On a machine that cannot draw, a line says why.
+std::string write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                          const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst,
+                          const std::string& name, Outputs& outputs);
 
 }  // namespace orchard::apps

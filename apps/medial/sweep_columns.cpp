@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -17,11 +18,13 @@ struct BuildColumn {
   double (*get)(const MedialBuild&);
 };
 
-double whole_seconds(const MedialBuild& build) {
+double sum_of(const StageTimes& times) {
   double sum = 0;
-  for (const auto& [stage, time] : build.seconds) sum += time;
+  for (const auto& [stage, time] : times) sum += time;
   return sum;
 }
+
+double whole_seconds(const MedialBuild& build) { return sum_of(build.seconds); }
 
 const std::vector<BuildColumn>& build_columns() {
   static const std::vector<BuildColumn> columns{
@@ -39,7 +42,7 @@ bool in_sweeps(const MedialMeasure& measure) { return !std::string_view(measure.
 
 }  // namespace
 
-std::vector<Column> columns_of(const MedialCommand& command) {
+std::vector<Column> all_columns(const MedialCommand& command) {
   std::vector<Column> columns;
   for (const BuildColumn& own : build_columns()) columns.push_back(own.column);
   for (const MedialMeasure& measure : medial_measures()) {
@@ -59,9 +62,21 @@ std::vector<Column> columns_of(const MedialCommand& command) {
   return columns;
 }
 
-std::vector<double> axis_numbers(const MedialBuild& build, const MedialJudgement& judgement) {
+std::vector<Column> columns_of(const MedialCommand& command) {
+  std::vector<Column> columns = all_columns(command);
+  std::erase_if(columns, [&](const Column& column) {
+    return std::any_of(command.swept.begin(), command.swept.end(),
+                       [&](const SweptOption& option) { return option.name == column.name; });
+  });
+  return columns;
+}
+
+std::vector<double> axis_numbers(const MedialBuild& build, const MedialJudgement& judgement, const StageTimes& more) {
   std::vector<double> numbers;
-  for (const BuildColumn& own : build_columns()) numbers.push_back(own.get(build));
+  for (const BuildColumn& own : build_columns()) {
+    numbers.push_back(own.get(build));
+    if (own.column.name == "seconds") numbers.back() += sum_of(more);
+  }
   for (const MedialMeasure& measure : medial_measures()) {
     if (in_sweeps(measure)) numbers.push_back(measure.get(judgement));
   }

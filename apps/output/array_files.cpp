@@ -40,11 +40,11 @@ std::size_t rows_of(const NamedArray& array) {
 
 // The .npy file of an array: its head is padded so that the numbers begin at a multiple of 64.
 std::string to_npy(const NamedArray& array) {
-  const bool real = std::holds_alternative<std::vector<double>>(array.values);
+  constexpr std::array kTypes{"<f8", "<u4", "<i4"};  // in the order of the variant
   const std::string shape = array.columns.size() == 1 ? fmt::format("({},)", rows_of(array))
                                                       : fmt::format("({}, {})", rows_of(array), array.columns.size());
   std::string head =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", real ? "<f8" : "<u4", shape);
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", kTypes.at(array.values.index()), shape);
   constexpr std::size_t kMagic = 10;
   head.append((64 - (kMagic + head.size() + 1) % 64) % 64, ' ');
   head.push_back('\n');
@@ -58,7 +58,7 @@ std::string to_npy(const NamedArray& array) {
           if constexpr (std::is_same_v<decltype(value), const double>) {
             append(bytes, std::bit_cast<std::uint64_t>(value));
           } else {
-            append(bytes, value);
+            append(bytes, static_cast<std::uint32_t>(value));
           }
         }
       },

@@ -12,7 +12,7 @@ namespace orchard::apps {
 struct NamedArray {
   std::string name;
   std::vector<std::string> columns;  // their names, in .csv files; one column makes an array of one dimension
-  std::variant<std::vector<double>, std::vector<std::uint32_t>> values;
+  std::variant<std::vector<double>, std::vector<std::uint32_t>, std::vector<std::int32_t>> values;
 };
 
 // The bytes of a .npz file: a ZIP archive without compression, with a .npy file (version 1.0, little-endian) for each

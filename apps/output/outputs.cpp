@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "input/input_file.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "output/stamp.h"
@@ -130,6 +131,16 @@ fs::path Outputs::add(const std::string& name, const std::string& what) {
   throw_if_interrupted();
   files_.emplace_back(name, what);
   return staging_ / name;
+}
+
+std::string Outputs::take(const std::string& name, bool keep) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(staging_ / name, ignored)) return {};
+  std::string bytes = content_of(staging_ / name);
+  if (keep) return bytes;
+  fs::remove(staging_ / name, ignored);
+  std::erase_if(files_, [&](const auto& file) { return file.first == name; });
+  return bytes;
 }
 
 void Outputs::add_report(nlohmann::json& report, const std::string& what) {

@@ -55,6 +55,10 @@ class Outputs {
   // The same without a word, for what may not succeed.
   std::filesystem::path staged(const std::string& name) const { return staging_ / name; }
 
+  // The bytes of a file that was added or staged; unless it is to be kept, it is then none of the outputs. Empty if
+  // there is no such file.
+  std::string take(const std::string& name, bool keep);
+
   // Where commit() puts it.
   std::filesystem::path place_of(const std::string& name) const { return destination_.folder / name; }
 

@@ -165,6 +165,22 @@ std::string dashes_of(const Look& look) {
   return *look.dashes == 0 ? std::string() : " stroke-dasharray=\"" + std::string(look.dashes) + "\"";
 }
 
+// Above the marks, right of the frame's middle to their left. A label that would lie upon an earlier one of the line is
+// left out.
+void draw_labels(std::ostream& out, const Series& series, const Axis& x, const Axis& y, const Look& look) {
+  const std::string style = std::string("font-size=\"10\" fill=\"") + look.color + "\"";
+  double last_x = -1e9, last_y = -1e9;
+  for (std::size_t i = 0; i < std::min({series.labels.size(), series.x.size(), series.y.size()}); ++i) {
+    if (!x.shows(series.x[i]) || !y.shows(series.y[i])) continue;
+    const double px = x.place(series.x[i]), py = y.place(series.y[i]);
+    const double width = kLetter * static_cast<double>(letters(series.labels[i]) + 1);
+    if (std::fabs(px - last_x) < width && std::fabs(py - last_y) < kLegendRow) continue;
+    last_x = px, last_y = py;
+    const bool right = px > kWidth / 2;
+    text(out, px + (right ? -5 : 5), py - 5, series.labels[i], (style + (right ? " text-anchor=\"end\"" : "")).c_str());
+  }
+}
+
 void draw_series(std::ostream& out, const Series& series, const Axis& x, const Axis& y, const Look& look) {
   const char* const color = look.color;
   const std::size_t count = std::min(series.x.size(), series.y.size());
@@ -194,6 +210,7 @@ void draw_series(std::ostream& out, const Series& series, const Axis& x, const A
   if (count > kMaxMarks) return;
   for (std::size_t i = 0; i < count; ++i)
     if (x.shows(series.x[i]) && y.shows(series.y[i])) draw_mark(out, x.place(series.x[i]), y.place(series.y[i]), look);
+  draw_labels(out, series, x, y, look);
 }
 
 // Where a plot's frame is.

@@ -16,6 +16,7 @@ struct Series {
   Kind kind = Kind::points;
   bool dashed = false;                // of a line: for what others are compared with; its marks are hollow
   std::optional<std::size_t> look{};  // which colour, dashes and mark, for the same in all pictures; else by its place
+  std::vector<std::string> labels{};  // of a line: what is written beside its first marks; empty: nothing
 };
 
 struct Plot {

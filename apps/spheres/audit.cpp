@@ -14,6 +14,7 @@
 #include "orchard/geometry/mesh_io.h"
 #include "output/outputs.h"
 #include "output/picture.h"
+#include "report/report_page.h"
 #include "spheres/audit_report.h"
 #include "spheres/particle_report.h"
 #include "spheres/sphere_files.h"
@@ -63,6 +64,7 @@ std::vector<std::string> names_of(const AuditCommand& command) {
   std::vector<std::string> names;
   for (const std::string& ending : sphere_view_endings("-audit")) names.push_back(named(command.mesh, ending));
   names.push_back(named(command.mesh, "-audit.png"));
+  names.push_back(page_name(command.mesh, "audit"));
   return names;
 }
 
@@ -109,8 +111,11 @@ void write(const AuditCommand& command, const Plan& plan, const Surface& surface
   if (!plan.destination) return;
   Outputs outputs(*plan.destination);
   write_sphere_views(command.mesh, "-audit", surface, set.spheres, outputs);
-  if (command.picture) draw_holes(command.mesh, command.up, surface, set.spheres, outputs);
+  if (command.picture || command.report) draw_holes(command.mesh, command.up, surface, set.spheres, outputs);
   outputs.add_report(report, "this report as JSON");
+  if (command.report)
+    write_report_page(page_name(command.mesh, "audit"),
+                      page_of(report, outputs.take(named(command.mesh, "-audit.png"), command.picture)), outputs);
   outputs.commit();
   if (!command.output.quiet && !command.output.json) outputs.print();
 }

@@ -8,6 +8,8 @@
 #include "orchard/spheretree/ball_tree.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/proven.h"
+#include "output/sphere_arrays.h"
+#include "report/report_page.h"
 #include "spheres/sphere_views.h"
 #include "spheres/spheres_output.h"
 
@@ -31,13 +33,14 @@ std::string bytes_of(const runtime::PackedSphereTree& packed) {
 
 std::vector<std::string> set_file_names(const SpheresCommand& command) {
   std::vector<std::string> endings = sphere_view_endings("-set");
-  for (const char* ending : {"-set.txt", "-set.csv", "-set-spheres.json", "-set.yml", "-set.urdf", kTreeEnding,
-                             "-set.png", "-set-curve.csv", "-set-curve.svg"})
+  for (const char* ending : {"-set.txt", "-set.csv", "-set.npz", "-set-spheres.json", "-set.yml", "-set.urdf",
+                             kTreeEnding, "-set.png", "-set-curve.csv", "-set-curve.svg"})
     endings.emplace_back(ending);
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   endings.emplace_back(kClippedEnding);
   std::vector<std::string> names;
   for (const std::string& ending : endings) names.push_back(named(command.mesh, ending));
+  names.push_back(page_name(command.mesh, "spheres"));
   return names;
 }
 
@@ -54,6 +57,7 @@ void write_set(const SpheresCommand& command, const Provenance& provenance, cons
         ("the spheres as text, " + columns).c_str());
   for (const std::string& format : command.exports) {
     if (format == "csv") write("-set.csv", to_csv(set.spheres, masses), "the same as a table");
+    if (format == "npz") write("-set.npz", to_npz(set_arrays(set.spheres, masses)), "the same as arrays for NumPy");
     if (format == "yaml") write("-set.yml", to_yaml(set.spheres, link_of(command)), "the same as cuRobo reads it");
     if (format == "urdf")
       write("-set.urdf", set_as_urdf(set.spheres, link_of(command), set.particles),

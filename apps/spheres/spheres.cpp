@@ -16,6 +16,7 @@
 #include "output/json_values.h"
 #include "output/outputs.h"
 #include "output/report.h"
+#include "report/report_page.h"
 #include "spheres/audit_report.h"
 #include "spheres/particle_report.h"
 #include "spheres/set_files.h"
@@ -164,6 +165,7 @@ ExitCode spheres(const SpheresCommand& command) {
   const double diagonal = surface.bounding_box().diagonal().norm();
   const Broken broken = apps::broken(options, set, diagonal);
   json report = report_of(command, solid, options, set, broken);
+  if (!command.curve.empty()) report["curve"] = curve_json(sets, diagonal);
 
   Outputs outputs(destination);
   const std::string promise = broken.none()
@@ -177,12 +179,15 @@ ExitCode spheres(const SpheresCommand& command) {
   write_tree(command, surface, set, outputs);
   write_curve(command, surface, sets, outputs);
   if (command.views) write_sphere_views(command.mesh, "-set", surface, set.spheres, outputs);
-  if (command.picture)
-    draw_spheres(named(command.mesh, "-set.png"), command.mesh.stem().string(), command.up, surface, set.spheres,
-                 outputs);
+  const std::string picture = named(command.mesh, "-set.png");
+  if (command.picture || command.report)
+    draw_spheres(picture, command.mesh.stem().string(), command.up, surface, set.spheres, outputs);
   if (!report["certified_mesh"].is_null())
     write_obj(outputs.add(report["certified_mesh"], "the mesh that the promise is about"), surface.mesh());
   outputs.add_report(report, "this report as JSON");
+  if (command.report)
+    write_report_page(page_name(command.mesh, "spheres"), page_of(report, outputs.take(picture, command.picture)),
+                      outputs);
   outputs.commit();
 
   if (command.output.json) fmt::print("{}\n", report.dump(2));

@@ -137,6 +137,23 @@ std::string set_as_urdf(std::span<const Sphere> spheres, const std::string& link
   return text.insert(text.find("    <collision>"), inertial);
 }
 
+json curve_json(std::span<const SphereSetBuild> sets, double diagonal) {
+  json rows = json::array();
+  for (const SphereSetBuild& set : sets) {
+    const CurveRow row = row_of(set, diagonal);
+    rows.push_back({{"spheres", set.spheres.size()},
+                    {"kept", set.kept},
+                    {"protrusion_max", row.protrusion_max},
+                    {"protrusion_mean", row.protrusion_mean},
+                    {"gap_max", row.gap_max},
+                    {"two_sided_mean", row.two_sided},
+                    {"outside_volume", row.outside},
+                    {"uncovered_volume", row.uncovered},
+                    {"union_volume", row.volume}});
+  }
+  return rows;
+}
+
 std::string curve_csv(std::span<const SphereSetBuild> sets, double diagonal) {
   std::string text =
       "spheres,kept,protrusion_max,protrusion_mean,gap_max,two_sided_mean,outside_volume,uncovered_volume,union_"

@@ -29,6 +29,7 @@ std::string set_as_urdf(std::span<const Sphere> spheres, const std::string& link
 
 // Sets of several numbers of spheres: a table, and a plot of how far off each is. Lengths over the diagonal, in
 // percent.
+nlohmann::json curve_json(std::span<const SphereSetBuild> sets, double diagonal);
 std::string curve_csv(std::span<const SphereSetBuild> sets, double diagonal);
 std::vector<plot::Plot> curve_plots(std::span<const SphereSetBuild> sets, double diagonal, const std::string& title);
 

@@ -11,6 +11,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_arrays.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 #include "thickness/thickness_report.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -23,13 +24,14 @@ namespace {
 using nlohmann::json;
 
 struct Names {
-  std::string ply, csv, svg, vtp, report;
+  std::string ply, csv, svg, vtp, report, page;
   explicit Names(const std::filesystem::path& mesh)
       : ply(named(mesh, "-thickness.ply")),
         csv(named(mesh, "-thickness.csv")),
         svg(named(mesh, "-thickness.svg")),
         vtp(named(mesh, "-thickness.vtp")),
-        report(named(mesh, "-thickness.json")) {}
+        report(named(mesh, "-thickness.json")),
+        page(page_name(mesh, "thickness")) {}
 };
 
 std::vector<double> in_degrees(std::vector<double> angles) {
@@ -85,7 +87,8 @@ ExitCode thickness(const ThicknessCommand& command) {
                                 .report = names.report,
                                 .provenance = provenance_of(command.output.run, std::array{command.mesh}),
                                 .force = command.output.force};
-  check_outputs(destination, std::array{names.ply, names.csv, names.svg, names.vtp}, std::array{command.mesh});
+  check_outputs(destination, std::array{names.ply, names.csv, names.svg, names.vtp, names.page},
+                std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
   ProgressBar bar(talk);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
@@ -109,6 +112,7 @@ ExitCode thickness(const ThicknessCommand& command) {
   document["seconds"] = seconds;
   add_solid_json(solid, document);
   outputs.add_report(document, "this report as JSON");
+  if (command.report) write_report_page(names.page, {.report = document}, outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", document.dump(2));
   if (talk) {

@@ -75,6 +75,9 @@ json to_json(const ThicknessReport& report) {
                 {"median", number(summary.median)},
                 {"max", number(summary.max)}}},
               {"max_error", summary.max_error}};
+  result["histogram"] = {{"bin_width", report.histogram.bin_width},
+                         {"thickness_area", report.histogram.thickness},
+                         {"ball_diameter_area", report.histogram.ball_diameter}};
   if (!report.below) return result;
   json regions = json::array();
   for (const ThinRegion& region : report.thin.regions)

@@ -21,10 +21,11 @@
 #include "output/picture.h"
 #include "output/promises.h"
 #include "output/report.h"
+#include "output/sphere_arrays.h"
 #include "output/sphere_lists.h"
+#include "report/report_page.h"
 #include "trees/build_cost.h"
 #include "trees/build_doubts.h"
-#include "trees/build_page.h"
 #include "trees/build_plot.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -37,17 +38,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPlotsInARowOfThePage = 2;  // three would be too small to read
-
 std::string_view as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const BuildCommand& command) {
-  std::vector<std::string> endings{".orchard",    ".sph",           "-levels.svg", "-build.vtm",  "-build.pvd",
-                                   "-build.pvsm", "-build-view.py", ".png",        "-report.html"};
-  for (const std::string& format : command.exports) endings.push_back(format == "urdf" ? ".urdf" : "-spheres.json");
+  std::vector<std::string> endings{".orchard",    ".sph",           "-levels.svg", "-build.vtm",        "-build.pvd",
+                                   "-build.pvsm", "-build-view.py", ".png",        "-build-report.html"};
+  for (const std::string& format : command.exports)
+    endings.push_back(format == "urdf"  ? ".urdf"
+                      : format == "npz" ? "-nodes.npz"
+                      : format == "csv" ? "-nodes.csv"
+                                        : "-spheres.json");
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces", "medial-contacts"})
     endings.push_back("-build-" + std::string(view) + ".vtp");
@@ -122,6 +125,8 @@ void write_trees(const BuildCommand& command, const Provenance& provenance, cons
   const SphereLists lists = levels_of(result.tree);
   for (const std::string& format : command.exports) {
     if (format == "json") write("-spheres.json", spheres_json(lists, provenance), "the spheres of each level");
+    if (format == "npz") write("-nodes.npz", to_npz(tree_arrays(result.tree)), "the spheres as arrays for NumPy");
+    if (format == "csv") write("-nodes.csv", to_csv(tree_arrays(result.tree)), "the spheres as a table");
     if (format == "urdf")
       write(".urdf", to_urdf(lists, command.export_level.value_or(result.tree.depth()), command.mesh.stem().string()),
             "a level's spheres as a link's collision geometry");
@@ -177,11 +182,9 @@ std::string write_views(const BuildCommand& command, const Surface&, const Spher
 #endif
 
 // The page, with the picture in it; a picture that was not asked for by itself is removed.
-void write_page(const BuildCommand& command, BuildPage page, const std::string& picture, Outputs& outputs) {
-  if (!picture.empty()) page.picture = content_of(outputs.staged(picture));
-  if (!picture.empty() && !command.picture) fs::remove(outputs.staged(picture));
-  write_file(outputs.add(named(command.mesh, "-report.html"), "this report as a page, with everything in it"),
-             to_html(page));
+void write_page(const BuildCommand& command, ReportPage page, const std::string& picture, Outputs& outputs) {
+  if (!picture.empty()) page.pictures.push_back(outputs.take(picture, command.picture));
+  write_report_page(page_name(command.mesh, "build"), page, outputs);
 }
 
 BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, double triangles) {
@@ -294,15 +297,7 @@ ExitCode build(const BuildCommand& command) {
   const std::string certified = certificate(solid, outputs.place_of(named(command.mesh, ending ? ending : "")));
   const std::string doubts = build_doubts(solid, result);
   if (command.page)
-    write_page(command,
-               {command.mesh.stem().string(),
-                command.output.run.typed,
-                certified,
-                doubts,
-                report,
-                plot::to_svg(plots, kPlotsInARowOfThePage),
-                {}},
-               picture, outputs);
+    write_page(command, {.report = report, .certificate = certified, .doubts = doubts}, picture, outputs);
   outputs.commit();
 
   if (command.output.json) fmt::print("{}\n", report.dump(2));

@@ -2,7 +2,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "command_line/commands.h"
 #include "command_line/console.h"
@@ -17,6 +20,8 @@
 #include "output/outputs.h"
 #include "output/sphere_lists.h"
 #include "output/stamp.h"
+#include "report/report_page.h"
+#include "report/report_plots.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -83,12 +88,12 @@ Compared measure_lists(const Surface& surface, const std::filesystem::path& file
 // What can be refused before anything is measured.
 std::vector<SphereLists> check_and_read(const CompareCommand& command) {
   check_input(command.mesh);
-  for (const std::filesystem::path& file : command.trees) check_input(file);
-  std::vector<std::filesystem::path> inputs = command.trees;
+  for (const std::filesystem::path& file : command.files) check_input(file);
+  std::vector<std::filesystem::path> inputs = command.files;
   inputs.push_back(command.mesh);
   if (!command.plot.empty()) check_output(command.plot, inputs);
   std::vector<SphereLists> all;
-  for (const std::filesystem::path& file : command.trees) all.push_back(read_spheres(file));
+  for (const std::filesystem::path& file : command.files) all.push_back(read_spheres(file));
   return all;
 }
 
@@ -126,47 +131,47 @@ void print(const std::vector<Compared>& all, std::size_t triangles, double radiu
     }
 }
 
-// Without the ending, where that tells the files apart all the same.
-std::string short_name(const Compared& compared, const std::vector<Compared>& all) {
-  const auto stem = [](const Compared& one) { return std::filesystem::path(one.name).stem().string(); };
-  const auto same =
-      std::count_if(all.begin(), all.end(), [&](const Compared& other) { return stem(other) == stem(compared); });
-  return same > 1 ? compared.name : stem(compared);
+std::string chart(const json& report, const std::string& title) {
+  std::vector<plot::Plot> plots = compare_plots(report);
+  for (plot::Plot& plot : plots) plot.title = title + ": " + plot.title;
+  return plot::to_svg(plots, 3);
 }
 
-std::string chart(const std::vector<Compared>& all, const std::string& title, double radius) {
-  std::vector<plot::Plot> plots;
-  const auto add = [&](const std::string& figure, const std::string& over, const auto& value) {
-    plot::Plot& plot = plots.emplace_back();
-    plot.title = title + ": " + figure;
-    plot.x_label = "level";
-    plot.y_label = over;
-    plot.log_y = true;
-    for (const Compared& compared : all) {
-      plot::Series& series = plot.series.emplace_back();
-      series.name = short_name(compared, all);
-      series.kind = plot::Series::Kind::line;
-      for (std::size_t level = 0; level < compared.levels.size(); ++level) {
-        if (level >= plot.x_names.size()) plot.x_names.push_back(std::to_string(level));
-        series.x.push_back(static_cast<double>(level));
-        series.y.push_back(value(compared.levels[level]));
-      }
-    }
-  };
-  const std::string over_radius = "over the bounding radius";
-  add("mean inaccuracy", over_radius, [&](const LevelRow& row) { return row.mean / radius; });
-  add("maximum inaccuracy", over_radius, [&](const LevelRow& row) { return row.max / radius; });
-  add("volume outside", "over the solid's volume", [](const LevelRow& row) { return row.outside; });
-  return plot::to_svg(plots, 3);
+bool is_tree(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".orchard" || extension == ".sph" || extension == ".json";
+}
+
+// Whether the files are axes. Throws InputError for some of each, and for options that belong to the others.
+bool are_axes(const CompareCommand& command) {
+  const auto trees = std::count_if(command.files.begin(), command.files.end(), is_tree);
+  if (trees == 0) return true;
+  if (trees < std::ssize(command.files))
+    throw InputError(
+        "compare: some files are sphere-trees (.orchard, .sph, .json) and some are medial axes; compare them apart");
+  for (const char* option : {"vertices", "csv", "quality-samples", "samples", "seed", "connect", "up"})
+    if (std::find(command.given.begin(), command.given.end(), option) != command.given.end())
+      throw InputError(fmt::format("--{} has no effect on sphere-trees; it is for medial axes", option));
+  return false;
 }
 
 }  // namespace
 
 void compare(const CompareCommand& command) {
+  if (command.report && command.folder.empty())
+    throw InputError("--report needs -o FOLDER, where the page is written to");
+  if (are_axes(command)) {
+    compare_axes(command);
+    return;
+  }
   const std::vector<SphereLists> lists = check_and_read(command);
-  std::vector<std::filesystem::path> inputs = command.trees;
+  std::vector<std::filesystem::path> inputs = command.files;
   inputs.insert(inputs.begin(), command.mesh);
-  const Provenance provenance = provenance_of(command.output.run, inputs);
+  const Destination destination{.folder = command.folder,
+                                .report = named(command.mesh, "-compare.json"),
+                                .provenance = provenance_of(command.output.run, inputs),
+                                .force = command.output.force};
+  if (!command.folder.empty()) check_outputs(destination, std::array{page_name(command.mesh, "compare")}, inputs);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
@@ -175,20 +180,28 @@ void compare(const CompareCommand& command) {
   const Surface& surface = solid.surface;
   const double radius = surface.bounding_radius();
   std::vector<Compared> all;
-  for (std::size_t i = 0; i < lists.size(); ++i) all.push_back(measure_lists(surface, command.trees[i], lists[i]));
+  for (std::size_t i = 0; i < lists.size(); ++i) all.push_back(measure_lists(surface, command.files[i], lists[i]));
   bar.clear();
+  json report = to_json(all, radius);
+  add_solid_json(solid, report);
+  report["provenance"] = to_json(destination.provenance);
   if (!command.plot.empty()) {
     const Writing writing;
     write_file(command.plot,
-               stamped(chart(all, command.mesh.stem().string(), radius), "plot.svg", line_of(provenance)));
+               stamped(chart(report, command.mesh.stem().string()), "plot.svg", line_of(destination.provenance)));
+  }
+  std::optional<Outputs> outputs;
+  if (!command.folder.empty()) {
+    outputs.emplace(destination);
+    outputs->add_report(report, "this report as JSON");
+    if (command.report) write_report_page(page_name(command.mesh, "compare"), {.report = report}, *outputs);
+    outputs->commit();
   }
   if (command.output.json) {
-    json report = to_json(all, radius);
-    add_solid_json(solid, report);
-    report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(all, surface.mesh().triangles.size(), radius);
+    if (outputs) outputs->print();
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());
   }
 }

@@ -2,9 +2,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "command_line/commands.h"
@@ -16,6 +18,8 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "output/outputs.h"
 #include "output/stamp.h"
+#include "report/report_page.h"
+#include "report/report_plots.h"
 #include "svg_plot.h"
 #include "trees/profile_poses.h"
 
@@ -192,46 +196,9 @@ void print(const json& report) {
 }
 
 std::string chart(const json& report, const std::string& title) {
-  using plot::Series;
-  plot::Plot decided{.title = title + ": decided",
-                     .x_label = "level",
-                     .y_label = "% of those apart that the roots leave",
-                     .series = {},
-                     .levels = {100},
-                     .x_names = {}};
-  plot::Plot bounds{.title = title + ": bound of \"maybe\"",
-                    .x_label = "separation bound / R",
-                    .y_label = "poses",
-                    .series = {},
-                    .levels = {},
-                    .x_names = {}};
-  plot::Plot trade{.title = title + ": accuracy against time",
-                   .x_label = "microseconds, median",
-                   .y_label = "separation bound / R, median",
-                   .log_y = true,
-                   .series = {},
-                   .levels = {},
-                   .x_names = {}};
-  Series share{"", {}, {}, Series::Kind::line}, curve{"", {}, {}, Series::Kind::line};
-  for (const json& level : report["levels"]) {
-    const std::string name = level["level"];
-    share.x.push_back(static_cast<double>(decided.x_names.size()));
-    share.y.push_back(100 * level["decided_of_left_by_roots"].get<double>());
-    decided.x_names.push_back(name);
-    if (level["bound_over_radius"].is_null() || name == "0" || name == "exact") continue;
-    curve.x.push_back(level["microseconds"]["median"]);
-    curve.y.push_back(level["bound_over_radius"]["median"]);
-    Series line{"level " + name, {}, {}, Series::Kind::line};
-    const double width = level["bound_histogram_bin"];
-    for (const json& count : level["bound_histogram"]) {
-      line.x.push_back((static_cast<double>(line.x.size()) + 0.5) * width);
-      line.y.push_back(count);
-    }
-    bounds.series.push_back(line);
-  }
-  decided.series = {share};
-  trade.series = {curve};
-  return plot::to_svg({decided, bounds, trade}, 3);
+  std::vector<plot::Plot> plots = profile_plots(report);
+  for (plot::Plot& plot : plots) plot.title = title + ": " + plot.title;
+  return plot::to_svg(plots, 3);
 }
 
 // Every pose with what each level said, for other programs: a row a level.
@@ -268,6 +235,8 @@ std::string table(const std::vector<PosePair>& poses, const std::vector<PoseProf
 }  // namespace
 
 void profile(const ProfileCommand& command) {
+  if (command.report && command.folder.empty())
+    throw InputError("--report needs -o FOLDER, where the page is written to");
   const std::filesystem::path& second = command.b.empty() ? command.a : command.b;
   check_input(command.a);
   check_input(second);
@@ -275,6 +244,11 @@ void profile(const ProfileCommand& command) {
   for (const auto* file : {&command.plot, &command.csv})
     if (!file->empty()) check_output(*file, inputs);
   const Provenance provenance = provenance_of(command.output.run, inputs);
+  const Destination destination{.folder = command.folder,
+                                .report = named(command.a, "-profile.json"),
+                                .provenance = provenance,
+                                .force = command.output.force};
+  if (!command.folder.empty()) check_outputs(destination, std::array{page_name(command.a, "profile")}, inputs);
   const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(second);
   if (a.triangles.empty() || b.triangles.empty())
     throw InputError(fmt::format("{}: has no triangles, so nothing tells which poses touch; build it again",
@@ -307,10 +281,18 @@ void profile(const ProfileCommand& command) {
       write_file(command.plot, stamped(chart(report, command.a.filename().string()), "plot.svg", line));
     if (!command.csv.empty()) write_file(command.csv, stamped(table(poses, profiles, radius), "table.csv", line));
   }
+  std::optional<Outputs> outputs;
+  if (!command.folder.empty()) {
+    outputs.emplace(destination);
+    outputs->add_report(report, "this report as JSON");
+    if (command.report) write_report_page(page_name(command.a, "profile"), {.report = report}, *outputs);
+    outputs->commit();
+  }
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(report);
+    if (outputs) outputs->print();
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());
     if (!command.csv.empty()) fmt::print("  {}  (every pose)\n", command.csv.string());
   }

@@ -17,6 +17,7 @@
 #include "orchard/geometry/error.h"
 #include "output/outputs.h"
 #include "paraview.h"
+#include "report/report_page.h"
 #include "simulation.h"
 
 namespace orchard::apps {
@@ -60,7 +61,8 @@ Recording read_recording(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> names_of(const SimulateCommand& command, std::size_t frames) {
-  std::vector<std::string> names{command.scene + "-trace.csv", command.scene + "-times.csv"};
+  std::vector<std::string> names{command.scene + "-trace.csv", command.scene + "-times.csv",
+                                 page_name(command.scene, "simulate")};
   if (!command.views) return names;
   names.push_back(command.scene + "-run.pvd");
   for (std::size_t frame = 0; frame < frames; ++frame)
@@ -229,6 +231,7 @@ void simulate(const SimulateCommand& asked) {
   report["provenance"] = to_json(destination.provenance);
   if (outputs) {
     outputs->add_report(report, "this report as JSON");
+    if (command.report) write_report_page(page_name(command.scene, "simulate"), {.report = report}, *outputs);
     outputs->commit();
   }
   if (!command.record.empty()) {

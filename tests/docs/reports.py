@@ -73,6 +73,8 @@ RUNS = [
     ("voronoi", "voronoi box.obj --samples 100"),
     ("voronoi", "voronoi points.xyz --compare"),
     ("compare", "compare box.obj tree/box.orchard octree/box.sph"),
+    ("compare_axes", "compare box.obj axis/box.ma few/box-simplified.ma --vertices 15 --samples 300 --quality-samples 500"),
+    ("medial_sweep", "medial box.obj -o swept --samples 300 --sweep vertices=10,20 --keep --quality-samples 500"),
     ("verify", "verify tree/box.orchard box.obj"),
     ("collide", ["collide", "tree/box.orchard", "tree/box.orchard", "--pose", "1.5 0 0 1 0 0 0"]),
     ("profile", "profile tree/box.orchard --flights 5"),
@@ -90,7 +92,11 @@ def faults_of(program, schema, folder):
             yield f"{words}: exit code {run.returncode}: {run.stderr.strip()}"
             continue
         validator = jsonschema.Draft202012Validator({**schema, "$ref": f"#/$defs/{definition}"})
-        for error in validator.iter_errors(json.loads(run.stdout)):
+        report = json.loads(run.stdout)
+        described = set(definitions["measures"]["properties"])
+        for key in sorted(set(report.get("quality", described)) ^ described):
+            yield f"{' '.join(words)}: the measure {key} is not in both the report and the schema's measures"
+        for error in validator.iter_errors(report):
             path = ".".join(str(part) for part in error.absolute_path)
             yield f"{' '.join(words)}: {path}: {error.message[:300]}"
     unused = set(definitions) - {definition for definition, _ in RUNS} - referenced(schema)

@@ -10,6 +10,7 @@
 #include "input/input_file.h"
 #include "orchard/geometry/error.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 #include "robot/command/robot_files.h"
 #include "robot/command/robot_report.h"
 #include "spheres/sphere_views.h"
@@ -34,7 +35,7 @@ std::optional<Destination> destination_of(const AuditCommand& command, const Pro
                           .report = named(command.mesh, "-audit.json"),
                           .provenance = provenance,
                           .force = command.output.force};
-  std::vector<std::string> names{named(command.mesh, "-audit.png")};
+  std::vector<std::string> names{named(command.mesh, "-audit.png"), page_name(command.mesh, "audit")};
   for (const std::string& ending : sphere_view_endings(kPrefix)) names.push_back(named(command.mesh, ending));
   check_outputs(destination, names, inputs_of(command));
   return destination;
@@ -90,8 +91,11 @@ void write(const AuditCommand& command, const robot::Robot& robot, const std::ve
   const PosedRobot pose = posed(robot, shapes, set.groups, robot::joint_values(robot, std::map<std::string, double>{}));
   const Surface surface(pose.mesh);
   write_sphere_views(command.mesh, kPrefix, surface, pose.spheres, outputs);
-  if (command.picture) draw_holes(command.mesh, command.up, surface, pose.spheres, outputs);
+  if (command.picture || command.report) draw_holes(command.mesh, command.up, surface, pose.spheres, outputs);
   outputs.add_report(report, "this report as JSON");
+  if (command.report)
+    write_report_page(page_name(command.mesh, "audit"),
+                      page_of(report, outputs.take(named(command.mesh, "-audit.png"), command.picture)), outputs);
   outputs.commit();
   if (!command.output.quiet && !command.output.json) outputs.print();
 }

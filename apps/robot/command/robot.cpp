@@ -11,6 +11,7 @@
 #include "orchard/geometry/error.h"
 #include "output/outputs.h"
 #include "output/promises.h"
+#include "report/report_page.h"
 #include "robot/command/robot_files.h"
 #include "robot/command/robot_report.h"
 #include "robot/link_fit.h"
@@ -47,7 +48,9 @@ Destination destination_of(const RobotCommand& command) {
                           .report = named(command.urdf, "-robot.json"),
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
-  check_outputs(destination, robot_file_names(command), inputs);
+  std::vector<std::string> names = robot_file_names(command);
+  names.push_back(page_name(command.urdf, "robot"));
+  check_outputs(destination, names, inputs);
   return destination;
 }
 
@@ -226,6 +229,9 @@ ExitCode robot(const RobotCommand& command) {
   json report = report_of(made);
   report["seconds"] = watch.seconds();
   outputs.add_report(report, "this report as JSON");
+  if (command.report)
+    write_report_page(page_name(command.urdf, "robot"),
+                      page_of(report, outputs.take(named(command.urdf, "-robot.png"), true)), outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (talk) {

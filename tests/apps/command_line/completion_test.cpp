@@ -37,6 +37,9 @@ TEST(Completion, OffersBashWhatTheHelpSays) {
   EXPECT_EQ(offered(here, script, "orchard build --method a"), (Words{"annealing"}));
   EXPECT_EQ(offered(here, script, "orchard build --gaps \"\""), (Words{"connected", "loose", "strict", "none"}));
   EXPECT_EQ(offered(here, script, "orchard completion \"\""), (Words{"bash", "zsh"}));
+  EXPECT_EQ(offered(here, script, "orchard medial --sweep ver"), (Words{"vertices="}));
+  EXPECT_EQ(offered(here, script, "orchard medial --sort-by radius"), (Words{"radius_error_max", "radius_error_mean"}));
+  EXPECT_EQ(offered(here, script, "orchard view --color st"), (Words{"structure", "structure_kind"}));
   for (const char* command :
        {"build", "medial", "view", "voronoi", "verify", "inspect", "sample", "compare", "collide"}) {
     const std::string help = here.run({command, "--help"}).out;

@@ -203,10 +203,10 @@ TEST(Build, WritesAPageThatNeedsNothingElse) {
   const std::string file = here.add("a&b.obj", mesh);
   const Finished run = here.run(test::quick_build(file, (here / "out").string(), {"--report"}));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const std::string page = here.files("out")["a&b-report.html"];
+  const std::string page = here.files("out")["a&b-build-report.html"];
   ASSERT_FALSE(page.empty());
-  for (const char* part : {"<h1>a&amp;b</h1>", "filled 1 hole", "conservative: every point of the repaired mesh",
-                           "<svg", "<h2>Time</h2>", "<h2>Options</h2>", "octree", "inaccuracy"})
+  for (const char* part : {"<h1>a&amp;b: build</h1>", "filled 1 hole", "conservative: every point of the repaired mesh",
+                           "<svg", "<h3>seconds</h3>", "<h3>options</h3>", "octree", "inaccuracy"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   for (std::size_t svg = page.find("<svg"); svg != std::string::npos; svg = page.find("<svg", svg + 1))
     EXPECT_LT(page.find("viewBox=\"0 0 ", svg), page.find('>', svg)) << "it would be cut off";

@@ -1,0 +1,127 @@
+#include "command_line/sweep_option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "command_line/add_commands.h"
+#include "command_line/list_option.h"
+#include "command_line/text.h"
+#include "orchard/geometry/error.h"
+
+namespace orchard::apps {
+namespace {
+
+// Options with values that no row of a sweep depends on, or that a sweep does not take.
+constexpr std::array kNotSwept{"output",   "sweep", "sort-by",        "axis",          "beside", "export",
+                               "threads",  "up",    "envelope",       "envelope-cell", "points", "diagram",
+                               "features", "side",  "outside-radius", "tree-depth"};
+// Flags that concern the sweep, not its runs.
+constexpr std::array kOfTheSweep{"keep", "report", "picture", "no-views", "quiet", "json", "force"};
+
+template <class Names>
+bool among(const std::string& name, const Names& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_swept(const std::string& name, const std::vector<SweptOption>& swept) {
+  return std::any_of(swept.begin(), swept.end(), [&](const SweptOption& one) { return one.name == name; });
+}
+
+SweptOption swept_option(const CLI::App& command, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw InputError("--sweep " + text + ": expected NAME=VALUE,VALUE,..");
+  std::string name = text.substr(0, equals);
+  if (name == "prune") name = "prune-angle";
+  const std::vector<std::string> names = sweepable_options(command);
+  if (!among(name, names))
+    throw InputError(
+        fmt::format("--sweep: no option with values to compare is called {}; there are {}", name, joined(names, ", ")));
+  auto values = list_items(text.substr(equals + 1));
+  if (!values) throw InputError(fmt::format("--sweep {}: {}", text, kEmptyItem));
+  for (const std::string& value : *values)
+    if (std::count(values->begin(), values->end(), value) > 1)
+      throw InputError(fmt::format("--sweep {}: {} is there twice", text, value));
+  return {name, std::move(*values)};
+}
+
+// What was typed of a command, without what is swept and what concerns the sweep.
+std::vector<std::string> words_of_runs(const CLI::App& command, const std::vector<SweptOption>& swept) {
+  std::vector<std::string> words{command.get_name()};
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string name = option->get_lnames().empty() ? "" : option->get_lnames().front();
+    if (name == "sweep" || name == "sort-by" || among(name, kOfTheSweep) || is_swept(name, swept)) continue;
+    if (name == "raw" && is_swept("refine", swept)) continue;  // refused where all contradictions are
+    const bool flag = option->get_expected_min() == 0;
+    for (const std::string& value : option->results()) {
+      if (name.empty())
+        words.push_back(value);
+      else if (flag && (value == "true" || value == "false"))
+        words.push_back("--" + name);
+      else
+        words.push_back("--" + name + "=" + value);
+    }
+  }
+  return words;
+}
+
+MedialCommand parsed_run(std::vector<std::string> words, const std::string& combination) {
+  CLI::App app{"", "orchard"};
+  Request request;
+  add_medial(app, request);
+  request.typed = "orchard " + joined(words);
+  std::reverse(words.begin(), words.end());
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("--sweep {}: {}", combination, error.what()));
+  }
+  return std::move(request.medial);
+}
+
+// Counts through all combinations, the last option fastest; false after the last one.
+bool next_combination(std::vector<std::size_t>& choice, const std::vector<SweptOption>& swept) {
+  for (std::size_t d = choice.size(); d-- > 0;) {
+    if (++choice[d] < swept[d].values.size()) return true;
+    choice[d] = 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> sweepable_options(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty() || option->get_expected_min() == 0) continue;
+    if (!among(option->get_lnames().front(), kNotSwept)) names.push_back(option->get_lnames().front());
+  }
+  return names;
+}
+
+void expand_sweep(const CLI::App& command, MedialCommand& medial) {
+  if (medial.sweep.empty()) return;
+  for (const std::string& text : medial.sweep) medial.swept.push_back(swept_option(command, text));
+  for (const SweptOption& one : medial.swept)
+    if (std::count_if(medial.swept.begin(), medial.swept.end(),
+                      [&](const SweptOption& o) { return o.name == one.name; }) > 1)
+      throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", one.name));
+  const std::vector<std::string> typed = words_of_runs(command, medial.swept);
+  std::vector<std::size_t> choice(medial.swept.size(), 0);
+  do {
+    std::vector<std::string> words = typed, values;
+    std::string combination;
+    for (std::size_t d = 0; d < choice.size(); ++d) {
+      const auto& [name, of_option] = medial.swept[d];
+      words.push_back("--" + name + "=" + of_option[choice[d]]);
+      combination += (d > 0 ? "," : "") + name + "=" + of_option[choice[d]];
+      values.push_back(of_option[choice[d]]);
+    }
+    MedialCommand& run = medial.runs.emplace_back(parsed_run(std::move(words), combination));
+    run.choice = std::move(values);
+  } while (next_combination(choice, medial.swept));
+}
+
+}  // namespace orchard::apps
