@@ -47,11 +47,11 @@ struct BodyPart {
   Pose local{};
 };
 
-// What the application knows of a body at the time of a step. The bounds are a promise about the body's origin,
-// pose.translation: see Motion in motion.h, which has the same fields. The scale must not change until the promise
-// expires. A state with a pose and a velocity and nothing else promises straight motion without end.
+// The state of a body at the time of a step, and bounds on its motion until an expiry. The bounds are about the body's
+// origin, pose.translation: see Motion in motion.h, which has the same fields. The scale must not change until the
+// bounds expire. A state with a pose and a velocity and nothing else says that the body moves straight for ever.
 // DetectorOptions::watch, which is on by default if a source gives the states, finds at every step the bodies that have
-// not kept their promise.
+// exceeded their bounds.
 struct BodyState {
   Pose pose{};
   Vec3 velocity{};
@@ -59,7 +59,7 @@ struct BodyState {
   double drift = 0;
   Vec3 half_space{};
   double expiry = std::numeric_limits<double>::infinity();
-  // An upper bound on the angular speed until the promise expires, in radians per second, at least 0. Set it for bodies
+  // An upper bound on the angular speed until the bounds expire, in radians per second, at least 0. Set it for bodies
   // whose origin is not in their middle: if there is no bound (infinity), the farthest point of such a body may soon be
   // on any side of its origin.
   double angular_speed = std::numeric_limits<double>::infinity();
@@ -86,8 +86,8 @@ struct BodyOptions {
   // static.
   BodyFilter filter{};
   // Above 0, contacts between two steps are found, too, by time_of_impact() from pose to pose of the body and of its
-  // parts: the centre of each part moves straight, and the rotation uses the smallest angle. The value promises that no
-  // origin moves faster than this relative to any body that this body may meet, in lengths per second. If the scale
+  // parts: the centre of each part moves straight, and the rotation uses the smallest angle. No origin
+  // may move faster than this value, in lengths per second, relative to any body that this body may meet. If the scale
   // changes during a step, the result is `possible`.
   double continuous_speed = 0;
   // The distance from the origin at scale 1 within which the body always lies, whatever its parts do. It avoids a
@@ -109,12 +109,12 @@ struct DetectorOptions {
   double time_step = 0.01;    // The time between steps (dt_d), above 0, usually a frame; see BroadPhaseOptions.
   double start = 0;           // The time of step 0.
   double position_slack = 0;  // The error of positions; see BroadPhaseOptions.
-  // Whether each step asks for the state of every moving body and compares it with the promise (4.4). A promise that
-  // does not hold is cancelled in time for this step, counted, and named in Frame::broken, and no contact is missed.
-  // Without it, the detector asks for a body only if something depends on it, which costs less
-  // (docs/guide/detector.md); but contacts are missed silently unless every promise is kept or cancel() is called.
-  // Without a value it is on with a state source, and off if the detector keeps the states, because set_state() cancels
-  // what it changes.
+  // Whether each step asks for the state of every moving body and compares it with the motion bounds (4.4). Bounds that
+  // do not hold are cancelled in time for this step and counted, and Frame::broken names the body; so no contact is
+  // missed. Without it, the detector asks for a body only if a result depends on it, which costs less
+  // (docs/guide/detector.md). Contacts are then missed silently if a body exceeds its bounds and cancel() is not
+  // called. Without a value, it is on with a state source, and off if the detector keeps the states, because
+  // set_state() cancels the bounds that it changes.
   std::optional<bool> watch{};
   // The number of successive steps with a certain "no" after which a contact ends, at least 1. Raise it to debounce
   // pairs that jitter at contact.
@@ -209,10 +209,10 @@ struct Frame {
   std::uint64_t motions_asked = 0;  // Motions asked for; each costs kMotionWork.
   unsigned incomplete_from = kNoClass;  // Set if the broad phase was interrupted: see Advance.
   std::size_t left_over = 0;
-  // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its
-  // promise still holds, in possible pairs.
+  // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its last
+  // bounds still hold, in possible pairs.
   std::span<const BodyIndex> refused;
-  std::span<const BodyIndex> broken;  // Bodies whose promise did not hold and was cancelled (watch).
+  std::span<const BodyIndex> broken;  // Bodies that exceeded their bounds, which were cancelled (watch).
   // Nothing was done: the time is not valid (see Advance), or step() was called from within itself.
   bool time_refused = false;
   // There was not enough memory for this step. The detector answers nothing after that; construct another one.
@@ -303,14 +303,14 @@ class Detector {
   // Removes a body. This function and the following ones change nothing and return false if the body does not exist or
   // an argument is not valid.
   bool remove(BodyId body);
-  // Cancels the last promise of the body.
+  // Cancels the motion bounds of the body.
   bool cancel(BodyId body);
   // Moves the body to the place that the source gives from now on. A contact ends, and no sweep leads to the new place.
   bool teleport(BodyId body);
   bool move_static(BodyId body, const Pose& pose);
   // Sets the state of a body, if the detector keeps the states. From the time of the last step on (before the first
   // step: from `start`), the body has this state and moves straight at `velocity` without turning, until the next
-  // change. Without `watch` this cancels the promise; with it, a promise is cancelled only if it does not hold. A
+  // change. Without `watch` this cancels the bounds; with it, bounds are cancelled only if they do not hold. A
   // sleeping body continues to sleep at the new place.
   bool set_state(BodyId body, const BodyState& state);
   // Sets the velocity of a body from its present place on.

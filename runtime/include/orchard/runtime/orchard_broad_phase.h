@@ -49,8 +49,8 @@ typedef void (*orchard_motion_source)(void* context, double time, const uint32_t
 /* A callback that returns 0 if the two bodies are no pair. a.index < b.index. */
 typedef int (*orchard_pair_filter)(void* context, orchard_body a, orchard_body b);
 
-/* A promise, given at bound_time, that the motion given at `time` does not keep, and by how much it exceeds each
- * bound: two lengths, two speeds, a length; 0 if the bound holds. See motion.h. */
+/* Motion bounds, given at bound_time, that the motion given at `time` does not keep, and by how much it exceeds each of
+ * them: two lengths, two speeds, a length; 0 if the bound holds. See motion.h. */
 typedef struct orchard_motion_bound_violation {
   orchard_body body;
   double bound_time, time;
@@ -63,8 +63,8 @@ typedef struct orchard_broad_phase_options {
   double time_step, start;
   uint32_t window; /* 0: the broad phase chooses. */
   double position_slack;
-  int validate;                         /* For debugging: compares every motion with the earlier promise. */
-  orchard_motion_bound_listener broken; /* Null: broken promises are only counted. */
+  int validate;                         /* For debugging: compares every motion with the bounds given before. */
+  orchard_motion_bound_listener broken; /* Null: violations are only counted. */
   void* broken_context;
   /* Runs updates of all windows of many bodies as jobs: run(run_context, count, job, data) calls job(data, i) for each
    * i < count, on any threads, and returns when all calls have returned. Several jobs call the source at once then.

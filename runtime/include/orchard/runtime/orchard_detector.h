@@ -19,7 +19,7 @@ typedef struct orchard_detector orchard_detector;
 typedef uint32_t orchard_shape;
 #define ORCHARD_NO_SHAPE 0xffffffffu
 
-/* What is known of a body at the time of a step. The promise (velocity .. expiry) is about pose.translation. */
+/* The state of a body at the time of a step. The motion bounds (velocity .. expiry) are about pose.translation. */
 typedef struct orchard_body_state {
   orchard_pose pose;
   double velocity[3];
@@ -54,8 +54,8 @@ typedef void (*orchard_run_jobs)(void* context, size_t count, void (*job)(void* 
 
 typedef struct orchard_detector_options {
   double time_step, start, position_slack;
-  /* Whether each step compares every moving body with its promise. 0: no comparison, and contacts are missed silently
-   * if a promise is not kept. Below 0, the default: with a state source only. */
+  /* Whether each step compares every moving body with its motion bounds. 0: no comparison, and contacts are missed
+   * silently if bounds are not kept. Below 0, the default: with a state source only. */
   int watch;
   uint32_t steps_to_end;
   size_t max_unfinished;
