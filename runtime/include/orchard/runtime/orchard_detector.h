@@ -153,8 +153,9 @@ orchard_frame orchard_detector_step(orchard_detector* detector, double time, orc
 orchard_frame orchard_detector_step_latest(orchard_detector* detector, double time, orchard_budget budget);
 /* Returns an event of the last step; index < events. */
 orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index);
-/* Returns where the bodies of an event touch, at up to four points, and how they come apart: see Detector::manifold.
- * It has no points and the answer "maybe" if the event's answer is not yes or its bodies do not exist any more. */
+/* Returns up to four points at which the bodies of an event touch, and the translation that separates them: see
+ * Detector::manifold. It has no points and the answer "maybe" if the event's answer is not yes or its bodies do not
+ * exist any more. */
 orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t index);
 /* Queries about all bodies at the last step: see Detector::cast_ray. They return 1, or 0 if nothing is found. A null
  * filter includes all bodies. */
