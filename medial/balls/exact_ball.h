@@ -34,7 +34,7 @@ double ball_error(const Surface& surface, const Point& center, double radius, do
 // A ball, and its part in one that is interpolated.
 struct PartOfBall {
   const ExactBall* ball;
-  double part;  // they sum up to 1
+  double part;  // the parts sum up to 1
 };
 // Returns the same for a ball between the given balls, whose radii are their distances to the surface. Bounds on its
 // distance to the surface usually make a query unnecessary: it is at most the distance to their contacts. From below,
