@@ -78,7 +78,7 @@ class PieceDropper {
     return joints_[p] == 1 && (reach_[p] <= kPieceReach * complex_.balls[joint_[p]].radius || radius_[p] == 0);
   }
 
-  // The small ones, but for those that cover something alone.
+  // Chooses the small pieces to remove: not those that alone cover something that `guard` needs.
   void choose(const CoverGuard* guard) {
     goes_.assign(complex_.edges.size(), kNone);
     for (Index e = 0; e < complex_.edges.size(); ++e) {
