@@ -62,7 +62,8 @@ std::optional<Interval> part_in_cone(const TangentPlace& place, const Point& a, 
   return Interval{roots[0], roots[1]};
 }
 
-// Along a line the radius falls and then rises. So within the cone it is lowest at the place nearest to its minimum.
+// Tries the places of an edge. Along a line the radius falls and then rises, so within the cone it is least at the
+// place nearest to its minimum.
 void take_edge(Touch& best, const TangentPlace& place, const Point& a, const Point& b) {
   const Vector e = b - a, way = place.position - a;
   const double squared = e.squaredNorm();
@@ -84,7 +85,8 @@ void take_edge(Touch& best, const TangentPlace& place, const Point& a, const Poi
 Point lowest_of_plane(const TangentPlace& place, const Vector& up, double height) {
   const double cosine = place.normal.dot(up);
   if ((1 + cosine) / 2 >= place.sine * place.sine) return place.position - height / (1 + cosine) * (place.normal + up);
-  // The ball would touch the plane outside the cone, so the place is on the border of the cone, straight down.
+  // The ball would touch the plane outside the cone, so the place is on the border of the cone, in the steepest
+  // direction down to the plane.
   const Vector level = (up - cosine * place.normal).normalized();
   const Vector down = -place.sine * place.normal - std::sqrt(1 - place.sine * place.sine) * level;
   const double steepness = -down.dot(up);
