@@ -25,8 +25,7 @@ namespace {
 constexpr Index kSlice = 1u << 14;  // points or vertices that a thread looks at at once
 constexpr double kInsertion = 0.8;  // its part of the time; the rest is the certificate's
 
-// Sets of at least kTried points are tried first on one point in kTriedOneIn, a random sample: the first in the order
-// of insertion.
+// Sets of at least kTried points are tried on a random sample first: the first one in kTriedOneIn in insertion order.
 constexpr std::size_t kTried = 1u << 12, kTriedOneIn = 8;
 
 // If at least this part of the inserted points lie on spheres of others, the set is a lattice or the like. Exact signs
@@ -158,10 +157,9 @@ bool has_doubts(const Inserter& inserter) {
   return (inserter.counts().constrained > 0 || inserter.has_deferred()) && !is_lattice(inserter.counts());
 }
 
-// Whether the signs of doubles will do for a set of which a sample has been inserted. Where many points lie on planes
-// that are not parallel to the axes, as in dense samples of flat or cylindrical faces, rounding errors are too many to
-// be mended one by one. Finding that out at the end would take as long as using exact signs from the start, which on
-// such sets are hardly slower.
+// Whether the signs of doubles will do for a set of which a sample has been inserted. If many points lie on planes that
+// are not parallel to the axes, as in dense samples of flat or cylindrical faces, rounding errors are too many to be
+// mended one by one. Finding that out at the end takes as long as exact signs from the start, hardly slower there.
 bool doubles_will_do(Workspace& workspace, const Inserter& inserter) {
   const InsertionCounts& counts = inserter.counts();
   if (has_doubts(inserter)) return false;

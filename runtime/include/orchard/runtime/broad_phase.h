@@ -30,8 +30,7 @@ struct BodyId {
 inline constexpr BodyId kNoBody{};
 
 // Which pairs a body is in, in Box2D's terms. Two bodies may be a pair if each one's mask has a bit of the other's
-// category. Two bodies of the same group other than 0 are always a pair if the group is positive, and never if it is
-// negative.
+// category. Two bodies of the same group other than 0 are always a pair if the group is positive, never if negative.
 // Bullet's group and mask are `category` and `mask`; each of Jolt's layers becomes a category. If one body of the
 // application is several spheres of the broad phase, give these a negative group of their own: then they form no pairs
 // with each other and keep no body awake.
@@ -43,8 +42,7 @@ struct BodyFilter {
   friend bool operator==(const BodyFilter&, const BodyFilter&) = default;
 };
 
-// Returns whether the filters allow a pair. It assumes that neither body is static, or that no filter ignores static
-// bodies.
+// Returns whether the filters allow a pair, if neither body is static or neither filter ignores static bodies.
 constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
@@ -63,29 +61,26 @@ struct BodyPair {
 };
 
 // A callback that fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may occur
-// twice.
-// A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the body is
-// in no pair, is asked for again at the next step, and is named in Advance::refused.
-// While a source, a filter or a listener runs, the broad phase that called it refuses every change and every call of
-// advance(), and its queries have no answer: they return what they return for a body that does not exist, and
-// Advance::time_refused or BodyQueries::refused() is true. Destroying or moving the broad phase there is an error.
+// twice. A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the
+// body is in no pair, is asked for again at the next step, and is named in Advance::refused. While a source, a filter
+// or a listener runs, the broad phase that called it refuses every change and every call of advance(), and its queries
+// have no answer: they return what they return for a body that does not exist, and Advance::time_refused or
+// BodyQueries::refused() is true. Destroying or moving the broad phase there is an error.
 using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
 // Returns a source that reads the motion of body i from values[i]. The application keeps these values up to date: they
 // hold at the time that it passes to advance(). It must then call advance() at every step, which costs nothing while
 // nothing can happen. `values` must outlive the broad phase and have an element for the index of each moving body.
-// Static bodies use indices, too, so a moving body that was added after them has a higher index. A body without a value
-// is refused: see Advance::refused.
+// Static bodies use indices, too. A body without a value is refused.
 MotionSource values_of(const std::vector<Motion>& values);
 
 // Motions as arrays of floats, by BodyIndex, that hold at the time passed to advance(). They need a third of the memory
 // of Motion values, which matters because an update of all windows reads all of them. BroadPhase::reading() reads them
 // without a callback. The arrays of positions need an element for each body; a body beyond the end of `x` is refused.
-// Each other array has the same length or is empty. If it is empty, all its values are 0; if `expiry` is empty, the
-// bounds never expire.
-// Rounding to float makes positions inexact. If the application keeps doubles and rounds them when it stores them here,
-// set position_slack = float_slack(). If it keeps its state in floats, use the M and drift that kept_in_float() returns
-// (motion_helpers.h).
+// Each other array has the same length or is empty. If it is empty, all its values are 0; if `expiry` is empty, bounds
+// never expire. Rounding to float makes positions inexact. If the application keeps doubles and rounds them when it
+// stores them here, set position_slack = float_slack(). If it keeps its state in floats, use the M and drift that
+// kept_in_float() returns (motion_helpers.h).
 struct MotionArrays {
   std::span<const float> x{}, y{}, z{};     // Positions.
   std::span<const float> vx{}, vy{}, vz{};  // Velocities.
@@ -110,9 +105,8 @@ struct BroadPhaseOptions {
   double start = 0;         // The time of step 0.
   // The maximum number of steps between two updates of a body's window; 0 lets the broad phase choose.
   std::uint32_t window = 0;
-  // The largest error of the positions that the source gives: their distance, a length, from exact positions that keep
-  // the bounds. For positions rounded to float, use float_slack() in motion_helpers.h. It costs as much as radii that
-  // are larger by twice this value.
+  // The largest error (a length) of the positions that the source gives: their distance from exact ones that keep the
+  // bounds. Rounding to float: see float_slack() (motion_helpers.h). It costs as much as radii larger by twice this.
   double position_slack = 0;
   // For debugging: compares each motion that the source gives with the bounds that it gave before for the same body.
   // Every moving body is asked for at every processed step, and at the last step that is not after the time of each
@@ -132,8 +126,7 @@ struct BroadPhaseOptions {
   std::size_t min_bodies_for_jobs = 16384;
 };
 
-// The largest number of time steps between a time and 0 (348 years at a step of 0.01 seconds). Beyond it, rounding
-// would blur the steps.
+// The most time steps between a time and 0 (348 years at a step of 0.01 s). Beyond it, rounding would blur the steps.
 inline constexpr double kMaxSteps = 0x1p40;
 
 // Returns whether time_step is in 1e-20..1e20, position_slack in 0..kMaxNumber, and start finite and within kMaxSteps
@@ -156,8 +149,7 @@ struct Advance {
   // time, and calling advance() earlier is unnecessary.
   double time;
   std::span<const BodyPair> pairs;  // In ascending order; valid until the next call of any other member.
-  // If the step was interrupted, pairs with a body of this importance class or a higher one may be missing. kNoClass:
-  // no pair is missing.
+  // If the step was interrupted, pairs with a body of this importance class or above may be missing; kNoClass: none is.
   unsigned incomplete_from = kNoClass;
   std::size_t left_over = 0;  // Bodies and pairs that the budget left untested; 0: nothing is missing.
   // Bodies whose motions were not valid at a step that this call processed; they were in no pair there. In ascending
@@ -227,15 +219,13 @@ class BroadPhase {
   BodyId add_static(const Motion& place, std::uint8_t importance = 0, const BodyFilter& filter = {});
   // Removes a body. This function and the following ones change nothing and return false if there is no such body.
   bool remove(BodyId body);
-  // Cancels the bounds of the body, for example because it collided. The source is asked for new ones at the next step
-  // (4.4).
+  // Cancels the body's bounds, for example because it collided: the source is asked again at the next step (4.4).
   bool cancel(BodyId body);
   bool teleport(BodyId body) { return cancel(body); }  // The source gives the new place from now on.
   // Returns false also if the body is not static or the motion not valid.
   bool move_static(BodyId body, const Motion& place);
   bool set_importance(BodyId body, std::uint8_t importance);  // Takes effect from the next step.
-  // Takes effect from the next step; costs an update of the body's window.
-  bool set_filter(BodyId body, const BodyFilter& filter);
+  bool set_filter(BodyId body, const BodyFilter& filter);     // Likewise; costs an update of the body's window.
 
   BodyFilter filter_of(BodyId body) const noexcept;  // Returns BodyFilter{} if there is no such body.
   // Sets the filter of pairs; an empty function allows all pairs that may_pair() allows. It takes effect from the next
@@ -270,8 +260,8 @@ class BroadPhase {
 
   // Predicts the load: writes to steps[i] the work of the i-th step after `time`, up to which steps have been
   // processed. It is an estimate: bodies that were cancelled since then are missing, and obsolete events are included.
-  // Returns the number of steps that are known, at most 254; 0 for algorithms other than the default one. Takes time in
-  // proportion to the number of these events.
+  // Returns the number of steps that are known, at most 254; 0 for algorithms other than the default one. Its time is
+  // proportional to these events.
   std::size_t predict_load(double time, std::span<StepsAhead> steps) const noexcept;
 
   bool valid() const noexcept { return max_time_ >= 0; }    // The options are valid, and no step has thrown.
