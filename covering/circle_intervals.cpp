@@ -26,7 +26,7 @@ bool CircleIntervals::subtract(const CircleIntervals& other) {
   return changed;
 }
 
-// Pieces without length are dropped: the lemma leaves out finitely many points.
+// Intervals without length are dropped, because the lemma may ignore finitely many points.
 bool CircleIntervals::subtract_interval(double begin, double end) {
   bool changed = false;
   for (std::size_t i = 0; i < intervals_.size();) {

@@ -32,7 +32,7 @@ class CircleIntervals {
 
   void subtract(const Arc& arc);
   bool subtract(double begin, double end) { return subtract_interval(begin, end); }
-  bool subtract(const CircleIntervals& other);  // whether that took anything away
+  bool subtract(const CircleIntervals& other);  // returns whether anything was removed
   void assign_intersection(const CircleIntervals& other, const Arc& arc);
 
  private:

@@ -13,8 +13,8 @@
 namespace orchard {
 namespace {
 
-// Whether all balls from a leaf up to its root surely hold the triangle. Then cover_of_triangle() finds such a leaf,
-// too, and says that the triangle is covered.
+// Returns whether all balls from a leaf up to its root certainly contain the triangle. If so, cover_of_triangle() also
+// finds such a leaf and certifies the triangle.
 bool path_holds(std::span<const PathBall> balls, Index leaf, const std::array<Point, 3>& triangle) {
   for (Index i = leaf; i != kNone; i = balls[i].parent)
     if (!detail::surely_holds(balls[i], triangle)) return false;
@@ -23,8 +23,8 @@ bool path_holds(std::span<const PathBall> balls, Index leaf, const std::array<Po
 
 constexpr Index kFew = 256;  // triangles
 
-// Keeps the leaf that held the last triangle whole: in most meshes triangles with numbers near each other lie near each
-// other.
+// Remembers the leaf whose path contained the whole last triangle. In most meshes, triangles with similar numbers are
+// near each other, so the same path often contains the next one.
 struct Worker {
   NearBalls near;
   Index leaf = kNone;
@@ -36,13 +36,13 @@ Coverage check(const Surface& surface, std::span<const Index> triangles, std::sp
   const Index count = static_cast<Index>(triangles.size());
   Coverage coverage;
   tbb::enumerable_thread_specific<Worker> workers;
-  // In slices, so that progress is reported from the calling thread.
+  // The triangles are processed in slices, so that the calling thread reports progress.
   const Index slice = std::max<Index>(1024, count / 50 + 1);
   std::vector<std::optional<TriangleCover>> uncovered(slice);
   for (Index begin = 0; begin < count; begin += slice) {
     report_progress(progress, "certifying", static_cast<double>(begin) / count);
     const Index end = std::min(count, begin + slice);
-    // One at a time where there are few, which are large.
+    // If there are few triangles, they are large, so each is a task of its own.
     tbb::parallel_for(tbb::blocked_range<Index>(begin, end, count < kFew ? 1 : 16), [&](const auto& range) {
       auto& [near, leaf] = workers.local();
       for (Index i = range.begin(); i != range.end(); ++i) {

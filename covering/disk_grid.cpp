@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDisksPerCell = 4;
 constexpr double kMostAlong = 64;  // cells
-// Far more than the roundings of a region's sides, in extents of the box and its disks.
+// The margin around the box, relative to its coordinates: far more than rounding can move a region's sides.
 constexpr double kRoom = 1e-9;
 
 }  // namespace
@@ -32,7 +32,8 @@ void DiskGrid::lay_out(const Eigen::AlignedBox2d& box, std::size_t count) {
   rows_per_length_ = height > 0 ? static_cast<double>(rows_) / height : 0;
 }
 
-// Of its part in the box; monotonous, so that rectangles that meet there have a cell in common.
+// The cells that the rectangle's part in the box meets. Coordinates map to cells monotonically, so two rectangles that
+// meet in the box share a cell.
 DiskGrid::Cells DiskGrid::cells_of(const Rectangle& rectangle) const {
   const auto at = [](double offset, double per_length, std::size_t count) {
     return static_cast<std::size_t>(std::clamp(offset * per_length, 0.0, static_cast<double>(count) - 1));

@@ -12,7 +12,8 @@
 namespace orchard {
 namespace {
 
-// A spherical triangle on the unit sphere of directions, with an upper bound on the signed distance over its image.
+// A spherical triangle of directions, with an upper bound on the signed distance over the part of the sphere's surface
+// that lies in these directions from its centre.
 struct Cell {
   double upper;
   std::array<Vector, 3> corners;
@@ -20,17 +21,18 @@ struct Cell {
 };
 bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
-// Far more than any sphere of a sensible tree needs; met only by adversarial input, and then the bounds stay valid.
+// Far more than any sphere of a sensible tree needs. If adversarial input reaches it, the bounds are wider but valid.
 constexpr int kMaxEvaluations = 200'000;
-// Least width of the bounds, as a fraction of R: a thousand roundings of a coordinate in a float.
+// The bounds are not made narrower than this fraction of R: a thousand roundings of a coordinate in a float.
 constexpr double kFinest = 1e-6;
 
-// Best-first branch and bound. Over a cell with middle direction d the signed distance is at most
-//   sd(p) + |q - p|, since it is 1-Lipschitz, and
-//   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre, and at most
-//   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two, y and z, and t from 0 to 1,
-// all taken at the farthest point q of the cap that the cell's corners span. Walls inside the solid are told apart from
-// its border (inner_walls.h).
+// Best-first branch and bound. Let p be the sphere's point in the middle direction of a cell, and q any point of the
+// cap around p that the cell's corners span. The signed distance sd at q is at most
+//   sd(p) + |q - p|, since sd is 1-Lipschitz;
+//   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre; and
+//   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two points y and z of the surface, and t from 0 to 1.
+// The greatest value of each over the cap bounds the cell. Walls inside the solid do not count as its border
+// (inner_walls.h).
 class Search {
  public:
   Search(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
@@ -62,13 +64,14 @@ class Search {
   }
 
  private:
-  // How far the bounds may be apart, given the lower one.
+  // How far apart the bounds may be at the end, given the lower one.
   double width() const {
     return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
   }
 
-  // Where nothing else of the solid is near, the farthest point lies beyond the point of the surface that is nearest to
-  // the centre, or, for a centre outside, across from it, and the bound that holds everywhere is met there.
+  // Measures the sphere's point in the direction of the surface point that is nearest to the centre; for a centre
+  // outside, the point opposite to it. Where nothing else of the solid is near, that is the farthest point, and its
+  // distance equals the bound that holds everywhere.
   void probe_beyond_nearest(double center_distance) {
     const Vector towards = anchor_ - sphere_.center;
     const double length = towards.norm();
@@ -95,7 +98,7 @@ class Search {
     evaluate({ab, bc, ca}, known);
   }
 
-  // `known`: points of the surface; often they tell that the cell does not matter.
+  // `known`: points of the surface whose bounds often show, without a query, that the cell does not matter.
   void evaluate(const std::array<Vector, 3>& corners, const std::array<Point, 2>& known) {
     const Vector middle = (corners[0] + corners[1] + corners[2]).normalized();
     double chord = 0;
@@ -119,7 +122,8 @@ class Search {
     push({upper, corners, {here, known[0]}});
   }
 
-  // A cell that cannot matter is dropped, but its bound counts towards the answer's.
+  // Whether a cell with this bound cannot matter and may be dropped. Its bound still counts in the answer's upper
+  // bound.
   bool does_not_matter(double upper) {
     if (upper > best_ + 0.5 * width()) return false;
     dropped_ = std::max(dropped_, upper);
@@ -131,7 +135,8 @@ class Search {
     std::push_heap(cells_.begin(), cells_.end(), less_promising);
   }
 
-  // The largest distance from y to a point of the cap around `middle` whose rim is `chord` (on the unit sphere) away.
+  // The largest distance from y to a point of the cap around `middle`, whose rim is `chord` away from its middle on the
+  // unit sphere.
   double farthest(const Point& y, const Vector& middle, double chord) const {
     const Vector to_y = y - sphere_.center;
     const double length = to_y.norm(), r = sphere_.radius;
@@ -141,10 +146,11 @@ class Search {
     return std::sqrt((r - length) * (r - length) + 4 * r * length * half_chord * half_chord);
   }
 
-  // A bound on the distance of any point q of the cap from the nearer of two points: the root of a mean of the squared
-  // distances is that of |q - m|^2 + t (1 - t) |y - z|^2 with the mean m of both. Where the surface is equally near on
-  // two sides of the sphere's farthest point, each of the two alone gives a bound that grows with the cap; but a mean
-  // that lies on the line through the cap's middle and the centre gives one that grows with its square.
+  // A bound on the distance of any point q of the cap from the nearer of two points y and z. The square of that
+  // distance is at most the mean (1 - t) |q - y|^2 + t |q - z|^2, which equals |q - m|^2 + t (1 - t) |y - z|^2 with the
+  // mean m = (1 - t) y + t z. Where the surface is equally near on two sides of the sphere's farthest point, y or z
+  // alone gives a bound whose error grows with the size of the cap; but if m lies on the line through the cap's middle
+  // and the sphere's centre, the error grows with the square of the size only.
   double farthest_of_both(const Point& y, const Point& z, const Vector& middle, double chord) const {
     const Vector between = z - y, across = between - between.dot(middle) * middle;
     const double squared = across.squaredNorm();

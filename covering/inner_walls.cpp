@@ -15,7 +15,8 @@ constexpr double kMinSine = 0.3;     // of the angle between two slabs
 constexpr double kClear = 4;         // thicknesses from a plane to where the winding number is asked for
 constexpr double kWay = 2 * (kClear + 1) / kMinSine;  // thicknesses out of two slabs and across one of them
 
-// The way along a plane's normal from a place at this distance to one that is `clear` away on a side, +1 or -1.
+// How far to go along a plane's normal, from a place at signed distance `distance`, to be at least `clear` away from
+// the plane on `side` (+1 or -1).
 double way_to_side(double distance, int side, double clear) { return side * std::max(0.0, clear - side * distance); }
 
 }  // namespace
@@ -47,7 +48,7 @@ InnerWalls::Planes InnerWalls::planes_near(const Sphere& ball) const {
       return too_many ? 0 : ball.radius;
     const Vector& normal = surface_.normal(triangle);
     const Plane plane{normal, normal.dot(a)};
-    // The normal of a sliver may be so far off that its own plane does not hold it.
+    // The computed normal of a sliver can be so inaccurate that the triangle does not lie in the plane's slab.
     too_many = found.count == 2 || !in_slab(plane, triangle) ||
                (found.count == 1 && found.planes[0].normal.cross(normal).norm() < kMinSine);
     if (!too_many) found.planes[found.count++] = plane;
@@ -57,7 +58,7 @@ InnerWalls::Planes InnerWalls::planes_near(const Sphere& ball) const {
   return found;
 }
 
-// Asks on both sides.
+// Whether a place on each side of the slab, if the ball reaches it, lies inside the solid.
 bool InnerWalls::is_inside_beyond(const Plane& plane, const Sphere& ball) const {
   const double distance = plane.distance(ball.center);
   for (const int side : {-1, 1}) {
@@ -67,7 +68,8 @@ bool InnerWalls::is_inside_beyond(const Plane& plane, const Sphere& ball) const 
   return true;
 }
 
-// Asks in all four parts, at the place that is nearest to the ball's centre: along one normal, or along both.
+// The same for the four parts that two slabs leave. In each part the place nearest to the ball's centre is tested: it
+// is reached along one of the normals or along both.
 bool InnerWalls::is_inside_beyond(const std::array<Plane, 2>& planes, const Sphere& ball) const {
   const double clear = kClear * thickness_;
   const double cosine = planes[0].normal.dot(planes[1].normal), squared_sine = (1 - cosine) * (1 + cosine);

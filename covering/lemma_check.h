@@ -8,18 +8,19 @@
 
 namespace orchard::detail {
 
-// Balls are convex: a ball that holds the corners, here with room for all roundings, holds the triangle.
+// Whether a ball certainly holds a triangle: since balls are convex, it is enough to test the corners, with a margin
+// for rounding.
 bool surely_holds(const PathBall& ball, const std::array<Point, 3>& triangle);
 
-// What one ball has to do with one triangle: lines 4 and 5 of the dissertation's Figure 5.17, which do not depend on
-// any other ball and so can be kept while others change (5.3.3).
+// What the check of a triangle computes for one ball: lines 4 and 5 of the dissertation's Figure 5.17. It does not
+// depend on other balls, so it can be kept while those change (5.3.3).
 struct CircleInPlane {
   Disk disk;
   CircleIntervals needed;  // of its circle, inside the region; once `clipped`
   bool clipped = false;
 };
 
-// What a check works in, kept from one triangle to the next for the room that its lists have.
+// The lists that a check works in. They are kept from one triangle to the next to save allocations.
 struct LemmaScratch {
   std::vector<CircleInPlane> circles;  // where the caller keeps none
   std::vector<CircleInPlane*> pointers;
@@ -36,8 +37,8 @@ struct LemmaScratch {
   static LemmaScratch& of_this_thread();
 };
 
-// The boundary lemma for one triangle. `circles` are those of `balls`, projected; what they lack is filled in. At most
-// one check at a time in a thread: all share its scratch.
+// The boundary lemma for one triangle. `circles` are the intersections of `balls` with its plane; parts that are
+// missing are computed. A thread may run only one check at a time, because all its checks share one scratch.
 class LemmaCheck {
  public:
   enum class Want { all_arcs, answer };  // answer: stop at the first arc that is not covered

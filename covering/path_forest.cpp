@@ -53,7 +53,8 @@ double PathForest::distance(const Point& point) const {
   return min;
 }
 
-// A path's excess only grows downwards: what is not below the least found so far can be left out.
+// The excess of a path can only grow from the root down, so balls whose excess is not below the least leaf's so far are
+// skipped.
 void PathForest::descend(Index ball, const Point& point, double above, double& min) const {
   const double excess = std::max(above, (point - balls_[ball].center).norm() - balls_[ball].radius);
   if (excess >= min) return;
@@ -72,7 +73,7 @@ bool PathForest::within(Index ball, const Point& point, double limit) const {
 }
 
 bool surely_holds(const Sphere& ball, const Box& box) {
-  // Less than what surely_holds() of a triangle leaves, so that it is true of all triangles in the box.
+  // A wider margin than that of surely_holds() for triangles, so that a box that is held implies all its triangles are.
   constexpr double kSurelyInside = 1 - 0x1p-32;
   const double limit = ball.radius * kSurelyInside;
   const Vector farthest = (box.max() - ball.center).cwiseMax(ball.center - box.min());

@@ -1,5 +1,5 @@
-// One argument with its cases, hence one file of more than 300 lines: shapes, their boundaries inside the region, and
-// what is certain of them.
+// Decides whether shapes cover a polygon: shapes, their boundaries inside the region, and the parts of these that are
+// certainly covered.
 #include "orchard/covering/planar_cover.h"
 
 #include <algorithm>
@@ -12,11 +12,12 @@
 #include "orchard/geometry/random.h"
 #include "plane_edges.h"
 
-// The argument is that of boundary_lemma.cpp: a triangle of the region is covered if one of its points certainly is,
-// and if all but finitely many points of every shape's boundary inside it have a neighbourhood that is covered. Such a
-// point lies in the interior of another shape; or it lies on an edge whose other side another polygon's edge borders,
-// which is told exactly. The pieces of a boundary that others cover are rounded inward, so two of them that end in the
-// same point leave a sliver between them. It is let go if the two ends are known to be roundings of one point.
+// The argument is that of boundary_lemma.cpp. A triangle of the region is covered if one of its points certainly is,
+// and if all but finitely many points of every shape's boundary inside it have a neighbourhood that is covered. There
+// are two kinds of such points: those in the interior of another shape, and those on an edge whose other side adjoins
+// an edge of another polygon, which is decided exactly. The pieces of a boundary that other shapes cover are rounded
+// inward, so two of them that end at the same point leave a sliver between them. The sliver is ignored if both ends are
+// known to be roundings of one point.
 namespace orchard {
 namespace {
 
@@ -25,7 +26,7 @@ using detail::CircleIntervals;
 using detail::Edge;
 
 constexpr double kRounding = 0x1p-46;  // as for spheres: a few roundings, per length involved
-constexpr int kNamedPoints = 64;       // tried for one that is certainly covered
+constexpr int kNamedPoints = 64;       // points that are tried to find one that is certainly covered
 // Where a circle meets a line, slivers narrower than kSliver radians count as one point if the line's chord is wider
 // than kChord radians.
 constexpr double kSliver = 1e-6, kChord = 1e-3;
@@ -51,14 +52,14 @@ Shape prepared(const PlanarShape& shape, Index index) {
   return result;
 }
 
-// Where a part that is taken from a boundary piece ends: where an edge crosses it, or at a corner that lies on it.
+// An end of a part that is removed from a boundary piece: a crossing with an edge, or a corner that lies on the piece.
 struct End {
   double at;
   const Edge* crossing;  // nullptr: a corner
   PlanePoint corner = PlanePoint::Zero();
 };
 
-// One boundary piece, in a parameter of its own, of which others take away what they cover.
+// One boundary piece as an interval of a parameter, from which the parts that other shapes cover are removed.
 class Piece {
  public:
   explicit Piece(CircleIntervals all) : left_(std::move(all)) {}
@@ -68,7 +69,7 @@ class Piece {
   void note(const End& end) { ends_.push_back(end); }
   bool empty() const { return left_.empty(); }
 
-  // What is left but for slivers that are one point.
+  // Returns the rest, without slivers whose ends are one point.
   template <class SamePoint>
   std::vector<CircleIntervals::Interval> rest(SamePoint same_point) const {
     std::vector<CircleIntervals::Interval> rest;
@@ -87,8 +88,8 @@ class Piece {
   std::vector<End> ends_;
 };
 
-// Whether two ends on an edge are one point for sure: at one corner, or where edges cross that lie on one line or share
-// a corner that lies on the edge.
+// Returns whether two ends on an edge are certainly one point: they are at one corner, or at crossings with edges that
+// lie on one line or share a corner on the edge.
 bool one_point(const End& p, const End& q, const Edge& edge) {
   if (p.crossing != nullptr && q.crossing != nullptr) return detail::cross_in_one_point(*p.crossing, *q.crossing, edge);
   if (p.crossing == nullptr && q.crossing == nullptr) return p.corner == q.corner;
@@ -125,7 +126,8 @@ class Triangle {
  private:
   double fuzz() const { return kRounding * extent_; }
 
-  // Any interior point will do, but one on an edge between two shapes is not certain: so several are tried.
+  // Finds an interior point that is certainly covered. Several points are tried, because a point on an edge between two
+  // shapes is not certain.
   bool some_point_covered(PlanePoint& point) const {
     Random random(0, 0);
     for (int i = 0; i < kNamedPoints; ++i) {
@@ -144,7 +146,7 @@ class Triangle {
                        [&](const Edge& edge) { return height(edge, p) > fuzz(); });
   }
 
-  // Distance from the edge's line, positive on the left, to within fuzz().
+  // Returns the distance of a point from the line of an edge, positive on the left; the error is at most fuzz().
   static double height(const Edge& edge, const PlanePoint& p) {
     const PlanePoint along = edge.b - edge.a, out = p - edge.a;
     return (along.x() * out.y() - along.y() * out.x()) / along.norm();
@@ -179,7 +181,7 @@ class Triangle {
     }
   }
 
-  // Where the edge crosses a line that its ends lie on different sides of, and how exactly that is known.
+  // The place where an edge crosses a line between its ends, and the uncertainty of this place.
   struct Crossing {
     double at, uncertainty;
   };
@@ -190,7 +192,8 @@ class Triangle {
     return {edge.a[axis] + fraction * length, fuzz() + 2 * fuzz() / std::abs(from - to) * std::abs(length)};
   }
 
-  // What of the edge is not inside the side's half-plane; an edge on the side itself bounds nothing inside.
+  // Removes the part of the edge that is outside the half-plane of a side. An edge on the side itself bounds nothing
+  // inside.
   void take_outside(const Edge& edge, const Edge& side, Piece& piece) const {
     const int a = side.side_of(edge.a), b = side.side_of(edge.b), axis = edge.axis();
     const double low = std::min(edge.a[axis], edge.b[axis]), high = std::max(edge.a[axis], edge.b[axis]);
@@ -204,7 +207,7 @@ class Triangle {
     if (!low_end_outside) piece.take(end, high);
   }
 
-  // What of the edge lies in the polygon's interior, or along an edge of it that faces it.
+  // Removes the part of the edge that lies in the interior of a polygon, or along an edge of it on the opposite side.
   void take_polygon(const Edge& edge, const Shape& polygon, Piece& piece) const {
     const int axis = edge.axis();
     double low = std::min(edge.a[axis], edge.b[axis]), high = std::max(edge.a[axis], edge.b[axis]);
@@ -279,7 +282,7 @@ class Triangle {
     }
   }
 
-  // The arc of the disk's circle on the right of the edge, whose line is moved to the right by `by`.
+  // Returns the arc of the disk's circle that lies on the right of the edge's line, moved to the right by `by`.
   static Arc beyond(const Shape& disk, const Edge& edge, double by) {
     const double r = disk.shape.radius, room = height(edge, disk.shape.center) + by;
     if (room >= r) return Arc::none();
@@ -321,7 +324,7 @@ class Triangle {
   const std::array<PlanePoint, 3> corners_;
   std::vector<Edge> edges_;
   std::span<const Shape> shapes_;
-  std::vector<Index> near_;  // whose boxes meet the triangle's
+  std::vector<Index> near_;  // the shapes whose boxes meet that of the triangle
   Eigen::AlignedBox2d box_;
   double extent_ = 0;
 };

@@ -8,8 +8,8 @@ namespace orchard::detail {
 
 using Point2 = Eigen::Vector2d;
 
-// Roundings that any one comparison of the boundary lemma adds up, as a multiple of the lengths involved: each is a
-// handful of operations of error 2^-53, so 2^-46 leaves a factor of ten.
+// A bound on the rounding error of any comparison in the boundary lemma, as a multiple of the lengths involved. A
+// comparison is a handful of operations with an error of 2^-53 each, so 2^-46 leaves a factor of ten.
 inline constexpr double kRounding = 0x1p-46;
 
 // A disk in the triangle's plane that is certainly inside its ball. radius <= 0: dropped.
@@ -17,12 +17,13 @@ struct Disk {
   Point2 center = Point2::Zero();
   double radius = -1;
   bool holds_region = false;  // certainly
-  double fuzz = 0;            // what roundings may add up to where it is compared
+  double fuzz = 0;            // bound on the rounding errors of comparisons with it
 };
 
-// The region that is to be covered, in coordinates of its plane around the triangle's first corner, so that an offset
-// of the whole model costs no accuracy: a triangle, or the part of it inside a ball, in either case slightly enlarged.
-// Convex. Where a circle runs in it is rounded outward, where circles run in other disks inward.
+// The region that has to be covered: a triangle, or the part of it inside a ball, in either case slightly enlarged. It
+// is convex. Its plane has coordinates around the triangle's first corner, so that an offset of the whole model costs
+// no accuracy. The part of a circle inside the region is rounded outward; the part of a circle inside another disk is
+// rounded inward.
 class TrianglePlane {
  public:
   explicit TrianglePlane(const std::array<Point, 3>& triangle);

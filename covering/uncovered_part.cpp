@@ -52,12 +52,12 @@ class Measurer {
   }
 
  private:
-  // Cells below this fraction of R stay undecided: the rounding of their corners begins to count.
+  // Cells smaller than this fraction of R remain undecided, because rounding of their corners begins to matter.
   static constexpr double kFinest = 1e-9;
-  // Areas below this fraction of R^2 are not worth telling from nothing.
+  // Areas below this fraction of R^2 count as zero.
   static constexpr double kNoArea = 1e-9;
 
-  // Across the longest side, so that the parts of a needle are no needles for long.
+  // Halves a cell across its longest side, so that the parts of a needle soon have a better shape.
   template <class Visit>
   static void for_each_half(const Cell& cell, Visit visit) {
     std::size_t longest = 0;
@@ -72,7 +72,7 @@ class Measurer {
     visit(std::array<Point, 3>{middle, b, c});
   }
 
-  // Files the cell under uncovered or undecided, or forgets it if it is covered.
+  // Adds a cell to the uncovered or to the undecided ones, or drops it if it is covered.
   void classify(const std::array<Point, 3>& corners, double area) {
     ++cells_;
     const Cell cell = make_cell(corners, area);
@@ -107,7 +107,7 @@ class Measurer {
     return cell;
   }
 
-  // Empties open_.
+  // Bounds the largest distance. Empties open_.
   void bound_distance() {
     std::priority_queue<Cell, std::vector<Cell>, Shallower> cells;
     for (; !open_.empty(); open_.pop()) {
@@ -136,7 +136,7 @@ class Measurer {
   const double radius_;
   const UncoveredPartOptions& options_;
   std::priority_queue<Cell, std::vector<Cell>, Smaller> open_;
-  std::vector<Cell> settled_;  // uncovered, or too small to tell
+  std::vector<Cell> settled_;  // cells that are uncovered, or too small to decide
   double open_area_ = 0, sure_area_ = 0, settled_area_ = 0;
   Index cells_ = 0;
   NearBalls near_;

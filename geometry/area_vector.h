@@ -8,8 +8,9 @@
 
 namespace orchard {
 
-// Twice the area vector of a triangle whose corners are multiplied by `scale`, from the two shortest edges: that is
-// where rounding harms it least. Zero if it is all rounding, and then the triangle is degenerate.
+// Twice the area vector of a triangle whose corners are multiplied by `scale`. It is computed from the two shortest
+// edges, because the rounding error is least there. Zero if it would be nothing but rounding error: the triangle is
+// then degenerate.
 inline Vector area_vector(const std::array<Point, 3>& p, double scale) {
   std::array<Vector, 3> edges;  // opposite the corners
   std::array<double, 3> lengths{};

@@ -22,12 +22,12 @@ class CellHash {
  public:
   CellHash(const Point& origin, double cell_size) : origin_(origin), inverse_(1 / cell_size) {}
 
-  // Points farther than 2^31 cells from the origin are the caller's fault.
+  // Precondition: the point is less than 2^31 cells from the origin.
   Cell cell_of(const Point& p) const {
     const Vector v = (p - origin_) * inverse_;
     return {floored(v.x()), floored(v.y()), floored(v.z())};
   }
-  // Item i is in cells[i]. O(n).
+  // Stores the items: item i is in cells[i]. O(n).
   void build(std::span<const Cell> cells) {
     std::size_t buckets = 16;
     while (buckets < cells.size()) buckets *= 2;
@@ -37,8 +37,8 @@ class CellHash {
     for (const Cell& cell : cells) ++ends_[bucket_of(cell) + 1];
     for (std::size_t b = 0; b < buckets; ++b) ends_[b + 1] += ends_[b];
     for (Index i = 0; i < cells.size(); ++i) entries_[ends_[bucket_of(cells[i])]++] = {cells[i], i};
-    // Now ends_[b] is the end of bucket b, and the end of the one before is its beginning. A bucket may hold several
-    // cells: bring the items of each together.
+    // Now ends_[b] is the end of bucket b, which begins at the end of the bucket before. A bucket may hold several
+    // cells: its items are sorted such that those of a cell are together.
     for (std::size_t b = 0; b < buckets; ++b) {
       const auto first = entries_.begin() + (b == 0 ? 0 : ends_[b - 1]), last = entries_.begin() + ends_[b];
       if (std::any_of(first, last, [&](const Entry& e) { return e.cell != first->cell; }))

@@ -8,7 +8,7 @@ Clusters find_clusters(std::span<const Vector> normals, std::span<const std::arr
   const auto count = static_cast<Index>(normals.size());
   Clusters clusters;
   clusters.of_triangle.assign(count, kNone);
-  // |a - b| = 2 sin(angle / 2) keeps its digits where the cosine of a small angle does not.
+  // |a - b| = 2 sin(angle / 2) is accurate for small angles, whereas the cosine is not.
   const double chord = 2 * std::sin(0.5 * angle);
   std::vector<Index> stack;
   Index cluster_count = 0;
@@ -28,7 +28,7 @@ Clusters find_clusters(std::span<const Vector> normals, std::span<const std::arr
       }
     }
   }
-  // Ascending within each cluster by counting.
+  // A counting sort: triangles are ascending within each cluster.
   clusters.triangles.offsets.assign(cluster_count + 1, 0);
   clusters.triangles.items.resize(count);
   for (const Index cluster : clusters.of_triangle) ++clusters.triangles.offsets[cluster + 1];

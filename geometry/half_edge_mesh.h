@@ -1,5 +1,5 @@
 #pragma once
-// GCC 12 takes the vectors that OpenMesh leaves uninitialised on purpose for a mistake, if the sanitizers are on.
+// With sanitizers on, GCC 12 warns of vectors that OpenMesh leaves uninitialised on purpose.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -14,15 +14,15 @@
 
 namespace orchard {
 
-// OpenMesh in double precision. A heavy header: for .cpp files that walk half-edges.
+// OpenMesh in double precision. This header takes long to compile: it is meant for .cpp files that walk half-edges.
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 
-// The connectivity of a mesh that check_mesh() found to be manifold, consistently oriented and without repeated
-// corners; vertices and faces keep their numbers. OpenMesh would leave out or duplicate elements of any other, so Error
-// is thrown if it did. O(n).
+// The connectivity of a mesh; vertices and faces keep their numbers. Precondition: check_mesh() finds the mesh
+// manifold, consistently oriented and without repeated corners. OpenMesh leaves out or duplicates elements of other
+// meshes: Error is thrown if it did. O(n).
 HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh);
 
-// Whether OpenMesh counts the same edges, boundary and components: a second opinion on a report.
+// Whether OpenMesh counts the same edges, boundary and components as a report: an independent check.
 bool agrees(const HalfEdgeMesh& half_edges, const MeshReport& report);
 
 }  // namespace orchard

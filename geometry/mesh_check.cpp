@@ -41,12 +41,12 @@ class EdgeTally {
   Index lowest_ = kNone;
 };
 
-// Edges, fans and components. Returns the first triangle of each triangle's component.
+// Counts edges, fans and components. Returns for each triangle the first triangle of its component.
 std::vector<Index> check_connectivity(const TriangleMesh& mesh, MeshReport& report) {
   const auto start = [&](Index half_edge) { return mesh.triangles[half_edge / 3][half_edge % 3]; };
   const auto next = [](Index half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; };
-  // Corner i of triangle t goes by the number of the half-edge that starts there. Corners at one vertex belong to one
-  // fan if edges join their triangles.
+  // A corner has the number of the half-edge that starts there. Corners at a vertex belong to the same fan if edges
+  // join their triangles.
   DisjointSets fans(3 * mesh.triangles.size()), components(mesh.triangles.size());
   EdgeTally boundary(mesh, report.boundary_edges, report.first_boundary_edge);
   EdgeTally non_manifold(mesh, report.non_manifold_edges, report.first_non_manifold_edge);
@@ -94,8 +94,9 @@ struct Component {
   double area = 0, volume = 0;  // in the units of check_shape()
 };
 
-// Components that are turned against the mesh as a whole are cavities if they lie inside others. Boxes tell only some
-// that do not, but those for certain. Precondition: closed and oriented.
+// Finds components that are inside out: they are oriented against the mesh as a whole and are no cavities, since they
+// lie inside no other component. Only the boxes are compared, so not all are found, but those that are found are
+// certain. Precondition: the mesh is closed and oriented.
 void find_inside_out(std::span<const Component> components, double volume, MeshReport& report) {
   constexpr std::size_t kMaxPairs = 10'000'000;  // a fraction of a second; real meshes have far fewer
   std::vector<const Component*> along, against;
@@ -111,8 +112,8 @@ void find_inside_out(std::span<const Component> components, double volume, MeshR
   }
 }
 
-// Area, volume and degenerate triangles. Lengths are measured from the centre of the bounding box in units of a power
-// of two near its size, so that neither offset nor scale of the mesh harms the sums.
+// Computes area, volume and degenerate triangles. Lengths are measured from the centre of the bounding box, in units of
+// a power of two near its size, so that neither offset nor scale of the mesh makes the sums inaccurate.
 void check_shape(const TriangleMesh& mesh, std::span<const Index> component_of, MeshReport& report) {
   Box box;
   for (const auto& corners : mesh.triangles) {
@@ -144,7 +145,7 @@ void check_shape(const TriangleMesh& mesh, std::span<const Index> component_of, 
   if (std::abs(volume) <= tolerance::kNoVolume * area) volume = 0;
   report.area = std::ldexp(area, 2 * exponent);
   report.volume = std::ldexp(volume, 3 * exponent);
-  // A volume too small for a double still has a sign.
+  // Even if the volume is too small for a double, its sign is known.
   if (report.volume == 0 && volume != 0)
     report.volume = std::copysign(std::numeric_limits<double>::denorm_min(), volume);
   if (report.closed() && report.manifold() && report.misoriented_edges == 0)

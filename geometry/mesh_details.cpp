@@ -7,7 +7,7 @@
 namespace orchard {
 namespace {
 
-// Edges - vertices + components: the dimension of the space of cycles.
+// The number of independent cycles of a graph: edges - vertices + components.
 Index count_boundary_loops(const TriangleMesh& mesh) {
   DisjointSets components(mesh.vertices.size());
   std::vector<bool> on_boundary(mesh.vertices.size(), false);

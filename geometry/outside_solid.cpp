@@ -13,7 +13,7 @@ namespace {
 constexpr int kHalvings = 3;        // of the icosahedron's edges
 constexpr double kMinRadius = 1.1;  // bounding radii: nearer, the sphere's facets would cut the solid
 
-// Unit vertices, triangles seen counter-clockwise from outside.
+// Its vertices lie on the unit sphere; its triangles are counter-clockwise when seen from outside.
 TriangleMesh icosahedron() {
   const double t = std::numbers::phi;
   TriangleMesh mesh{.vertices = {{-1, t, 0},
@@ -35,7 +35,7 @@ TriangleMesh icosahedron() {
   return mesh;
 }
 
-// Each triangle in four, with new vertices on the unit sphere.
+// Divides each triangle into four; the new vertices lie on the unit sphere.
 TriangleMesh in_four(const TriangleMesh& coarse) {
   TriangleMesh mesh{.vertices = coarse.vertices, .triangles = {}};
   std::map<std::pair<Index, Index>, Index> middles;

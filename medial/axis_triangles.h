@@ -5,8 +5,8 @@
 
 namespace orchard::detail {
 
-// medial_mesh(axis), and the face of the axis that each triangle is cut from: faces first, then walls, numbered
-// through.
+// The result of medial_mesh(axis), and for each triangle the face of the axis that it is cut from. Faces and walls are
+// numbered together, faces first.
 struct AxisTriangles {
   MedialMesh mesh;
   std::vector<Index> face_of_triangle;

@@ -15,7 +15,7 @@ BallTree::BallTree(std::vector<Box> boxes, std::vector<double> radii)
   std::iota(items_.begin(), items_.end(), Index{0});
   nodes_.emplace_back();
   build(0, 0, static_cast<Index>(items_.size()));
-  // Into the order of the leaves.
+  // Puts the items in the order of the leaves.
   std::vector<Box> sorted_boxes;
   std::vector<double> sorted_radii;
   for (const Index item : items_) {

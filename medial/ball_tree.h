@@ -9,15 +9,15 @@
 
 namespace orchard::detail {
 
-// A bounding volume hierarchy over families of balls: of item i, the centres lie in boxes[i] and no radius is above
-// radii[i]. So no ball of it comes nearer to a point than the point's distance to the box less the radius.
+// A bounding volume hierarchy over families of balls: the centres of item i lie in boxes[i], and no radius is above
+// radii[i]. So a point's distance from the balls of an item is at least its distance from the box minus the radius.
 class BallTree {
  public:
   BallTree(std::vector<Box> boxes, std::vector<double> radii);
 
-  // The least of `best` and value(item) over all items. Precondition: value(item) is at least distance(query, box) less
-  // scale * radius. Items that cannot be the least are not asked. Ends once anything is at most `enough`. One thread's
-  // worth of work; any thread.
+  // Returns the least of `best` and value(item) over all items. Precondition: value(item) is at least distance(query,
+  // box) minus scale * radius. value() is not called for items that cannot be the least. The search ends when a value
+  // is at most `enough`. Runs in the calling thread; several threads may call it at once.
   template <class Value>
   double min(const Point& query, double best, const Value& value, double scale = 1,
              double enough = -std::numeric_limits<double>::infinity()) const {
@@ -44,8 +44,9 @@ class BallTree {
     return best;
   }
 
-  // The largest radii[item] of the items that accept(item) and whose distance to the box less the radius is at most
-  // `limit`; `least` if none is larger. Items that cannot be the largest are not asked.
+  // Returns the largest radii[item] of the items that accept(item) accepts and whose distance from the query, to the
+  // box minus the radius, is at most `limit`; `least` if none is larger. accept() is not called for items that cannot
+  // be the largest.
   template <class Accept>
   double max_radius(const Point& query, double limit, double min, const Accept& accept) const {
     if (items_.empty()) return min;
@@ -70,11 +71,11 @@ class BallTree {
   }
 
  private:
-  static constexpr std::size_t kDepth = 128;  // twice the depth of a tree split in the middle, and more
+  static constexpr std::size_t kDepth = 128;  // more than twice the depth of a tree that is split in the middle
   struct Node {
     Box box;
     double radius = 0;
-    Index first = 0, count = 0;  // of a leaf: items; of an inner node (count 0): its two children
+    Index first = 0, count = 0;  // a leaf's items; for an inner node (count 0), its two children
   };
 
   static double distance(const Box& box, const Point& query) { return box.exteriorDistance(query); }

@@ -36,7 +36,8 @@ class Triangulator {
     std::sort(pieces_.begin(), pieces_.end());
     detail::AxisTriangles result;
     for (const auto& [triangle, face] : pieces_) {
-      if (!mesh_.triangles.empty() && mesh_.triangles.back() == triangle) continue;  // of two faces, the first one's
+      if (!mesh_.triangles.empty() && mesh_.triangles.back() == triangle)
+        continue;  // it belongs to two faces: the first keeps it
       mesh_.triangles.push_back(triangle);
       result.face_of_triangle.push_back(face);
     }
@@ -83,9 +84,9 @@ class Triangulator {
 
   const MedialAxis& axis_;
   MedialMesh mesh_;
-  Index face_ = 0;                                              // that is being cut
+  Index face_ = 0;                                              // the face that is being cut
   std::vector<std::pair<std::array<Index, 3>, Index>> pieces_;  // triangles, and their faces
-  std::unordered_set<std::uint64_t> joined_;                    // asked only whether it holds a pair of vertices
+  std::unordered_set<std::uint64_t> joined_;                    // only looked up, never iterated: pairs of vertices
 };
 
 [[noreturn]] void fail(const char* kind, std::size_t index, const char* fault) {

@@ -19,7 +19,7 @@ namespace {
 constexpr int kSteps = 200;         // towards the ball that reaches farthest
 constexpr double kRounded = 1e-12;  // of a radius: more than what is rounded on the way to it
 
-// A ball that holds balls, a few percent larger than the least one (Badoiu and Clarkson 2003).
+// A ball that holds all of these balls. It is a few percent larger than the smallest (Badoiu and Clarkson 2003).
 Sphere ball_around(std::span<const Sphere> balls, std::span<const Index> which) {
   Sphere around = balls[which.front()];
   for (const Index b : which)
@@ -40,7 +40,7 @@ Sphere ball_around(std::span<const Sphere> balls, std::span<const Index> which) 
     const Vector away = balls[ball].center - around.center;
     const double distance = away.norm();
     if (!(distance > 0)) break;
-    // The farthest point of that ball.
+    // Moves the centre towards the farthest point of that ball.
     around.center += reach / distance / (step + 1) * away;
   }
   least.radius *= 1 + kRounded;
@@ -72,7 +72,8 @@ class TreeOverBalls {
   }
 
  private:
-  // Into as many parts, each time the larger half along the longest side of the centres' box.
+  // Divides a group into `parts` parts: again and again the largest part is halved, across the longest side of its
+  // centres' box.
   std::vector<std::vector<Index>> divided(std::vector<Index> group, Index parts) const {
     std::vector<std::vector<Index>> result{std::move(group)};
     while (result.size() < parts) {
@@ -104,7 +105,8 @@ class TreeOverBalls {
   SphereTree tree_;
 };
 
-// Upper bounds: of a centre's signed distance to the union, negative inside, and of any point's of the ball.
+// Stores for each node an upper bound on the signed distance of its centre from the union of the balls (negative
+// inside), and one on the distance of any of its points.
 void measure_union(std::span<const Sphere> balls, SphereTree& tree) {
   tbb::parallel_for(std::size_t{0}, tree.nodes.size(), [&](std::size_t i) {
     SphereNode& node = tree.nodes[i];
@@ -118,7 +120,8 @@ void measure_union(std::span<const Sphere> balls, SphereTree& tree) {
   });
 }
 
-// On the packed floats, with roundings against what is to be proven.
+// Proves that the packed tree, with its floats as they are, covers the balls. Every rounding is taken in the direction
+// that makes the proof harder.
 class BallTreeProof {
  public:
   BallTreeProof(std::span<const Sphere> balls, const runtime::PackedSphereTree& packed)
@@ -126,7 +129,7 @@ class BallTreeProof {
     const Point origin(packed.origin[0], packed.origin[1], packed.origin[2]);
     for (const Sphere& ball : balls) {
       const Vector at = ball.center - origin;
-      // Of the difference and of a sum of a length and a radius.
+      // The last number bounds the rounding of the difference, and of the sum of a length and a radius.
       balls_.push_back({at, ball.radius, 0x1p-50 * (at.norm() + ball.radius + origin.norm())});
     }
   }

@@ -30,8 +30,8 @@ bool is_plain(const OctreeOptions& options) {
   return options.branching == 8 && options.refinement.error == 0 && options.refinement.regions.empty();
 }
 
-// Trees are built in the surface's frame, so that they do not depend on where it lies and how large it is: all but
-// merged ones, which begin with the given surface's medial axis.
+// Builds trees in the surface's canonical frame, so that they do not depend on the surface's place and size. Only
+// merged trees are built on the surface as given, because they start from its medial axis.
 class TreeBuilder {
  public:
   TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
@@ -52,7 +52,7 @@ class TreeBuilder {
     if (samples_surface(method_)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {
-      if (method_ == TreeMethod::octree) return;  // nothing is open, as require_proof() finds
+      if (method_ == TreeMethod::octree) return;  // it covers the surface by construction; require_proof() checks that
       const auto* merging = std::get_if<MergeOptions>(&options_.tree);
       const bool grows = merging != nullptr && merging->closing == MergeClosing::growth;
       build_.cover = grows ? grow_to_cover(build_.tree, surface_, kGrowthFactor, progress_)
@@ -83,7 +83,7 @@ class TreeBuilder {
 
   bool in_frame() const { return method_ != TreeMethod::merging; }
 
-  // Points of the surface, and the axis unless the tree does without.
+  // Makes the surface points, and the medial axis if the tree needs one.
   void start_from(MedialBuildInput input) {
     MedialBuildOptions medial = options_.medial;
     if (options_.samples_by_need) {
@@ -98,7 +98,8 @@ class TreeBuilder {
     if (imports) sampling_ = framed_.in(build_.medial->sampling);
   }
 
-  // Those of the input, or else new ones, which become the axis' as well: but not if it is to add to them.
+  // Takes the points of the input. If there are none, samples new ones, which the axis uses, too, unless it adds
+  // points.
   void take_points(const MedialBuildOptions& options, MedialBuildInput& input) {
     if (!given_.solid())
       throw InputError("a tightened tree needs a solid: " + given_.report().faults() + "; repair the mesh first");
@@ -176,7 +177,7 @@ class TreeBuilder {
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
-  // Whether no level may be looser than the one above it or than the octree's.
+  // Whether the tree must be such that no level is looser than the level above or than the octree's level.
   bool is_compared() const {
     return method_ == TreeMethod::tightened && !options_.descent && !options_.anneal &&
            detail::goes_on_everywhere(refinement_of(options_.tree));
@@ -189,8 +190,8 @@ class TreeBuilder {
     build_.redundancy = {};
   }
 
-  // What is returned has passed verify(). Very far from the origin the given surface's last digits may be too coarse
-  // for a tree that was closed in the frame.
+  // Packs the tree and proves that it is conservative; a tree without proof is never returned. If the surface lies very
+  // far from the origin, rounding may have opened a tree that was closed in the frame: it is covered once more.
   void require_proof() {
     ProvenTree proven = pack_proven(build_.tree, given_, progress_);
     if (proven.proof.triangles_uncovered > 0 && in_frame()) {
@@ -211,7 +212,7 @@ class TreeBuilder {
   const Surface& given_;
   const detail::FramedSurface framed_;
   const TreeMethod method_;
-  const Surface& surface_;  // that the tree is built on
+  const Surface& surface_;  // the surface that the tree is built on: in the frame, or as given
   SphereTreeOptions options_;
   const Progress& progress_;
   SurfaceSampling sampling_;  // in the frame

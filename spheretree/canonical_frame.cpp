@@ -7,17 +7,20 @@
 namespace orchard::detail {
 namespace {
 
-// No rational number, and none to the other one.
+// Two irrational numbers whose ratio is irrational, too.
 constexpr double kGoldenPart = 0.61803398874989485, kSilverPart = 0.41421356237309505;
-// Coarse beside the last digits of a mesh that is a thousand times its size off the origin, fine beside its triangles:
-// those of a flat face, with edges of a thousandth of it, stay within tolerance::kCoplanarAngle.
+// The cell size of the lattice that vertices are rounded to. It is coarse compared with the rounding errors of a mesh
+// that lies a thousand times its size off the origin, but fine compared with the triangles: those of a flat face whose
+// edges are a thousandth of the mesh's size stay coplanar within tolerance::kCoplanarAngle.
 constexpr double kLattice = kGoldenPart * 0x1p-23;
-// For meshes that are no solids on the first: their thinnest triangles have no area there. The last is none.
+// Lattices for meshes that are not solid when rounded to the first, because their thinnest triangles lose their area.
+// The last means no lattice.
 constexpr double kFinerLattices[] = {kGoldenPart * 0x1p-31, kGoldenPart * 0x1p-39, 0};
 constexpr double kFineLattice = kSilverPart * 0x1p-22, kCoarseLattice = kSilverPart * 0x1p-9;
 
 constexpr double kHalfDiagonal = 0.867;  // of a cell of side 1
-constexpr double kRoundings = 0x1p-48;   // of the way in, of numbers of about 1
+constexpr double kRoundings =
+    0x1p-48;  // the rounding errors of bringing a point into the frame, where numbers are about 1
 
 Point on_lattice(const Point& point, double lattice) {
   Point result;
@@ -25,7 +28,7 @@ Point on_lattice(const Point& point, double lattice) {
   return result;
 }
 
-// Where a point of one triangle is on another that has the same corners.
+// Carries a point of a triangle to the same place of the triangle with moved corners.
 Point carried(const Point& point, const std::array<Point, 3>& from, const std::array<Point, 3>& to) {
   const Vector u = from[1] - from[0], v = from[2] - from[0], normal = u.cross(v), place = point - from[0];
   const double area = normal.squaredNorm();

@@ -5,22 +5,22 @@
 
 #include "uncovered_regions.h"
 
-// Which balls take uncovered regions in: what the closing of a merged level (merging/merge_closing.h) and that of a
-// tightened one (tightened/level_closing.h) have in common.
+// Which ball each uncovered region is given to: the rule that the closing of a merged level (merging/merge_closing.h)
+// and that of a tightened one (tightened/level_closing.h) share.
 namespace orchard::detail {
 
-// Queries of the signed distance to fit a ball again to what it has taken in.
+// The number of queries of the signed distance in which a ball is fitted to a further region.
 inline constexpr int kCandidateEvaluations = 14;
-// What breaks ties between balls that would not get looser at all, as a fraction of growth over R.
+// Breaks ties between balls that would not get looser: this fraction of (growth / R) is added to the cost.
 inline constexpr double kCandidateTie = 1e-9;
 
 struct CoverCandidate {
   Index ball = kNone;
-  double rise = std::numeric_limits<double>::infinity();  // of its cost
+  double rise = std::numeric_limits<double>::infinity();  // by how much its cost rises
 };
 
-// Of the balls that can hold an uncovered region's points(), and of those that can hold its farthest one alone, the one
-// that this costs least.
+// whole: of the balls that can hold all of a region's points(), the cheapest. farthest: of the balls that can hold its
+// farthest point, the cheapest for this point alone.
 struct CoverCandidates {
   CoverCandidate whole, farthest;
 };
@@ -28,14 +28,14 @@ struct CoverCandidates {
 using CheapestCandidates = std::function<CoverCandidates(const UncoveredRegion&)>;  // called by several threads
 
 struct Taking {
-  Index ball = kNone;  // none: no ball can hold even the farthest point
-  bool whole = false;  // takes the region's corners in as well as its farthest point
+  Index ball = kNone;  // kNone: no ball can hold even the farthest point
+  bool whole = false;  // whether it takes the region's corners as well as its farthest point
 };
 
-// Where each uncovered region goes: as a whole to the ball that this costs least, unless that costs many times what its
-// farthest point alone does, or no ball can hold it. Then it is a long sliver, or lies across the border of a path
-// region, and will fall apart: only its farthest point goes, to the ball that this costs least. Parallel over the
-// regions.
+// Decides where each uncovered region goes. It goes as a whole to the ball for which it is cheapest. But if no ball can
+// hold it, or if that costs many times as much as its farthest point alone, the region is a long sliver or lies across
+// the border of a path region: then only the farthest point goes to the ball for which that is cheapest, and the region
+// will fall apart. Parallel over the regions.
 std::vector<Taking> find_cover_candidates(const std::vector<UncoveredRegion>& uncovered,
                                           const CheapestCandidates& cheapest);
 

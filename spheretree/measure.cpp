@@ -12,17 +12,18 @@
 namespace orchard {
 namespace {
 
-// The tighter of the bound by the centre's distance and the searched one. The latter is widened a little: a proof of a
-// bound without room to spare takes far longer than finding it did.
+// Returns the smaller of two bounds: the one from the distance of the centre, and the one from a search over the ball.
+// The second is enlarged a little, because verify() would need far more time to prove it without this margin than the
+// search needed to find it.
 double bound_over_ball(const Surface& surface, const Sphere& ball, double center_distance, double at_least) {
-  constexpr double kRoom = 0.25;  // of the search's tolerance
+  constexpr double kRoom = 0.25;  // the margin, as a fraction of the search's tolerance
   const DistanceTolerance tolerance;
   const Bounds found = farthest_from_solid(surface, ball, tolerance, at_least);
   const double width = std::max(tolerance.of_radius * surface.bounding_radius(), tolerance.of_distance * found.lower);
   return std::min(distance_bound(center_distance, ball.radius), found.upper + kRoom * width);
 }
 
-// Returns the lower bound on the inaccuracy, too, which spares the search over the ball work.
+// Returns both bounds on the inaccuracy. The lower one shortens the search over the ball.
 Bounds inaccuracy_of(const SphereNode& node, const Surface& surface) {
   if (surface.solid()) return inaccuracy(surface, node.sphere, {tolerance::kInaccuracy, 0});
   const double bound = distance_bound(surface.distance(node.sphere.center), node.sphere.radius);

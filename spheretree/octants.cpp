@@ -6,10 +6,11 @@
 namespace orchard {
 namespace {
 
-// Rounding slack of the overlap test, relative to the lengths in it: an octant that may touch a triangle counts.
+// The margin of the overlap test for rounding, relative to the lengths in it. An octant that may touch a triangle
+// counts.
 constexpr double kSlack = 0x1p-44;
 
-// Whether the projections of the triangle (relative to the box's centre) and of the box on `axis` overlap.
+// Returns whether the projections of a triangle (relative to the centre of the box) and of the box on `axis` overlap.
 bool overlap_on(const Vector& axis, const std::array<Point, 3>& corners, const Vector& half) {
   const double a = axis.dot(corners[0]), b = axis.dot(corners[1]), c = axis.dot(corners[2]);
   double extent = 0;
@@ -18,7 +19,8 @@ bool overlap_on(const Vector& axis, const std::array<Point, 3>& corners, const V
   return std::min({a, b, c}) <= radius && std::max({a, b, c}) >= -radius;
 }
 
-// Separating axes of a triangle and a box: the box's, the triangle's normal, and the products of their edges.
+// Tests the separating axes of a triangle and a box: the axes of the box, the normal of the triangle, and the cross
+// products of their edges.
 bool triangle_meets_box(std::array<Point, 3> corners, const Box& box) {
   const Point center = box.center();
   const Vector half = box.sizes() / 2;

@@ -9,14 +9,14 @@ namespace orchard {
 struct Octant {
   Box box;
   std::vector<Index> triangles;
-  Index node = 0;  // of the tree
+  Index node = 0;  // number of the tree's node
 };
 
-// The eight boxes of half the size that meet one of the parent's triangles, or may within rounding.
+// Of the eight boxes of half the parent's size, those that meet one of its triangles, or may meet one within rounding.
 std::vector<Octant> occupied_children(const Surface& surface, const Octant& parent);
 
-// Any number of boxes: for eight, occupied_children(); else the largest box is halved across its longest side until
-// `count` occupied ones are there.
+// Divides the parent into `count` occupied boxes. For eight, the result is occupied_children(); else the largest box is
+// halved across its longest side until there are `count`.
 std::vector<Octant> occupied_parts(const Surface& surface, const Octant& parent, Index count);
 
 }  // namespace orchard

@@ -12,23 +12,23 @@
 namespace orchard {
 namespace {
 
-// A mesh that may be read has room to spare: balls of a tree are not hundreds of times as large as the mesh.
+// The limit on coordinates of meshes leaves room: balls of a tree are not hundreds of times as large as the mesh.
 static_assert(500 * kMaxCoordinate <= double{runtime::kCoordinateLimit});
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// The least float that is at least `value`.
+// The least float that is not below `value`.
 float round_up(double value) {
   const auto rounded = static_cast<float>(value);
   return static_cast<double>(rounded) < value ? std::nextafter(rounded, kInfinity) : rounded;
 }
 
-// Slack for the few double roundings of a difference and a norm of lengths up to `size`.
+// A bound on the rounding errors of a difference and a norm in doubles, for lengths up to `size`.
 double slack(double size) { return 0x1p-48 * size; }
 
 class Packer {
  public:
-  // surface: nullptr: the balls are all there is.
+  // `surface`: nullptr for a tree over balls alone.
   Packer(const SphereTree& tree, const Surface* surface) : tree_(tree), surface_(surface) {
     if (tree.nodes.empty()) throw Error("pack: the tree has no root");
     origin_ = bounds().center;
@@ -83,8 +83,8 @@ class Packer {
     if (!(exact.cwiseAbs().maxCoeff() + node.sphere.radius < double{runtime::kCoordinateLimit} / 2))
       throw Error("pack: a ball lies beyond the largest coordinate that a packed tree may have; scale the mesh down");
     const Eigen::Vector3f rounded = exact.cast<float>();
-    // How far the packed centre may be from the true one: the float rounding, the roundings of this very difference,
-    // and those of the sum with the origin by which others get back to the mesh's frame.
+    // A bound on the distance of the packed centre from the true one: it includes the rounding to float, the roundings
+    // of the difference below, and those of adding the origin, by which users return to the mesh's frame.
     const double moved = (exact - rounded.cast<double>()).norm() * (1 + 0x1p-48) +
                          slack(exact.norm() + node.sphere.radius + origin_.norm());
     block.x[at.lane] = rounded.x();

@@ -10,7 +10,8 @@ struct PackedNode {
   Index block, lane;
 };
 
-// Where the nodes of a packed tree are, in breadth-first order. Precondition: structure_fault(tree) == nullptr.
+// The block and lane of each node of a packed tree, in breadth-first order. Precondition: structure_fault(tree) ==
+// nullptr.
 inline std::vector<PackedNode> packed_nodes(const runtime::PackedSphereTree& tree) {
   std::vector<PackedNode> nodes{{0, 0}};
   for (std::size_t i = 0; i < nodes.size(); ++i) {

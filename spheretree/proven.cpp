@@ -8,7 +8,7 @@
 namespace orchard {
 namespace {
 
-// By what verify() missed, and more than the rounding to float that the packed bound already has.
+// Raises a bound by the amount that verify() found missing, and by more than the rounding of the packed bound to float.
 double raised(double bound, double amount, double bounding_radius) {
   return bound + amount + 0x1p-22 * (std::abs(bound) + amount + bounding_radius);
 }
@@ -32,7 +32,8 @@ ProvenTree pack_proven(SphereTree& tree, const Surface& surface, const Progress&
   };
   prove();
   if (result.proof.bounds_violated == 0) return result;
-  for (const Violation& violation : result.proof.violations) {  // of a node's, the centre's comes first
+  for (const Violation& violation :
+       result.proof.violations) {  // the one of a node's centre comes before its other ones
     if (violation.kind != Violation::Kind::center_distance && violation.kind != Violation::Kind::distance_bound)
       continue;
     weaken(tree.nodes[violation.node], violation, surface.bounding_radius());

@@ -6,8 +6,8 @@
 
 namespace orchard {
 
-// A uniform direction: a point of the cube that lies in the unit ball, normalised. No sine or cosine, so that it is the
-// same everywhere.
+// A uniformly distributed direction: random points of the cube are drawn until one lies in the unit ball, and that is
+// normalised. Without sine and cosine, so that the result is the same on every machine.
 inline Vector random_direction(Random& random) {
   for (;;) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);

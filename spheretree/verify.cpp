@@ -13,21 +13,23 @@
 namespace orchard {
 namespace {
 
-// Roundings of a centre's sum, of a closest-point query and of a few comparisons, per unit of coordinate.
+// The rounding errors of the sum of a centre, of a closest-point query and of a few comparisons, per unit of
+// coordinate.
 constexpr double kRounding = 0x1p-49;
 
 void add(const VerifyOptions& options, Verification& result, Violation violation) {
   if (result.violations.size() < options.max_violations) result.violations.push_back(std::move(violation));
 }
 
-// A triangle that is not proven, and the balls whose boundary its uncovered regions have.
+// A triangle that is not proven, and the balls on the boundary of its uncovered regions.
 struct TriangleViolation {
   bool bad = false;
   Violation violation;
   std::vector<Index> nodes;
 };
 
-// Of the points that the lemma names, the one farthest outside all path regions.
+// Checks a triangle against all paths. The point of the violation is the one farthest outside all path regions, among
+// the points that the lemma returns.
 TriangleViolation check_all_paths(const Surface& surface, Index triangle, const PathForest& forest,
                                   const Point& origin) {
   auto corners = surface.corners(triangle);
@@ -96,7 +98,8 @@ class Verifier {
   }
 
  private:
-  // The exact level tests the stored triangles: they must be the surface's, and their corners as near as promised.
+  // Checks that the stored triangles, which the exact level tests, are those of the surface, with corners within
+  // vertex_error.
   void check_mesh(const VerifyOptions& options) {
     const TriangleMesh& mesh = surface_.mesh();
     const auto fail = [&](Index triangle, const Point& at, double amount) {
@@ -117,7 +120,7 @@ class Verifier {
     }
   }
 
-  // For each triangle, the tree of those leaves alone that list it.
+  // Checks each triangle against the tree of those leaves that list it.
   void check_triangles(const VerifyOptions& options, const Progress& progress) {
     const Rows listed = leaves_listing();
     const PathForest forest(balls_);
@@ -181,7 +184,7 @@ class Verifier {
   }
 
   struct Missed {
-    double center_distance = 0, distance_bound = 0;  // by how much; <= 0: proven
+    double center_distance = 0, distance_bound = 0;  // by how much each bound is too low; at most 0 if it is proven
     Point farthest = Point::Zero();
   };
 
@@ -202,7 +205,7 @@ class Verifier {
     }
   }
 
-  // The cheap bound by the centre's distance first; only where it does not settle the matter, the search over the ball.
+  // Tries the bound from the distance of the centre first, and the search over the ball only if that does not decide.
   Missed missed_bounds(std::size_t i) const {
     const auto [block_index, lane] = nodes_[i];
     const runtime::SiblingBlock& block = tree_.blocks[block_index];

@@ -1,4 +1,4 @@
-// Options of the commands that lead to medial axes, judge and use them.
+// Options of the commands that build, measure and use medial axes.
 #include <fmt/core.h>
 
 #include <numbers>
@@ -35,8 +35,9 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
   command
       .add_option_function<std::string>(
           "--relaxation", [&sample](const std::string& name) { sample.relaxation = relaxation_named(name); },
-          "Between which points to relax: within coplanar clusters (clusters, for designed parts), across faces "
-          "(neighbors, for scans), or as fits the mesh (automatic, default)")
+          "Which points repel each other: those of one coplanar cluster (clusters, for designed parts), all near ones "
+          "across "
+          "faces (neighbors, for scans), or those that suit the mesh (automatic, default)")
       ->check(CLI::IsMember({"automatic", "clusters", "neighbors"}));
   command
       .add_option("--cluster-angle", sample.cluster_degrees,
@@ -45,7 +46,7 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
       ->check(NumberValidator(CLI::Range(0.0, 90.0)));
   command
       .add_option("--crease-angle", sample.crease_degrees,
-                  "Smallest angle in degrees at which a scan has an edge that gets edge points [28.6]")
+                  "Smallest angle in degrees at which an edge of a scan gets edge points [28.6]")
       ->check(NumberValidator(CLI::Range(0.0, 180.0)));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
   add_join(command, sample.join);
@@ -92,8 +93,9 @@ void add_other_axis(CLI::App& command, MedialCommand& medial) {
                                          "Measure or convert this axis instead of building one (.ma, .obj, .ply, .off, "
                                          ".sph, .swc or text; docs/reference/formats.md)");
   command
-      .add_flag("--connect", medial.connect,
-                "With --axis: connect balls that have no cells by their power diagram within the solid")
+      .add_flag(
+          "--connect", medial.connect,
+          "With --axis: connect balls without edges and triangles by the cells of their power diagram in the solid")
       ->needs(axis);
   add_list(command, "--export", medial.exports,
            "Also write the axis in these formats, as MODEL-axis.npz and so on; with --axis, as AXIS-converted.npz",
@@ -139,10 +141,11 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
                   "where there are too few balls)")
       ->check(CLI::IsMember({"medial", "free"}))
       ->capture_default_str();
-  command.add_flag("--curve", medial.curve, "Write the error of ever fewer balls: MODEL-curve.csv and .svg");
-  CLI::Option* envelope =
-      command.add_option("--envelope", medial.envelope,
-                         "Write the envelope of the balls, or of those of --vertices or --error, to this .obj file");
+  command.add_flag("--curve", medial.curve,
+                   "Also write the error of the axis simplified to fewer and fewer balls: MODEL-curve.csv and .svg");
+  CLI::Option* envelope = command.add_option(
+      "--envelope", medial.envelope,
+      "Write the envelope of the axis, or of the simplified axis of --vertices or --error, to this .obj file");
   command
       .add_option("--envelope-cell", medial.envelope_cell,
                   "Size of the grid cells of --envelope, in percent of the diagonal. Thinner parts may be lost; "
@@ -166,16 +169,17 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
           [&thickness](const std::string& name) {
             thickness.options.definition = name == "ray" ? ThicknessDefinition::ray : ThicknessDefinition::ball;
           },
-          "Thickness as the diameter of the largest ball in the solid that touches the place (ball, default) or as the "
+          "What thickness is: the diameter of the largest ball in the solid that touches the place (ball, default) or "
+          "the "
           "length of a ray inward (ray)")
       ->check(CLI::IsMember({"ball", "ray"}));
   add_angle(command, "--facing", thickness.options.facing,
-            "Smallest angle in degrees under which the centre of the ball sees its contacts on two facing sides [120]. "
-            "At places with a smaller angle, thickness is not defined",
+            "Smallest angle in degrees at which the centre of the ball sees its contacts on two facing sides [120]. "
+            "At places with a smaller angle, the thickness is not defined",
             180);
   add_angle(command, "--smooth", thickness.options.smooth,
-            "Largest angle in degrees at which an edge counts as part of a smooth surface [40]. Balls shrink to zero "
-            "at sharper convex edges",
+            "Largest angle in degrees by which a surface turns at an edge that counts as smooth [40]. Balls shrink to "
+            "zero at sharper convex edges",
             90);
   command
       .add_option("--samples", thickness.options.samples,
@@ -186,9 +190,9 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
   const auto add_limit = [&](const char* option, std::optional<double>& limit, const char* help) {
     return command.add_option(option, limit, help)->check(NumberValidator(CLI::Range(0.0, kMaxCoordinate)));
   };
-  CLI::Option* below =
-      add_limit("--below", thickness.below,
-                "Report the area that is thinner than this, in mesh units, with its places and their thickness");
+  CLI::Option* below = add_limit(
+      "--below", thickness.below,
+      "Report the area that is thinner than this, in mesh units, with the regions and their smallest thickness");
   add_limit("--fail-below", thickness.fail_below, "The same as --below, and exit with 4 if any place is thinner")
       ->excludes(below);
   command.add_option("--bins", thickness.bins, "Number of bins of the histogram")
@@ -303,7 +307,7 @@ void add_medial(CLI::App& app, Request& request) {
   command
       .add_flag(
           "--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
-          "Keep the axis of the Voronoi diagram, the dissertation's. The same as --refine no")
+          "Keep the axis of the Voronoi diagram, as in the dissertation. The same as --refine no")
       ->excludes(command.get_option("--refine"));
   add_threads(command, request);
   command.add_flag("!--no-views", medial.views, "Do not write files for ParaView");
@@ -330,21 +334,22 @@ void add_leaderboard(CLI::App& app, Request& request) {
       *app.add_subcommand("leaderboard", "Measure the medial axes of several systems in a folder beside orchard's own");
   LeaderboardCommand& leaderboard = request.leaderboard;
   command
-      .add_option(
-          "folder", leaderboard.input,
-          "Folder of meshes, with axes MODEL-SYSTEM-N.ma (.obj, .ply, ..) beside them or in its subfolder results")
+      .add_option("folder", leaderboard.input,
+                  "Folder of meshes. It has the axes, MODEL-SYSTEM-N.ma (.obj, .ply, ..), too, or a subfolder results "
+                  "with them")
       ->required();
   command
       .add_option("-o,--output", leaderboard.folder,
-                  "Folder that receives the table and the state that a later run continues from")
+                  "Folder that receives the table, and the state from which a later run continues")
       ->required();
-  add_list(command, "--builders", leaderboard.builders,
-           "Which axes of orchard to measure with as few balls as the others: refined, raw (default: both)",
-           {"refined", "raw"});
+  add_list(
+      command, "--builders", leaderboard.builders,
+      "Which axes of orchard to measure with the same numbers of balls as the others: refined, raw (default: both)",
+      {"refined", "raw"});
   add_list(command, "--vertices", leaderboard.vertices, "Numbers of balls to build in addition to those of the axes",
            1);
   command.add_flag("--connect", leaderboard.connect,
-                   "Connect balls that have no cells by their power diagram within the solid");
+                   "Connect balls without edges and triangles by the cells of their power diagram in the solid");
   command
       .add_option("--quality-samples", leaderboard.quality_samples,
                   "Number of surface points at which each axis is measured")

@@ -57,7 +57,7 @@ void add_figure(CLI::App& command, ViewCommand& view) {
   command.add_flag("--balls", view.balls, "Draw the balls of axes in place of their sheets");
   command
       .add_option("--layout", view.layout,
-                  "Draw the files over each other, or beside each other with the meshes around each")
+                  "Draw the files over each other, or each in a picture of its own with the meshes around it")
       ->capture_default_str()
       ->check(CLI::IsMember({"over", "beside"}));
   command.add_flag("--captions", view.captions, "Write names and figures below the pictures");
@@ -78,7 +78,7 @@ void add_view(CLI::App& app, Request& request) {
   command.add_option("-o,--output", view.picture, "Picture to write (.png). With --window, the key s saves it");
   add_list(
       command, "--level", view.levels,
-      "Level of the trees to draw, 0 for the root. Several, such as 1,2,3, make a panel each (default: the deepest)", 0,
+      "Level of the trees to draw, 0 for the root. Several, such as 1,2,3, get a panel each (default: the deepest)", 0,
       1'000'000);
   command.add_option(
       "--camera", view.camera,
@@ -89,7 +89,7 @@ void add_view(CLI::App& app, Request& request) {
   command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: fits the model; 1000x800 for a window)");
   command
       .add_option("--opacity", view.opacity,
-                  "Opacity of meshes that are drawn around something else. 0 hides them, 1 hides what is inside")
+                  "Opacity of meshes around axes, trees or points. 0 hides the meshes, 1 hides what is inside")
       ->check(NumberValidator(CLI::Range(0.0, 1.0)))
       ->capture_default_str();
   add_figure(command, view);
@@ -125,7 +125,7 @@ void add_report_command(CLI::App& app, Request& request) {
 
 void add_completion(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("completion", "Print a completion script for a shell");
-  command.add_option("shell", request.shell, "Shell to make the script for")
+  command.add_option("shell", request.shell, "Shell that runs the script: bash or zsh")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh"}));
   command.footer(
@@ -138,7 +138,7 @@ void add_completion(CLI::App& app, Request& request) {
   });
 }
 
-// What packages and pages are made with; --help does not list it.
+// The command that makes the manual page and the page of all options. --help does not list it.
 void add_reference(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("reference", "Print all commands and options")->group("");
   command.add_option("format", request.format, "Format to print")
@@ -151,8 +151,8 @@ void add_reference(CLI::App& app, Request& request) {
   });
 }
 
-// An empty word, as a script's unset variable leaves one, is never what anybody means, nor the same as no option at
-// all.
+// Refuses empty values, which usually come from an unset variable of a script. An empty value is a mistake, and not the
+// same as leaving the option out.
 void refuse_empty_values(CLI::App& app) {
   const CLI::Validator named([](std::string& value) { return value.empty() ? "the value is empty" : ""; }, "");
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))

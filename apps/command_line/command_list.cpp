@@ -11,7 +11,7 @@
 namespace orchard::apps {
 namespace {
 
-// "{a,b,c}" in a type's name, if all of it are words.
+// The words of "{a,b,c}" in the name of a type; none if an item is not a word.
 std::vector<std::string> choices_in(const std::string& type) {
   const std::size_t begin = type.find('{'), end = type.find('}', begin);
   if (begin == std::string::npos || end == std::string::npos) return {};
@@ -32,7 +32,7 @@ std::vector<std::string> choices_in(const std::string& type) {
   return choices;
 }
 
-// "{1 to 9}" or "in [1 - 9]" in a type's name, without the brackets.
+// The range in the name of a type, "{1 to 9}" or "in [1 - 9]", without the brackets.
 std::string range_in(const std::string& type) {
   for (const auto& [open, close] : {std::pair{'{', '}'}, {'[', ']'}}) {
     const std::size_t begin = type.find(open), end = type.find(close, begin);
@@ -42,10 +42,11 @@ std::string range_in(const std::string& type) {
   return {};
 }
 
-// Options whose value is a file or folder: their types do not tell.
+// Whether the value of an option is a file or folder, which its type does not show.
 bool takes_file(const CLI::Option& option) {
-  static const std::vector<std::string> named{"output", "points", "diagram", "features", "from-axis",    "axis",
-                                              "beside", "plot",   "csv",     "from",     "package-path", "trajectory"};
+  static const std::vector<std::string> named{
+      "output", "points", "diagram",      "features",   "from-axis", "axis", "beside", "plot",          "csv",
+      "from",   "record", "package-path", "trajectory", "envelope",  "tree", "replay", "vertex-weights"};
   if (option.get_lnames().empty()) return true;
   return std::find(named.begin(), named.end(), option.get_lnames().front()) != named.end();
 }
@@ -61,6 +62,11 @@ std::vector<std::string> usual_values(const CLI::App& command, const CLI::Option
       if (column.rates) values.push_back(column.name);
   if (name == "color") values = {"radius", "structure", "structure_kind", "error", "inaccuracy", "level"};
   return values;
+}
+
+// Whether it is a folder: then the help says so, so that the name of the value agrees with it.
+bool takes_folder(const CLI::Option& option) {
+  return takes_file(option) && option.get_description().starts_with("Folder");
 }
 
 std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
@@ -86,6 +92,7 @@ OptionEntry entry_of(const CLI::App& command, const CLI::Option& option) {
   entry.repeats = option.get_expected_max() > 1;
   entry.standard = option.get_default_str();
   entry.file = takes_file(option);
+  entry.folder = takes_folder(option);
   if (entry.flag) return entry;
   const std::string type = option.get_type_name();
   entry.choices = choices_in(type);
@@ -113,7 +120,7 @@ bool has_range(const OptionEntry& option) { return option.value.find(" to ") != 
 std::string placeholder_of(const OptionEntry& option) {
   if (option.flag) return {};
   if (!option.choices.empty()) return joined(option.choices, "|");
-  if (option.file) return "FILE";
+  if (option.file) return option.folder ? "FOLDER" : "FILE";
   const bool number = option.value == "UINT" || option.value == "INT" || option.value == "FLOAT" || has_range(option);
   return number ? "N" : "VALUE";
 }

@@ -1,4 +1,4 @@
-// Options of the commands that make and judge sets of spheres.
+// Options of the commands that make and audit sets of spheres.
 #include <fmt/core.h>
 
 #include <numbers>
@@ -16,7 +16,7 @@
 namespace orchard::apps {
 namespace {
 
-// That say what a set is to be.
+// Options for the spheres of a set.
 void add_set_options(CLI::App& command, SpheresCommand& spheres) {
   SphereSetOptions& options = spheres.options;
   command
@@ -63,7 +63,8 @@ void add_set_options(CLI::App& command, SpheresCommand& spheres) {
           [&options](const std::string& name) {
             options.effort = name == "low" ? Effort::low : name == "high" ? Effort::high : Effort::standard;
           },
-          "How long to search (default: standard). high takes about three times as long and is a little tighter")
+          "How long to search (default: standard). high takes about three times as long and gives slightly tighter "
+          "sets")
       ->check(CLI::IsMember({"low", "standard", "high"}));
   command.add_option("--seed", options.seed, "Seed of all random choices")->capture_default_str();
   add_list(command, "--curve", spheres.curve,
@@ -71,12 +72,12 @@ void add_set_options(CLI::App& command, SpheresCommand& spheres) {
            kMaxSetSpheres);
 }
 
-// That say which part of the mesh counts, and where it counts more.
+// Options for the part of the mesh that counts, and for the weights of its parts.
 void add_place_options(CLI::App& command, SpheresCommand& spheres) {
   command
       .add_option("--clip", spheres.clip,
                   "NX NY NZ D: fit only the part of the solid where NX x + NY y + NZ z is at least D. The cut is "
-                  "closed by the plane")
+                  "closed by a flat cap")
       ->expected(4);
   SetWeights& weights = spheres.options.weights;
   command
@@ -85,13 +86,15 @@ void add_place_options(CLI::App& command, SpheresCommand& spheres) {
           [&weights](const std::vector<std::string>& regions) {
             for (const std::string& region : regions) weights.regions.push_back(parse_weight(region));
           },
-          "Weigh looseness F times in a ball (x,y,z,r=F) or in a box (x,y,z,x,y,z=F of two corners). May be repeated")
+          "Count looseness F times in a ball, x,y,z,r=F, or in a box between two corners, x,y,z,x,y,z=F. May be "
+          "repeated")
       ->allow_extra_args(false);
-  command.add_option("--vertex-weights", spheres.vertex_weights,
-                     "Weigh looseness near each vertex: a file with one weight a line, in the order of the mesh");
+  command.add_option(
+      "--vertex-weights", spheres.vertex_weights,
+      "File of weights of looseness near the vertices: one number in each line, in the order of the mesh");
 }
 
-// For `--fit particles` alone.
+// Options that only `--fit particles` uses.
 void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
   ParticleOptions& options = spheres.options.particles;
   command
@@ -111,8 +114,9 @@ void add_particle_options(CLI::App& command, SpheresCommand& spheres) {
             options.density_of =
                 name == "balls" ? ParticleOptions::DensityOf::balls : ParticleOptions::DensityOf::solid;
           },
-          "particles: whose density --density is, the solid's, whose mass the spheres share (solid, default), or each "
-          "sphere's (balls)")
+          "particles: what --density refers to: the solid, whose mass the spheres share (solid, default), or each "
+          "sphere "
+          "(balls)")
       ->check(CLI::IsMember({"solid", "balls"}));
   command.add_flag(
       "--masses", options.own_masses,
@@ -152,9 +156,10 @@ void add_spheres(CLI::App& app, Request& request) {
   command.add_option(
       "--link", spheres.link,
       "Name of the link in urdf and yaml (default: that of the mesh), or the link to read from a file of several");
-  command.add_flag("--tree", spheres.tree,
-                   "Also write a sphere-tree (.orchard) over the spheres, for the run-time. Over a cover it bounds the "
-                   "surface, otherwise the union of the spheres");
+  command.add_flag(
+      "--tree", spheres.tree,
+      "Also write a sphere-tree (.orchard) of the spheres, for the run-time. For a cover, its object is the "
+      "surface; for other sets, the union of the spheres");
   command.add_flag("!--no-views", spheres.views, "Do not write files for ParaView");
   command.add_flag("--picture", spheres.picture, "Also draw the spheres to a .png file");
   add_report(command, spheres.report);
@@ -183,14 +188,13 @@ void add_audit(CLI::App& app, Request& request) {
   command
       .add_option("spheres", audit.spheres,
                   "Sphere set in the mesh's frame: text or .csv of x y z r, .json lists, .yml of cuRobo, .xrdf, .urdf, "
-                  ".srdf, .xml (MJCF), .mol (LAMMPS), .py (YADE), .ply with radii, .sph or .orchard; of a robot also a "
-                  "folder of MorphIt's files")
+                  ".srdf, .xml (MJCF), .mol (LAMMPS), .py (YADE), .ply with radii, .sph or .orchard. For a robot, also "
+                  "a folder of MorphIt's files")
       ->required();
   command
       .add_option(
           "mesh", audit.mesh,
-          "Triangle mesh (.obj, .ply, .stl or .off), or a robot's .urdf, with all of whose links the spheres are "
-          "compared")
+          "Triangle mesh (.obj, .ply, .stl or .off), or the .urdf of a robot, to audit the spheres of all its links")
       ->required();
   command.add_option("--link", audit.link, "Link to audit, if the file has several");
   command
@@ -199,9 +203,8 @@ void add_audit(CLI::App& app, Request& request) {
       ->check(NumberValidator(CLI::Range(-1e15, 1e15)));
   add_join(command, audit.join);
   add_robot_reading(command, audit.reading);
-  command.add_flag(
-      "--wrap", audit.wrap,
-      "Of a robot: compare links that are no solids as closed skins around them, not by their surface alone");
+  command.add_flag("--wrap", audit.wrap,
+                   "Robots: wrap links that are not solids in closed skins, instead of measuring only their surface");
   auto* folder = command.add_option("-o,--output", audit.folder, "Folder that receives the views and the report");
   auto* picture =
       command.add_flag("--picture", audit.picture, "Draw where the surface is open and where spheres protrude")
@@ -211,7 +214,7 @@ void add_audit(CLI::App& app, Request& request) {
   add_force(command, audit.output)->needs(folder);
   add_output_flags(command, audit.output);
   command.footer(
-      "Exit code 3 if some of the surface is open.\n"
+      "The exit code is 3 if some of the surface is open.\n"
       "Examples:\n  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj\n"
       "  orchard audit out/lamp-spheres/lamp-set.txt data/lamp.obj -o out/lamp-audit --picture\n"
       "  orchard audit robot.yml link.stl --link forearm --buffer 0.01\n"

@@ -69,7 +69,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
   auto* wrap = command
                    .add_flag("--wrap{" + kDefaultWrap + "}", options.wrap,
                              "Replace the mesh by a closed skin around it, for scans and open meshes. --wrap=OFFSET "
-                             "sets how far outside, in diagonals")
+                             "sets the distance of the skin from the mesh, in diagonals")
                    ->excludes(strict);
   command
       .add_option("--wrap-alpha", options.wrap_alpha,
@@ -81,8 +81,9 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
   command
       .add_option_function<double>(
           "--fill-holes", [&options](double width) { options.fill_holes = width; },
-          "Fill holes up to this width, in bounding radii, of any number of edges (default: 0.5, holes of at most 100 "
-          "edges)")
+          "Fill holes up to this width, in bounding radii, whatever their number of edges (default: holes of at most "
+          "100 "
+          "edges up to a width of 0.5)")
       ->check(NumberValidator(CLI::Range(0.0, 2.0)))
       ->excludes(strict)
       ->excludes(wrap);
@@ -101,8 +102,9 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
           [&options](const std::string& name) {
             options.ball = name == "ritter" ? BoundingBall::ritter : BoundingBall::minimal;
           },
-          "Bounding sphere of the mesh and root of trees: the smallest one (minimal, default) or that of Ritter's "
-          "method (ritter)")
+          "Bounding sphere of the mesh, which is also the root of trees: the smallest one (minimal, default) or that "
+          "of "
+          "Ritter's method (ritter)")
       ->check(CLI::IsMember({"minimal", "ritter"}));
 }
 

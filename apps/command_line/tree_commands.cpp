@@ -1,4 +1,4 @@
-// Options of the commands that build, judge and use sphere-trees.
+// Options of the commands that build, measure and use sphere-trees.
 #include <fmt/core.h>
 
 #include <numbers>
@@ -23,9 +23,8 @@ void add_build(CLI::App& app, Request& request) {
   add_mesh_options(command, build.reading);
   add_tree_options(command, build.tree);
   command
-      .add_option(
-          "--time", build.seconds,
-          "tightened: stop after this many seconds with the tightest tree found so far, which is the octree at least")
+      .add_option("--time", build.seconds,
+                  "tightened: stop after this many seconds and keep the tightest tree so far, at worst the octree")
       ->check(NumberValidator(CLI::Range(0.0, 1e6)))
       ->excludes(command.get_option("--effort"));
   add_tuning(command, build.tuning, true);
@@ -35,7 +34,7 @@ void add_build(CLI::App& app, Request& request) {
       "Build the tree from this medial axis (.ma, .ply, .obj or a file of another system) instead of computing one");
   add_threads(command, request);
   command.add_flag("!--no-views", build.views, "Do not write files for ParaView");
-  command.add_flag("--picture", build.picture, "Also draw the steps from mesh to tree to a .png file");
+  command.add_flag("--picture", build.picture, "Also draw the stages from mesh to tree in a .png file");
   add_report(command, build.page);
   command.add_flag("--cost", build.cost, "Print the expected time and memory and build nothing");
   add_list(
@@ -63,10 +62,10 @@ void add_build(CLI::App& app, Request& request) {
 
 void add_collide(CLI::App& app, Request& request) {
   CLI::App& command =
-      *app.add_subcommand("collide", "Test whether two placed objects touch, level by level of their sphere-trees");
+      *app.add_subcommand("collide", "Test whether two placed bodies touch, level by level of their sphere-trees");
   CollideCommand& collide = request.collide;
-  command.add_option("a", collide.a, "Sphere-tree of the first object (.orchard)")->required();
-  command.add_option("b", collide.b, "Sphere-tree of the second object; may be the same file")->required();
+  command.add_option("a", collide.a, "Sphere-tree of the first body (.orchard)")->required();
+  command.add_option("b", collide.b, "Sphere-tree of the second body; may be the same file")->required();
   command.add_option(
       "--pose", collide.pose,
       "Pose of b: \"tx ty tz qw qx qy qz\", a translation and a unit quaternion (default: where it was built)");
@@ -74,9 +73,9 @@ void add_collide(CLI::App& app, Request& request) {
   add_output_flags(command, collide.output);
   command.get_option("--quiet")->description("Print the answer only");
   command.footer(
-      "The answer is about the surfaces, and so are lower bounds. A body that lies wholly inside the other one does\n"
-      "not touch it: the answer is \"no\", and a line of its own (\"inside\" in JSON) says so. \"Separation at most\"\n"
-      "bounds the distance between the solids.\n"
+      "The answer and the lower bounds are about the surfaces. A body that lies wholly inside the other does\n"
+      "not touch it: the answer is \"no\", and a further line (\"inside\" in JSON) says that it lies inside.\n"
+      "\"Separation at most\" is a bound on the distance between the solids.\n"
       "Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
   command.callback([&request, &command] {
     request.collide.output.run = invocation_of(command, request.typed);
@@ -96,7 +95,7 @@ void add_verify(CLI::App& app, Request& request) {
       "Take the centre of the mesh's bounding box as the origin of the .sph file, as some systems write it");
   add_output_flags(command, verify.output);
   command.footer(
-      "Exit code 1 if anything is not proven; each violation is named.\n"
+      "The exit code is 1 if something is not proven; each violation is printed.\n"
       "Examples:\n  orchard verify out/lamp/lamp.orchard data/lamp.obj\n  orchard verify other.sph data/lamp.obj "
       "--bbox-center\n  orchard verify out/lamp/lamp.orchard data/lamp.obj --json");
   command.callback([&request, &command] {
@@ -167,8 +166,8 @@ void add_profile(CLI::App& app, Request& request) {
   CLI::App& command =
       *app.add_subcommand("profile", "Measure how fast and how selective a sphere-tree is, level by level");
   ProfileCommand& profile = request.profile;
-  command.add_option("a", profile.a, "Sphere-tree of the first object (.orchard)")->required();
-  command.add_option("b", profile.b, "Sphere-tree of the other body (default: a second copy of a)");
+  command.add_option("a", profile.a, "Sphere-tree of the first body (.orchard)")->required();
+  command.add_option("b", profile.b, "Sphere-tree of the second body (default: a second copy of a)");
   command
       .add_option("--flights", profile.flights,
                   "Number of random flights of b past a, of about ten poses each. More flights give steadier figures")
@@ -194,17 +193,19 @@ void add_profile(CLI::App& app, Request& request) {
 void add_simulate(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("simulate", "Run a scene of moving bodies and trace the collision detector");
   SimulateCommand& simulate = request.simulate;
-  command.add_option("scene", simulate.scene, "Scene to run")
+  command
+      .add_option("scene", simulate.scene, "Scene to run: flight, pile, asteroids, robot, box, conveyor or clusters")
       ->required()
       ->check(CLI::IsMember({"flight", "pile", "asteroids", "robot", "box", "conveyor", "clusters"}));
   command.add_option("--tree", simulate.tree, "Sphere-tree of the bodies, an .orchard file (default: a small ship)");
-  auto* replay = command.add_option("--replay", simulate.replay, "Repeat a run that --record wrote, step for step");
+  auto* replay = command.add_option("--replay", simulate.replay,
+                                    "Repeat the run in this file, which --record wrote, step by step");
   command
       .add_option("--bodies", simulate.bodies,
-                  "Number of bodies beside those that the scene always has (0: the scene's own number)")
+                  "Number of bodies in addition to those that the scene always has. 0 uses the scene's own number")
       ->check(CLI::Range(0, 1'000'000))
       ->excludes(replay);
-  command.add_option("--frames", simulate.frames, "Number of frames [100, or as many as were recorded]")
+  command.add_option("--frames", simulate.frames, "Number of frames [100; with --replay, as many as were recorded]")
       ->check(CLI::Range(1, 10'000'000));
   command
       .add_option("--budget", simulate.budget,
@@ -213,7 +214,7 @@ void add_simulate(CLI::App& app, Request& request) {
   command.add_option("--seed", simulate.seed, "Seed of all random choices")->capture_default_str()->excludes(replay);
   command
       .add_option("--record", simulate.record,
-                  "Write the motions and the place where each step's budget ended to this file, for --replay")
+                  "Write the motions, and the place where the budget of each step ended, to this file, for --replay")
       ->excludes(replay);
   auto* folder =
       command.add_option("-o,--output", simulate.folder, "Folder that receives the traces and the run for ParaView");

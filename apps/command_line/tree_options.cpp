@@ -103,8 +103,8 @@ void add_annealing_options(CLI::App& command, TreeRequest& tree) {
     add_schedule(command, tree, option, number, what, check);
   };
   add_choice(command, "--anneal-distance", kDistances, tree.distance,
-             "Looseness of a sphere: by Lemma 5.1 (lemma, default), at 20 points (samples), or at these and corrected "
-             "(corrected-samples)")
+             "How to estimate the looseness of a sphere: by Lemma 5.1 (lemma, default), by the largest distance at 20 "
+             "points (samples), or by that distance corrected to an upper bound (corrected-samples)")
       ->group(kSchedule);
   add("--anneal-move", &AnnealingOptions::move, "Longest translation of one change, in radii of the parent [0.035]",
       NumberValidator(CLI::Range(0.0, 1.0)));
@@ -138,7 +138,7 @@ const char* name(Selection selection) { return key_of(kSelections, selection); }
 void add_tree_options(CLI::App& command, TreeRequest& tree) {
   add_choice(command, "--method", kMethods, tree.method,
              "Construction method: tightened (default, the tightest trees), merging (along the medial axis), annealing "
-             "(the dissertation's) or octree (the fastest)");
+             "(as in the dissertation) or octree (the fastest)");
   auto* depth =
       command
           .add_option("--depth", tree.depth,
@@ -147,37 +147,43 @@ void add_tree_options(CLI::App& command, TreeRequest& tree) {
           ->capture_default_str();
   auto* branching = command
                         .add_option("--branching", tree.branching,
-                                    "Children per sphere: the average for tightened and merging, which give more where "
-                                    "they help, and the most for the others. Above 64 for tightened only")
+                                    "Children per sphere: the average for tightened and merging, which distribute them "
+                                    "by need, and the maximum for the others. Above 64 for tightened only")
                         ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
                         ->capture_default_str();
   add_list(command, "--spheres", tree.spheres,
            "tightened: largest number of spheres of each level, N1,N2,.., in place of --depth and --branching")
       ->excludes(depth)
       ->excludes(branching);
-  add_choice(command, "--effort", kEfforts, tree.effort,
-             "How long to search. Times are about 1 : 2 : 6 for tightened and 1 : 3 : 17 for annealing, where high is "
-             "the dissertation's schedule");
-  add_choice(command, "--objective", kObjectives, tree.objective,
-             "tightened: what to minimise, the maximum inaccuracy, the mean inaccuracy, the outside volume or a "
-             "balance of them (default)");
-  add_choice(command, "--closing", kClosings, tree.closing,
-             "merging: how spheres are closed over the surface, fitted again (refit, default) or grown by a tenth at a "
-             "time (growth, the dissertation's)");
+  add_choice(
+      command, "--effort", kEfforts, tree.effort,
+      "How long to search. The times of low, default and high are about 1 : 2 : 6 for tightened and 1 : 3 : 17 for "
+      "annealing, where high is the dissertation's schedule");
+  add_choice(
+      command, "--objective", kObjectives, tree.objective,
+      "tightened: what to minimise: the maximum inaccuracy (maximum), the mean inaccuracy (mean), the outside volume "
+      "(volume) or a compromise of these (balanced, default)");
+  add_choice(
+      command, "--closing", kClosings, tree.closing,
+      "merging: how spheres are made to cover the surface: by fitting them again (refit, default) or by enlarging "
+      "them by a tenth at a time (growth, as in the dissertation)");
   add_choice(
       command, "--energy", kEnergies, tree.energy,
-      "annealing: looseness of a set of siblings, that of the loosest (maximum, default) or of all together (sum)");
+      "annealing: what to minimise in a set of siblings: the looseness of the loosest sphere (maximum, default) or the "
+      "sum of all (sum)");
   add_annealing_options(command, tree);
-  add_choice(command, "--redundant", kSelections, tree.redundancy,
-             "Which redundant spheres to remove: all that can be (exhaustive, default), chains without cycles "
-             "(acyclic), or only those on which no other removal depends (independent, the dissertation's)");
+  add_choice(
+      command, "--redundant", kSelections, tree.redundancy,
+      "Which redundant spheres to remove: all that the cover does not need (exhaustive, default); those that siblings "
+      "and aunts cover, where removed spheres may depend on each other without cycles (acyclic); or those on "
+      "which no other removed sphere depends (independent, as in the dissertation)");
   command.add_flag("--anneal", tree.anneal,
-                   "Anneal each set of siblings of the tree that the method has built, which makes none looser. Takes "
-                   "about as long as --method annealing");
+                   "Tighten the finished tree by annealing each set of siblings. No set becomes looser. Takes about as "
+                   "long as --method annealing");
   command
       .add_option("--descent", tree.descent_trials,
-                  "Trials per sphere of a random descent that follows any method. More trials tighten the tree a "
-                  "little and take longer")
+                  "Tighten the finished tree by a random descent with this many trials per sphere. More trials "
+                  "tighten it a little more and take longer")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
   command
@@ -191,7 +197,8 @@ void add_tree_options(CLI::App& command, TreeRequest& tree) {
           [&tree](const std::vector<std::string>& regions) {
             for (const std::string& region : regions) tree.refinement.regions.push_back(parse_region(region));
           },
-          "x,y,z,r=E: use E in place of --error for spheres that meet this ball. May be repeated")
+          "x,y,z,r=E: use E in place of --error for spheres that meet the ball with centre x,y,z and radius r. May be "
+          "repeated")
       ->allow_extra_args(false);
 }
 

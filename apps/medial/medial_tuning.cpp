@@ -73,31 +73,33 @@ std::string no_thinning(const T& t) {
 std::string no_refining(const T& t) { return t.refine ? "" : "--refine no (--raw)"; }
 
 std::vector<TuningFlag> point_flags() {
-  return {whole("samples", "5000", 20, 1e7,
-                "Number of surface points. More points follow the shape more closely and take longer",
-                [](T& t, double x) { t.samples = static_cast<Index>(x); }),
-          whole("edge-samples", "a fifth", 0, 1e7,
-                "Number of these points along edges. More points make sheets reach sharp edges, fewer resolve the "
-                "faces better",
-                [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
-          choice("relaxation", {"automatic", "clusters", "neighbors"},
-                 "Between which points to relax: within flat clusters (clusters, for designed parts), across faces "
-                 "(neighbors, for scans), or as fits the mesh (automatic)",
-                 set_relaxation),
-          whole("iterations", "40", 0, 1000,
-                "Rounds of relaxation. More rounds space the points more evenly and give smoother sheets",
-                [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
-          real("cluster-angle", "0.0057", 0, 90,
-               "Largest angle in degrees between the normals of one cluster. Higher values treat curved regions as one "
-               "face without edges",
-               [](T& t, double x) { t.cluster_degrees = x; }),
-          unused_where(real("crease-angle", "28.6", 0, 180,
-                            "Smallest angle in degrees at which a scan has an edge that gets edge points",
-                            [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
-                       no_creases),
-          whole("seed", "1", 0, 4294967295.0,
-                "Seed of the random points. Another seed gives another sample of the same density",
-                [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
+  return {
+      whole("samples", "5000", 20, 1e7,
+            "Number of surface points. More points follow the shape more closely and take longer",
+            [](T& t, double x) { t.samples = static_cast<Index>(x); }),
+      whole("edge-samples", "a fifth", 0, 1e7,
+            "Number of these points along edges. With more, sheets reach sharp edges; with fewer, the faces get more "
+            "points",
+            [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
+      choice("relaxation", {"automatic", "clusters", "neighbors"},
+             "Which points repel each other: those of one flat cluster (clusters, for designed parts), all near ones "
+             "across "
+             "faces (neighbors, for scans), or those that suit the mesh (automatic)",
+             set_relaxation),
+      whole("iterations", "40", 0, 1000,
+            "Rounds of relaxation. More rounds space the points more evenly and give smoother sheets",
+            [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
+      real("cluster-angle", "0.0057", 0, 90,
+           "Largest angle in degrees between the normals of one cluster. Higher values treat curved regions as one "
+           "face without edges",
+           [](T& t, double x) { t.cluster_degrees = x; }),
+      unused_where(
+          real("crease-angle", "28.6", 0, 180, "Smallest angle in degrees at which an edge of a scan gets edge points",
+               [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
+          no_creases),
+      whole("seed", "1", 0, 4294967295.0,
+            "Seed of the random points. Another seed gives another sample of the same density",
+            [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
 }
 
 std::vector<TuningFlag> diagram_flags() {
@@ -126,31 +128,34 @@ std::vector<TuningFlag> diagram_flags() {
 }
 
 std::vector<TuningFlag> axis_flags() {
-  return {real("coalesce", "1e-7", 1e-12, 0.01,
-               "Merge vertices nearer than this, in bounding radii. Higher values lose detail and may lose loops",
-               [](T& t, double x) { t.options.axis.coalesce = x; }),
-          choice("topology", {"keep", "free"},
-                 "keep replaces faces by single edges where gaps that cannot be repaired would change the topology; "
-                 "free leaves the faces",
-                 [](T& t, const std::string& text) { t.keep_topology = text == "keep"; })};
+  return {
+      real("coalesce", "1e-7", 1e-12, 0.01,
+           "Merge vertices nearer than this, in bounding radii. Higher values lose detail and may lose loops",
+           [](T& t, double x) { t.options.axis.coalesce = x; }),
+      choice("topology", {"keep", "free"},
+             "What to do where gaps that cannot be repaired would change the topology: replace faces by single edges "
+             "(keep), or leave the faces (free)",
+             [](T& t, const std::string& text) { t.keep_topology = text == "keep"; })};
 }
 
 std::vector<TuningFlag> pruning_flags() {
-  return {real("prune-angle", "0", 0, 180,
-               "Remove spurs whose contacts are seen under less than this angle, in degrees. Higher values lose sheets "
-               "that run into shallow edges",
-               [](T& t, double x) { t.prune_degrees = x; }),
-          real("prune-scale", "1", 1, 10,
-               "Remove balls that lie in others when all are scaled by this factor. Higher values lose small features",
-               [](T& t, double x) { t.options.prune.scale = x; })};
+  return {
+      real("prune-angle", "0", 0, 180,
+           "Remove spurs whose contacts are seen at less than this angle, in degrees. Higher values also remove sheets "
+           "that run into shallow edges",
+           [](T& t, double x) { t.prune_degrees = x; }),
+      real("prune-scale", "1", 1, 10,
+           "Remove balls that lie in others when all are scaled by this factor. Higher values remove small features",
+           [](T& t, double x) { t.options.prune.scale = x; })};
 }
 
 std::vector<TuningFlag> refining_flags() {
   return {
-      choice(
-          "refine", {"yes", "no"},
-          "yes makes every ball exact and meshes the sheets evenly; no keeps the axis of the Voronoi diagram (--raw)",
-          [](T& t, const std::string& text) { t.refine = text == "yes"; }),
+      choice("refine", {"yes", "no"},
+             "Whether to make every ball exact and to mesh the sheets evenly (yes), or to keep the axis of the Voronoi "
+             "diagram "
+             "(no, the same as --raw)",
+             [](T& t, const std::string& text) { t.refine = text == "yes"; }),
       unused_where(real("border-loss", "0.1", 0, 100,
                         "How much of the surface the border of a sheet may lose, in percent of the diagonal. Higher "
                         "values remove more spurs",
@@ -187,10 +192,11 @@ std::vector<TuningFlag> open_place_flags() {
 }
 
 std::vector<TuningFlag> report_flags() {
-  return {real("segment-angle", "60", 0, 180,
-               "Smallest angle in degrees between the contacts of faces that divide sheets into segments. Higher "
-               "values make fewer segments",
-               [](T& t, double x) { t.segment_degrees = x; })};
+  return {real(
+      "segment-angle", "60", 0, 180,
+      "Smallest angle in degrees between the contacts of a face that is not a spur; spurs do not divide the axis into "
+      "segments. Higher values make fewer segments",
+      [](T& t, double x) { t.segment_degrees = x; })};
 }
 
 std::vector<TuningFlag> make_flags() {

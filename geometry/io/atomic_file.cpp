@@ -12,7 +12,7 @@
 namespace orchard {
 namespace {
 
-// Beside the target, so that renaming stays within one file system.
+// A name in the target's folder, so that renaming stays within one file system.
 std::filesystem::path temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> count{0};
   std::filesystem::path name = path;

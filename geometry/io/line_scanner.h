@@ -14,11 +14,11 @@ namespace orchard {
 // The lines of a text, split into words.
 class LineScanner {
  public:
-  // `comment` starts one that runs to the end of the line; 0 if the format has none.
+  // `comment`: the character that starts a comment, which runs to the end of the line; 0 if the format has none.
   LineScanner(std::string_view bytes, std::size_t at, char comment, const std::string& name)
       : bytes_(bytes), name_(name), comment_(comment), next_(at) {}
 
-  // Moves to the next line that has a word; false at the end.
+  // Moves to the next line that has a word. Returns false at the end of the text.
   bool next() {
     while (next_ < bytes_.size()) {
       start_ = next_;
@@ -33,7 +33,7 @@ class LineScanner {
     }
     return false;
   }
-  // Whether a word follows, on this line or, moving there, on a later one.
+  // Whether another word follows. If it is on a later line, moves there.
   bool more() { return more_on_line() || next(); }
   bool more_on_line() const { return at_ != end_; }
   std::size_t start() const { return start_; }
@@ -41,25 +41,25 @@ class LineScanner {
   std::string_view rest_of_line() const { return {at_, static_cast<std::size_t>(end_ - at_)}; }
   [[noreturn]] void fail(const std::string& fault) const { fail_at_line(name_, bytes_, start_, fault); }
 
-  // Empty if the line has no more words.
+  // Returns the next word of the line and moves past it; an empty one if there is none.
   std::string_view word() {
     const std::string_view result = peek();
     at_ += result.size();
     skip_blanks();
     return result;
   }
-  // The same, but the line stays where it is.
+  // Returns the next word of the line without moving.
   std::string_view peek() const {
     const char* stop = at_;
     while (stop != end_ && !is_blank(*stop)) ++stop;
     return {at_, static_cast<std::size_t>(stop - at_)};
   }
-  // Of the next word; the line stays where it is if there is none or it is no such number.
+  // Reads the next word as a finite number and moves past it. Returns nothing, and does not move, if it is none.
   std::optional<double> number() {
     const std::optional<double> value = number_or_none();
     return value && std::isfinite(*value) ? value : std::nullopt;
   }
-  // Three numbers, which need not be finite.
+  // Reads three numbers, which need not be finite.
   std::array<double, 3> point() {
     std::array<double, 3> result;
     for (double& coordinate : result) {
@@ -81,7 +81,7 @@ class LineScanner {
   }
 
  private:
-  // Infinite if it is too large for a double.
+  // The next word as a number: infinite if it is too large for a double, nothing if the word is no number.
   std::optional<double> number_or_none() {
     double value = 0;
     const char* first = at_;
@@ -105,7 +105,7 @@ class LineScanner {
   const char* end_ = nullptr;
 };
 
-// In the fewest digits that read back as the same number.
+// Appends a number with the fewest digits that read back as the same number.
 template <typename Number>
 void append_digits(std::string& text, Number value) {
   std::array<char, 32> digits;

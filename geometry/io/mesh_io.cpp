@@ -13,7 +13,7 @@
 namespace orchard {
 namespace {
 
-// In one read: a mapped file that someone cuts short meanwhile would kill the process.
+// Reads the file at once instead of mapping it: if a mapped file is cut short meanwhile, the process is killed.
 std::string read_bytes(const std::filesystem::path& file) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -61,7 +61,7 @@ Reader point_reader_for(const std::filesystem::path& file) {
                    "\"; points: .xyz, .ply or .obj; meshes: .obj, .ply, .stl or .off");
 }
 
-// Text that grows in memory and goes to the stream a piece at a time.
+// Collects text in memory and writes it to the stream in large pieces.
 class TextBuffer {
  public:
   explicit TextBuffer(std::ostream& stream) : stream_(stream) {}
@@ -74,7 +74,7 @@ class TextBuffer {
     buffer_[size_++] = c;
     return *this;
   }
-  // In the fewest digits that read back as the same number: 17 at most.
+  // Writes a number with the fewest digits (17 at most) that read back as the same number.
   template <typename Number>
   void number(Number value) {
     if (size_ + kLongestNumber > buffer_.size()) flush();

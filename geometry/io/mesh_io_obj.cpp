@@ -11,7 +11,7 @@
 namespace orchard {
 namespace {
 
-// One pass over the bytes. Lines are counted only when there is something to complain about.
+// Reads the bytes in one pass. Lines are counted only when there is a fault to report.
 class ObjReader {
  public:
   ObjReader(std::string_view bytes, const std::string& name, MeshReadReport& report)
@@ -64,7 +64,7 @@ class ObjReader {
     return in_quotes({position, stop});
   }
 
-  // Past the line end that a backslash at at_ hides; 0 if it hides none.
+  // The place after the line end that follows a backslash at at_, which continues the line; 0 if there is none.
   std::ptrdiff_t continuation_length() const {
     if (end_ - at_ < 2 || *at_ != '\\') return 0;
     if (at_[1] == '\r' && end_ - at_ > 2 && at_[2] == '\n') return 3;
@@ -84,7 +84,7 @@ class ObjReader {
   bool at_token_end() const { return at_statement_end() || is_blank(*at_) || continuation_length() != 0; }
   bool at_statement_end() const { return at_ == end_ || is_line_end(*at_) || *at_ == '#'; }
 
-  // To the end of the statement; a comment ends with its line, whatever its last character.
+  // Moves to the end of the statement. A comment ends with its line even if that ends with a backslash.
   void skip_statement() {
     bool comment = false;
     while (at_ != end_ && !is_line_end(*at_)) {

@@ -51,8 +51,8 @@ class OffChecker {
     line_.fail(fault);
   }
 
-  // "OFF", which may be missing, and the numbers of vertices and faces after it, with or without a blank or on the next
-  // line.
+  // Reads "OFF", which may be missing, and the numbers of vertices and faces after it. They may follow with or without
+  // a blank, or on the next line.
   void read_counts() {
     if (!line_.next()) throw InputError(name_ + ": nothing but comments; this is not an OFF file");
     std::optional<std::uint64_t> vertices = line_.count();
@@ -68,7 +68,7 @@ class OffChecker {
     }
     const std::optional<std::uint64_t> faces = line_.count();
     if (!vertices || !faces) line_.fail("expected the numbers of vertices, faces and edges");
-    // "0 0 0" and "3 0 0 0" with their line ends, the last of which may be missing.
+    // The shortest vertex is "0 0 0" and the shortest face "3 0 0 0", each with a line end; the last may be missing.
     if (*vertices > line_.left() / 6 || *faces > line_.left() / 8 + 1) {
       line_.fail("promises " + std::to_string(*vertices) + " vertices and " + std::to_string(*faces) +
                  " faces, but only " + std::to_string(line_.left()) + " bytes are left");
@@ -77,9 +77,10 @@ class OffChecker {
     faces_ = *faces;
   }
 
-  // The number that the keyword runs into, as in "OFF8 6 12"; nothing if it does not.
+  // The number that follows the keyword without a blank, as in "OFF8 6 12"; nothing if there is none.
   std::optional<std::uint64_t> count_after(std::string_view keyword) const {
-    // Normals, colours and texture coordinates follow a vertex's position and are left out by leaving out the prefix.
+    // The prefix announces normals, colours or texture coordinates after each vertex's position. Without the prefix
+    // they are ignored.
     const std::size_t prefix = std::min(keyword.find_first_not_of("STCN"), keyword.size());
     const std::string_view number = keyword.substr(std::min(prefix + 3, keyword.size()));
     std::int64_t count = 0;
@@ -93,7 +94,7 @@ class OffChecker {
     return static_cast<std::uint64_t>(count);
   }
 
-  // A face goes on over as many lines as its corners need; what follows them on the last one is its colour.
+  // A face may take several lines. What follows its last corner on the same line is its colour.
   void read_face() {
     const std::size_t start = line_.start();
     const std::optional<std::uint64_t> corners = line_.count();
@@ -125,7 +126,7 @@ class OffChecker {
   MeshReadReport& report_;
   LineScanner line_;
   std::uint64_t vertices_ = 0, faces_ = 0;
-  std::size_t first_continued_ = 0;  // where the first face begins that is not on one line; 0 if there is none
+  std::size_t first_continued_ = 0;  // where the first face begins that takes several lines; 0 if there is none
   CheckedOff checked_;
   std::string face_lines_;
 };

@@ -14,7 +14,7 @@ std::size_t size_of(PlyType type);
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::float32;     // of a list: of its items
+  PlyType type = PlyType::float32;     // for a list, the type of its items
   std::optional<PlyType> length_type;  // set for lists
 };
 
@@ -24,19 +24,20 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
   std::size_t at = 0;  // byte of its line in the header
 
-  // Index of the first property that has this name, or nothing.
+  // Returns the index of the first property with this name, or nullopt.
   std::optional<std::size_t> find(std::string_view property) const;
-  // The fewest bytes that a row can take.
+  // Returns the smallest number of bytes that a row can have.
   std::size_t min_row_bytes(PlyEncoding encoding) const;
 };
 
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
-  std::size_t body = 0;  // byte where it begins
+  std::size_t body = 0;  // the byte at which it begins
 };
 
-// Throws InputError naming the line. The rows promised are not yet compared with the bytes that follow.
+// Reads the header. Throws InputError, which names the line. The number of rows is not compared with the length of the
+// file.
 PlyHeader read_ply_header(std::string_view bytes, const std::string& name);
 
 }  // namespace orchard

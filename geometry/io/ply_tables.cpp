@@ -40,7 +40,8 @@ std::vector<PlyTables::Table> read_tables(const PlyHeader& header, Body body) {
     table.name = element.name;
     for (const PlyProperty& property : element.properties)
       table.columns.push_back({property.name, property.length_type.has_value(), {}, {}});
-    // Rows of nothing take no bytes, so that no file is too short for them.
+    // An element without properties takes no bytes, so any number of rows would seem to be in the file: they are
+    // skipped.
     if (element.properties.empty()) continue;
     for (std::uint64_t row = 0; row < element.rows; ++row) {
       table.at.push_back(body.position());

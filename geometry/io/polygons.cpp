@@ -10,11 +10,11 @@
 namespace orchard {
 namespace {
 
-// How much better another corner must be before it replaces the first: above rounding, below any bend worth minding.
+// The improvement with which another corner replaces the first: more than rounding, less than any bend that matters.
 constexpr double kClearlyBetter = 1e-6;
 // Radians by which the angles of a fan around one corner may exceed a whole turn: a few roundings.
 constexpr double kWholeTurn = 2 * std::numbers::pi + 1e-9;
-// The part of the square of a polygon's length that its width times its length exceeds unless it lies on a line.
+// A polygon lies on a line if its width times its length is at most this fraction of its length squared.
 constexpr double kOnLine = 1e-12;
 
 // A face's corners in space.
@@ -29,8 +29,8 @@ class Polygon {
   std::span<const Point> vertices_;
 };
 
-// The smallest cosine between the polygon's normal and a triangle of the fan around `apex`; a triangle without area is
-// as bad as one at a right angle. Stops where it falls to `enough` or below.
+// Returns the smallest cosine between the normal of the polygon and that of a triangle of the fan around `apex`. A
+// triangle without area counts as one at a right angle. Stops once the cosine is at most `enough`.
 double agreement(const Polygon& polygon, const Vector& normal, std::size_t apex, double enough) {
   double worst = 1;
   for (std::size_t i = 1; i + 1 < polygon.size() && worst > enough; ++i) {
@@ -42,7 +42,7 @@ double agreement(const Polygon& polygon, const Vector& normal, std::size_t apex,
   return worst;
 }
 
-// Newell's: twice the polygon's area along its best plane's normal.
+// Returns Newell's vector: the normal of the best plane of the polygon, with twice the area as its length.
 Vector area_of(const Polygon& polygon) {
   Vector area = Vector::Zero();
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
@@ -56,7 +56,7 @@ struct Fan {
   double agreement = 0;  // 0 if the polygon has no normal
 };
 
-// The corner whose fan agrees best with the normal.
+// Returns the corner whose fan agrees best with the normal.
 Fan best_fan(const Polygon& polygon, const Vector& normal, std::size_t trials) {
   Fan best{.apex = 0, .agreement = agreement(polygon, normal, 0, -1)};
   for (std::size_t apex = 1; apex < std::min(polygon.size(), trials); ++apex) {
@@ -67,7 +67,8 @@ Fan best_fan(const Polygon& polygon, const Vector& normal, std::size_t trials) {
   return best;
 }
 
-// Whether a fan whose triangles all face the right way covers no place twice: its angles make up less than a turn.
+// Returns whether the angles of a fan add up to less than a full turn. If its triangles all face the right way, it then
+// covers no place twice.
 bool within_a_turn(const Polygon& polygon, std::size_t apex) {
   double angle = 0;
   for (std::size_t i = 1; i + 1 < polygon.size() && polygon.size() > 4; ++i) {
@@ -77,7 +78,7 @@ bool within_a_turn(const Polygon& polygon, std::size_t apex) {
   return angle <= kWholeTurn;
 }
 
-// Corners on a line, or in one place, enclose nothing that could overlap.
+// Returns whether all corners lie on a line or at one place. Such a polygon has no triangles that could overlap.
 bool lies_on_line(const Polygon& polygon) {
   Vector axis = Vector::Zero();
   for (std::size_t i = 1; i < polygon.size(); ++i)

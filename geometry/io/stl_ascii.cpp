@@ -23,8 +23,8 @@ bool may_be_number(std::string_view word) {
   return word.find_first_of("+-.0123456789") == 0 || word.starts_with("nan") || word.starts_with("inf");
 }
 
-// Returns one solid of nothing but keywords and numbers: CGAL takes keywords for what they are wherever they turn up,
-// in the name of a solid as well.
+// Rewrites a file as one solid of keywords and numbers alone, because CGAL recognizes keywords everywhere, even in the
+// name of a solid.
 class AsciiStl {
  public:
   AsciiStl(std::string_view bytes, const std::string& name, MeshReadReport& report)
@@ -55,15 +55,15 @@ class AsciiStl {
     words_.fail("expected \"" + wanted + "\" instead of " + in_quotes(found) + " (the facets of STL are triangles)");
   }
 
-  // Whether a word follows, on this line or a later one.
+  // Whether another word follows. If it is on a later line, moves there.
   bool more() {
     if (words_.more_on_line()) return true;
     if (!words_.next()) return false;
     first_of_line_ = words_.rest_of_line().data();
     return true;
   }
-  // The next word, in lower case, but for the rest of a line that is no keyword; empty at the end of the file. It is
-  // not passed.
+  // Returns the next word in lower case without moving past it; empty at the end of the file. A word that does not
+  // begin its line and is no keyword is skipped.
   std::string next() {
     for (; more(); words_.word()) {
       std::string word = lower_case(words_.peek());
@@ -71,7 +71,7 @@ class AsciiStl {
     }
     return {};
   }
-  // Passes the next word, and the second one of "end loop" and the like.
+  // Returns the next word and moves past it; a keyword in two words, such as "end loop", is joined to one.
   std::string keyword() {
     std::string word = next();
     if (word.empty()) return word;
@@ -87,7 +87,7 @@ class AsciiStl {
     if (found != wanted) fail_to_find(wanted, found);
   }
 
-  // To the end of the line, or to a facet on it.
+  // Moves to the end of the line, or to a facet that begins on it.
   void skip_name() {
     while (words_.more_on_line()) {
       const std::string rest = lower_case(words_.rest_of_line());
@@ -100,7 +100,7 @@ class AsciiStl {
   void read_facet() {
     const std::size_t start = words_.start();
     if (next() == "normal") words_.word();
-    // The normal's numbers, which are not looked at: of a facet without area they may be no numbers.
+    // Skips the numbers of the normal, which are not needed. Those of a facet without area may be "nan".
     for (int i = 0; i < 3 && more() && may_be_number(lower_case(words_.peek())); ++i) words_.word();
     expect("outer");
     if (next() == "loop") words_.word();

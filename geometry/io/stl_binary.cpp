@@ -13,10 +13,11 @@
 namespace orchard {
 namespace {
 
-// A header of 80 bytes and a count; then for each facet a normal, three corners, and the number of attribute bytes
-// behind it, which programs also use for colours.
+// A binary STL file is a header of 80 bytes, the number of facets, and then for each facet a normal, three corners and
+// a 16-bit number. That number should count the attribute bytes that follow, but programs also store colours in it.
 constexpr std::size_t kCountAt = 80, kHeader = 84, kCorners = 12, kAttributes = 48, kFacet = 50;
-// How far a stored normal may be from the corners' own, as a cosine and as a length, to say that they are a facet.
+// A stored normal agrees with the corners if the cosine of the angle to their normal is at least the first, and its
+// length differs from 1 by at most the second.
 constexpr double kSameNormal = 0.99, kUnitLength = 1e-3;
 
 std::uint64_t integer_at(std::string_view bytes, std::size_t at, std::size_t size) {
@@ -57,7 +58,8 @@ class BinaryStl {
   }
 
  private:
-  // Whether the facets that are promised, each with the attributes that it says it has, fill the file.
+  // Whether as many facets as the header counts, each followed by the attribute bytes that it counts, fill the file
+  // exactly. If so, stores where they are.
   bool find_behind_attributes() {
     std::vector<std::size_t> places;
     std::size_t at = kHeader;
@@ -71,7 +73,8 @@ class BinaryStl {
     return true;
   }
 
-  // The count may be too low, or other bytes may follow. Facets show themselves: see is_facet().
+  // The file is longer than the header's count: either the count is too low, or the bytes that follow are none of
+  // facets. is_facet() tells the two apart.
   void find_beyond_count(std::uint64_t room) {
     std::vector<Corner> all;
     for (std::uint64_t t = 0; t < room; ++t)
@@ -97,8 +100,8 @@ class BinaryStl {
 
   Corner corner(std::size_t facet, std::size_t i) const { return three_floats(bytes_, facet + kCorners + 12 * i); }
 
-  // Whether bytes that need not be a facet are one: three corners that are apart, and either the right normal or
-  // a corner of another facet (each corner of this one is among `all` once).
+  // Whether the bytes at a place look like a facet: its three corners differ, and either its normal is theirs or one of
+  // its corners is a corner of another facet. `all`: the corners of all places, this one included.
   bool is_facet(std::size_t at, const std::vector<Corner>& all) const {
     const std::array<Corner, 3> corners{corner(at, 0), corner(at, 1), corner(at, 2)};
     bool shared = false;
@@ -115,7 +118,7 @@ class BinaryStl {
     return std::abs(normal.norm() - 1) <= kUnitLength && normal.dot(own) >= kSameNormal * own.norm();
   }
 
-  // The facets alone, behind a header that cannot be mistaken for text.
+  // A plain file of the facets without attributes, with a header that no reader can mistake for text.
   std::string plain() const {
     std::string result(kCountAt, '-');
     for (std::size_t byte = 0; byte < 4; ++byte) result += static_cast<char>(at_.size() >> 8 * byte & 0xff);
@@ -138,8 +141,9 @@ class BinaryStl {
   std::vector<std::size_t> at_;  // where the facets are
 };
 
-// Whether a file that begins with "solid" is text. Many binary files do, too: of those either the length is right, or
-// there is a zero byte in the header, the count or the first facet, which text has nowhere.
+// Whether a file is an STL file in text, which begins with "solid". Many binary files begin so, too: those are known by
+// a length that agrees with their count, or by a zero byte in the header, the count or the first facet, since text
+// holds no zero byte.
 bool is_text(std::string_view bytes) {
   const bool marked = bytes.starts_with("\xef\xbb\xbf");
   const std::size_t first = bytes.find_first_not_of(" \t\v\f\r\n", marked ? 3 : 0);

@@ -9,7 +9,7 @@ namespace {
 
 // A point of a triangle as seen from the query.
 struct Foot {
-  Vector offset;  // from the query; its length keeps its digits where the position's rounding would swamp it
+  Vector offset;  // from the query; it is accurate even where the position itself is rounded too coarsely
   double squared = 0;
   Point position;
   Feature feature = Feature::face;
@@ -19,14 +19,14 @@ Foot at_vertex(const Vector& offset, const Point& vertex, Feature feature) {
   return {offset, offset.squaredNorm(), vertex, feature};
 }
 
-// The nearest point of the edge from corner i, whose ends are p and q, or a and b as seen from the query. Both
-// triangles at an edge get the same bits out of it, whatever the direction in which they run along it. A foot within
-// `snap` of an end is that end.
+// Returns the nearest point of the edge from corner i. The ends of the edge are p and q, and a and b are these relative
+// to the query. The result has the same bits for both triangles at an edge, whatever the direction of the edge in them.
+// A foot within `snap` of an end is that end.
 Foot on_edge(const Point& p, const Point& q, const Vector& a, const Vector& b, int i, double snap) {
   const auto start = static_cast<Feature>(static_cast<int>(Feature::vertex0) + i);
   const auto end = static_cast<Feature>(static_cast<int>(Feature::vertex0) + (i + 1) % 3);
   const Vector edge = b - a;
-  const double to_end = -a.dot(edge), to_start = b.dot(edge);  // weights of the ends
+  const double to_end = -a.dot(edge), to_start = b.dot(edge);  // the weights of the ends
   if (!(to_end > 0)) return at_vertex(a, p, start);
   if (!(to_start > 0)) return at_vertex(b, q, end);
   const double sum = to_end + to_start;
@@ -37,11 +37,13 @@ Foot on_edge(const Point& p, const Point& q, const Vector& a, const Vector& b, i
   return {offset, offset.squaredNorm(), position, static_cast<Feature>(static_cast<int>(Feature::edge0) + i)};
 }
 
-// Of how far the corners are: a foot in the interior that is farther than this from the edges is nearer than they are,
-// whatever was rounded (a dozen roundings of 1.1e-16, squared roots of which matter: 1e-8 and room).
+// A fraction of the distance of the corners. A foot in the interior that is farther than this from the edges is nearer
+// to the query than they are, in spite of rounding. (A dozen roundings of 1.1e-16 in squares are 1e-8 in lengths, plus
+// a margin.)
 constexpr double kClear = 1e-5;
 
-// The nearest point of a triangle's plane, by its longest edge and the height over it, which stays accurate on needles.
+// The point of a triangle's plane that is nearest to the query. It is computed from the longest edge and the height
+// above it, which is accurate for needles, too.
 struct PlaneFoot {
   PlaneFoot(const std::array<Point, 3>& corners, const std::array<Vector, 3>& seen) {
     std::size_t longest = 0;
@@ -65,26 +67,27 @@ struct PlaneFoot {
     const Vector shift = x * base + y * height;
     foot = {start + shift, 0, corners[longest] + shift, Feature::face};
     foot.squared = foot.offset.squaredNorm();
-    // No other height is less than that over the longest edge.
+    // The height above the longest edge is the smallest of the three.
     to_edges_squared = least * least * height_squared;
     size_squared = base_squared + start.squaredNorm();
   }
 
   Foot foot;
   bool inside = false;
-  double to_edges_squared = 0;  // the foot's squared distance to the edges, at least
-  double size_squared = 0;      // of the triangle, and of how far it is
+  double to_edges_squared = 0;  // a lower bound on the squared distance of the foot to the edges
+  double size_squared = 0;      // of the triangle and its distance
 };
 
 }  // namespace
 
-// The edges are measured too, but where the foot in the plane is clearly inside, so a poor one cannot hide a better
-// one.
+// The edges are measured, too, unless the foot in the plane is clearly inside, so that an inaccurate foot does not hide
+// a better one.
 ClosestPoint closest_point_of_triangle(const Point& query, const Point& a, const Point& b, const Point& c) {
   const std::array<Point, 3> corners{a, b, c};
   const std::array<Vector, 3> seen{a - query, b - query, c - query};
   const auto max = [](const Point& p) { return p.cwiseAbs().maxCoeff(); };
-  // What rounding the coordinates can move a point by: nearer feet than that are told apart by nothing.
+  // The distance by which rounding of coordinates may move a point. Feet that are nearer than this to each other cannot
+  // be distinguished.
   const double snap = 8 * std::numeric_limits<double>::epsilon() * std::max({max(query), max(a), max(b), max(c)});
 
   const PlaneFoot in_plane(corners, seen);

@@ -4,8 +4,8 @@
 
 #include "orchard/geometry/mesh.h"
 
-// Signs of determinants of coordinates, exact for any finite doubles: plain evaluation where Shewchuk's error bounds
-// (1997) prove it, rational numbers where they do not.
+// Signs of determinants of coordinates, exact for any finite doubles. They are evaluated in doubles if Shewchuk's error
+// bounds (1997) prove the sign, else in rational numbers.
 namespace orchard::detail {
 
 int exact_line_side(const std::array<double, 2>& p, const std::array<double, 2>& r, const std::array<double, 2>& q);
@@ -13,11 +13,12 @@ int exact_plane_side(const std::array<Point, 3>& t, const Point& q);
 
 constexpr double kUnit = 0x1p-53;
 constexpr double kLineError = (3 + 16 * kUnit) * kUnit, kPlaneError = (7 + 56 * kUnit) * kUnit;
-constexpr double kUnderflow = 1e-280;  // products below it may have lost digits that the bounds count on
+constexpr double kUnderflow = 1e-280;  // products below it may have lost digits, so that the bounds do not hold
 
 inline int sign_of(double x) { return (x > 0) - (x < 0); }
 
-// Of the area of triangle (p, r, q) in the coordinates u and v: +1 if q lies to the left of the way from p to r.
+// The sign of the area of triangle (p, r, q) in the coordinates u and v: +1 if q lies to the left of the way from p to
+// r.
 inline int line_side(const Point& p, const Point& r, const Point& q, int u, int v) {
   const double left = (r[u] - p[u]) * (q[v] - p[v]), right = (r[v] - p[v]) * (q[u] - p[u]);
   const double determinant = left - right, bound = kLineError * (std::fabs(left) + std::fabs(right)) + kUnderflow;

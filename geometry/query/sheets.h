@@ -8,17 +8,17 @@
 
 namespace orchard::detail {
 
-// The parts of a closed, oriented surface that nothing cuts or touches: next to such a sheet, on its front, the winding
-// number is one and the same. So the triangles that may be nearest to a query tell whether it is inside, where they
-// agree: the argument heads sheets.cpp.
+// The sheets of a closed, oriented surface: connected parts that no other part cuts or touches. In front of a sheet,
+// the winding number is the same everywhere. So if the triangles that may be nearest to a query agree, they decide
+// whether it is inside. The proof is at the head of sheets.cpp.
 class Sheets {
  public:
-  // `cuts`: self_intersections(mesh). Keeps references. Precondition: the mesh is closed, consistently oriented and
-  // without degenerate triangles.
+  // `cuts` is self_intersections(mesh). Keeps references to the arguments. Precondition: the mesh is closed,
+  // consistently oriented and without degenerate triangles.
   Sheets(const TriangleMesh& mesh, const TriangleTree& tree, std::span<const std::array<Index, 2>> cuts);
 
-  // Whether the winding number at the query is above 1/2. `nearest`: what closest() found for it. Exact wherever the
-  // query is not on the surface. Safe to call from many threads: they learn the same.
+  // Returns whether the winding number at the query is above 1/2. `nearest` is the result of closest() for the query.
+  // The answer is exact unless the query is on the surface. Many threads may call it at once.
   bool inside(const Point& query, const NearestTriangles& nearest) const;
 
  private:
@@ -30,8 +30,8 @@ class Sheets {
 
   const TriangleMesh& mesh_;
   const TriangleTree& tree_;
-  std::vector<Index> sheet_of_;                     // of each triangle; kNone if it is cut
-  mutable std::vector<std::atomic<int>> in_front_;  // winding number in front of each sheet, once a query has told it
+  std::vector<Index> sheet_of_;                     // the sheet of each triangle; kNone if it is cut
+  mutable std::vector<std::atomic<int>> in_front_;  // the winding number in front of each sheet, once it is known
 };
 
 }  // namespace orchard::detail

@@ -7,7 +7,7 @@
 namespace orchard {
 namespace {
 
-// Above the rounding of a closest point, which is a few units in the last place of the coordinates.
+// More than the rounding error of a closest point, which is a few units in the last place of the coordinates.
 constexpr double kRounding = 1e-14;
 
 struct Piece {
@@ -33,7 +33,7 @@ class Search {
 
   SurfaceDistance run() {
     std::vector<bool> visited(from_.mesh().vertices.size(), false);
-    // Often the answer: most surfaces are farthest apart at a vertex.
+    // Vertices first: the farthest point of a surface from another is mostly a vertex.
     for (const auto& corners : from_.mesh().triangles)
       for (const Index vertex : corners) {
         if (!visited[vertex]) probe(from_.mesh().vertices[vertex]);
@@ -91,7 +91,7 @@ class Search {
     }
   }
 
-  // In half, across the longest edge.
+  // Halves a piece at the middle of its longest edge.
   void split(const Piece& piece) {
     std::size_t longest = 0;
     std::array<double, 3> squared{};

@@ -12,17 +12,18 @@
 namespace orchard::detail {
 namespace {
 
-// Triangles: from here on the tree outgrows the caches, and disks save more than they cost.
+// The number of triangles from which on the tree is larger than the caches, so that disks save more time than they
+// cost.
 constexpr std::size_t kFine = 32'768;
-constexpr int kStack = 128;  // three entries a level; the builder keeps the tree below 40 levels
-// Everything computed in floats is off by less than kSlack * (distance + size of the mesh): thirteen roundings of 6e-8
-// at worst, of the query, of what is stored and of three products each, and half as much again.
+constexpr int kStack = 128;  // three entries for each level; the tree has fewer than 40 levels
+// Every float result has an error below kSlack * (distance + size of the mesh). There are at most thirteen roundings of
+// 6e-8, of the query, of stored values and of three products each; the constant has a margin of one half.
 constexpr float kSlack = 1.25e-6f;
-// Of the mesh's coordinates: more than the roundings of a difference to the centre and of a sum with it.
+// A fraction of the coordinates of the mesh: more than the rounding of subtracting and adding the centre.
 constexpr double kBoxRoom = 0x1p-48;
 
-// What the squared float distance of a box or triangle may be at most if it matters beside one at float distance d:
-// either may be off.
+// Returns the largest squared float distance of a box or triangle that may be nearer than one at the float distance d,
+// given the errors of both.
 float squared_limit(float d) {
   const float limit = d * (1 + 2 * kSlack) + 2 * kSlack;
   return limit * limit;
@@ -35,7 +36,7 @@ Float4 clamp_unit(Float4 x) { return min(max(x, broadcast(0)), broadcast(1)); }
 Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
 Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Bit k: whether x[k] is at most the limit.
+// Returns a number whose bit k says whether x[k] is at most the limit.
 unsigned at_most(Float4 x, float limit) {
 #ifdef __SSE__
   return static_cast<unsigned>(__builtin_ia32_movmskps((Float4)(x <= broadcast(limit))));
@@ -69,7 +70,8 @@ bool TriangleTree::localize(const Point& point, Query& query) const {
   return true;
 }
 
-// Of children beyond the squared `limit` it may be less than it could.
+// Returns lower bounds on the squared distances of the children. For children beyond the squared `limit`, they need not
+// be tight.
 Float4 TriangleTree::squared_distances(const Query& query, const Node& node, float limit) const {
   Float4 d[3];
   for (int axis = 0; axis < 3; ++axis)
@@ -105,7 +107,7 @@ Float4 TriangleTree::squared_distances(const Query& query, const Leaf& leaf) {
   return (within ? zero : squared) + z * z;
 }
 
-// What is pushed is looked at soon.
+// Prefetches a child that is pushed onto the stack, because it is visited soon.
 void TriangleTree::prefetch(Index child) const {
   const bool is_leaf = child >= Builder::kLeaf;
   const char* at = is_leaf ? reinterpret_cast<const char*>(&leaves_[child - Builder::kLeaf])
@@ -113,8 +115,8 @@ void TriangleTree::prefetch(Index child) const {
   for (std::size_t line = 0; line < (is_leaf ? sizeof(Leaf) : sizeof(Node)); line += 64) __builtin_prefetch(at + line);
 }
 
-// Calls visit(leaf) for every leaf that may hold something within the squared `limit`, near ones first, but for those
-// below a node's child that is_out(node, lane) is true of. visit may lower the limit.
+// Calls visit(leaf) for every leaf that may contain something within the squared `limit`, roughly the nearest first.
+// Leaves below a child for which is_out(node, lane) is true are left out. visit() may lower the limit.
 template <class Visit, class IsOut>
 void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit visit, IsOut is_out) const {
   struct Entry {
@@ -163,7 +165,8 @@ ClosestPoint TriangleTree::measure(const Point& query, Index triangle) const {
   return result;
 }
 
-// Triangles whose float distance does not rule them out; measured only when the traversal is over or there is no room.
+// Triangles that may be nearest by their float distances. They are measured exactly when the traversal ends, or when
+// there is no room for more.
 class TriangleTree::Candidates {
  public:
   Candidates(const TriangleTree& tree, const Point& query) : tree_(tree), query_(query) {
@@ -217,7 +220,7 @@ class TriangleTree::Candidates {
   float nearest_ = std::numeric_limits<float>::max();
   std::array<Entry, 64> entries_;
   std::size_t count_ = 0;
-  bool measured_some_ = false;  // and forgot them
+  bool measured_some_ = false;  // whether some were measured and dropped
 };
 
 void TriangleTree::find_candidates(const Point& point, Candidates& candidates) const {
@@ -276,7 +279,7 @@ void TriangleTree::visit_nearest(const Point& point, const std::function<double(
   });
 }
 
-// In the mesh's frame, with room for the roundings on the way there and back.
+// Returns the box of a child in the frame of the mesh, with a margin for the roundings of both conversions.
 Box TriangleTree::box_around(const Node& node, int lane) const {
   Point lower, upper;
   for (int axis = 0; axis < 3; ++axis) {

@@ -18,7 +18,7 @@ class TriangleTree::Builder {
  private:
   using Box3f = Eigen::AlignedBox3f;
   struct Range {
-    Index begin, end;  // in order_
+    Index begin, end;  // a range of order_
     Index size() const { return end - begin; }
   };
   struct Split {
@@ -29,7 +29,7 @@ class TriangleTree::Builder {
   Index add_node(Range range, int depth);
   Index add_leaf(Range range);
   Index split(Range range, int depth);
-  // A triangle as the order has it: what splitting reads lies side by side.
+  // A triangle in the order of the tree, with the values that splitting reads next to each other.
   struct Item {
     Box3f box;  // rounded outward
     Eigen::Vector3f center;

@@ -10,8 +10,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kStack = 128;  // three entries a level; the builder keeps the tree below 40 levels
-constexpr double kNear = 2;          // sizes of the mesh: what is farther or larger would cost floats their digits
-constexpr float kSlack = 1e-5f;      // more than all float roundings of a bound within that reach
+constexpr double kNear = 2;  // sizes of the mesh: for balls that are farther or larger, floats are not accurate enough
+constexpr float kSlack = 1e-5f;  // more than the rounding errors of a bound for balls within kNear
 
 Float4 broadcast(float x) { return Float4{x, x, x, x}; }
 Float4 min(Float4 a, Float4 b) { return a < b ? a : b; }
@@ -23,8 +23,9 @@ Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), s
 
 }  // namespace
 
-// The distance to a convex set is convex, so nowhere below its tangent at the middle: there the balls' radii less the
-// tangent are linear, and largest at one of the three. The convex sets are boxes, slabs, planes and triangles.
+// Bounds how far the balls of a family reach beyond a convex set: a box, slab, plane or triangle. The distance to a
+// convex set is a convex function, so it is nowhere below its tangent at the family's middle. The radius minus this
+// tangent is linear over the family, so it is largest at one of the three balls.
 class TriangleTree::Reach {
  public:
   Reach(const TriangleTree& tree, const std::array<Sphere, 3>& balls, const Point& middle)
@@ -44,7 +45,7 @@ class TriangleTree::Reach {
 
   bool usable() const { return usable_; }
 
-  // Of each child.
+  // A bound for each child.
   Float4 bounds(const Node& node) const {
     Float4 from_box[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -57,7 +58,7 @@ class TriangleTree::Reach {
     return min(beyond(distance, from_box), beyond_plane(from_slab, node.normal));
   }
 
-  // Of each triangle, by its plane.
+  // A bound for each triangle of a leaf, by its plane.
   Float4 bounds(const Leaf& leaf) const {
     const Float4 from_origin[3] = {place_[0] - leaf.origin[0], place_[1] - leaf.origin[1], place_[2] - leaf.origin[2]};
     return beyond_plane(dot(from_origin, leaf.n), leaf.n);
@@ -74,7 +75,7 @@ class TriangleTree::Reach {
   }
 
  private:
-  // The distance and its gradient, of length one or less.
+  // The bound by a distance from the middle and its gradient, whose length is at most one.
   Float4 beyond(Float4 distance, const Float4* gradient) const {
     Float4 most = broadcast(-std::numeric_limits<float>::infinity());
     for (std::size_t k = 0; k < 3; ++k) most = max(most, radius_[k] - dot(gradient, way_[k]));
@@ -91,7 +92,7 @@ class TriangleTree::Reach {
   const std::array<Sphere, 3>& balls_;
   const Point& middle_;
   bool usable_ = false;
-  // In the tree's coordinates: the middle, the way from there to each ball's centre, radii with slack.
+  // In the tree's coordinates: the middle, the vectors from it to the balls' centres, and the radii plus slack.
   Float4 place_[3];
   Float4 way_[3][3];
   Float4 radius_[3];

@@ -7,10 +7,11 @@
 #include "triangle_tree_builder.h"
 
 // The winding number by signed crossings of a ray, exact for every closed mesh and every query off the surface. The ray
-// leaves the query along an axis a, and (a, u, v) are the axes in cyclic order. Rays that meet an edge or a vertex need
-// no care: in place of the query q, the point q + (e^3, e, e^2) along (a, u, v) is asked for, with e > 0 as small as it
-// takes. It lies in no triangle's plane, and above no edge, and its winding number is q's. Where a sign of q's is zero,
-// the first term in e that is not gives the moved point's (simulation of simplicity; Edelsbrunner and Muecke 1990).
+// leaves the query q along an axis a, and (a, u, v) are the axes in cyclic order. A ray that meets an edge or a vertex
+// is no special case, because the query is moved: in place of q, the point q + (e^3, e, e^2) along (a, u, v) is used,
+// where e > 0 is as small as necessary. The moved point has the winding number of q, it lies in no triangle's plane,
+// and its ray meets no edge. Its signs are those of q; where a sign of q is zero, the sign of the moved point is that
+// of the first term in e that is not zero (simulation of simplicity; Edelsbrunner and Muecke 1990).
 
 namespace orchard::detail {
 namespace {
@@ -25,7 +26,8 @@ int side_of_edge(const Point& p, const Point& r, const Point& q, int u, int v) {
   return r[v] != p[v] ? sign_of(p[v] - r[v]) : sign_of(r[u] - p[u]);
 }
 
-// On which side of a triangle's plane it lies. `along`: the sign of the normal's component along a, not 0.
+// On which side of a triangle's plane the moved query lies. `along`: the sign of the normal's component along a, which
+// is not 0.
 int side_of_plane(const std::array<Point, 3>& t, const Point& q, int a, int along) {
   const int side = plane_side(t, q);
   if (side != 0) return side;
@@ -40,7 +42,7 @@ int side_of_plane(const std::array<Point, 3>& t, const Point& q, int a, int alon
 
 class TriangleTree::Ray {
  public:
-  // Towards the nearest side of the mesh's box: the shortest way out meets least.
+  // The ray goes towards the nearest side of the mesh's box, because the shortest way out meets the fewest triangles.
   Ray(const TriangleTree& tree, const Point& query) : query_(query) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Vector local = tree.scale_ * (query - tree.center_);
@@ -58,14 +60,15 @@ class TriangleTree::Ray {
     u_ = (a_ + 1) % 3, v_ = (a_ + 2) % 3;
   }
 
-  // For each child, all bits set if the ray may meet it. Boxes are rounded outward and the query both ways.
+  // For each child, a lane with all bits set if the ray may meet the child's box. Nothing is missed by rounding: boxes
+  // are rounded outward, and the query is taken rounded down and rounded up.
   auto meets(const Node& node) const {
     const auto on_way = towards_ > 0 ? node.upper[a_] >= below_[a_] : node.lower[a_] <= above_[a_];
     return on_way & (node.lower[u_] <= above_[u_]) & (node.upper[u_] >= below_[u_]) & (node.lower[v_] <= above_[v_]) &
            (node.upper[v_] >= below_[v_]);
   }
 
-  // +1 where the ray leaves through the triangle's front, -1 where it enters, else 0.
+  // +1 if the ray leaves the solid through the triangle (meets its front from behind), -1 if it enters, 0 if it misses.
   int crossing(const std::array<Point, 3>& t) const {
     if (beside(t, u_) || beside(t, v_)) return 0;
     const auto [low, high] = std::minmax({t[0][a_], t[1][a_], t[2][a_]});

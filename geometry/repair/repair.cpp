@@ -32,11 +32,12 @@ void close(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairRepor
   detail::drop_duplicates(mesh, report);
   if (mesh.triangles.empty()) return;
   detail::orient_components(mesh, report);
-  // Before cutting, because holes that touch at a vertex are two; after it, because a cut can open one.
+  // Holes are filled before the mesh is cut apart, while two holes that touch at a vertex still count as two; and
+  // again after it, because a cut can open a hole.
   detail::fill_holes(mesh, options, radius, report);
   detail::cut_apart(mesh, report);
   detail::fill_holes(mesh, options, radius, report);
-  // The hole between an edge and its two halves is a triangle without area.
+  // A hole between an edge and its two halves is filled with a triangle that has no area.
   detail::drop_degenerate(mesh, report);
   const MeshReport check = check_mesh(mesh);
   if (check.closed() && check.manifold() && check.misoriented_edges == 0 && check.degenerate_triangles == 0)
@@ -48,7 +49,7 @@ void close(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairRepor
 MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& options) {
   validate(mesh);
   MeshRepairReport report;
-  // Parts that repeat or hold each other are no fault to check_mesh().
+  // check_mesh() does not report parts that lie on or in each other: orient_parts() looks for those.
   const MeshReport before = check_mesh(mesh);
   if (!before.solid()) {
     close(mesh, options, report);
@@ -59,7 +60,7 @@ MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& option
   const MeshReport after = untouched ? before : check_mesh(mesh);
   report.solid = after.solid();
   report.faults = after.faults();
-  // Else the faults name vertices, and the user knows those by their numbers in the file.
+  // If faults remain, their text names vertices by number: these must stay the numbers of the file.
   if (report.solid) detail::drop_unused_vertices(mesh, report);
   return report;
 }

@@ -15,10 +15,11 @@
 namespace orchard::detail {
 namespace {
 
-// A grid of cubes of any number, which stores only what is occupied.
+// A grid of any number of cubes, which stores only the occupied ones.
 class SparseGrid {
  public:
-  // Cubes are twice as wide as `distance`, so that rounding cannot put two points that near more than one cube apart.
+  // Cubes are twice as wide as `distance`. So two points within this distance are in the same cube or in adjacent ones,
+  // in spite of rounding.
   SparseGrid(std::span<const Point> points, double distance) : width_(2 * distance) {
     Box box;
     for (const Point& point : points) box.extend(point);
@@ -27,7 +28,7 @@ class SparseGrid {
     for (Index i = 0; i < points.size(); ++i) entries_.emplace_back(cell_of(points[i]), i);
     std::sort(entries_.begin(), entries_.end());
   }
-  // Of the points in the cube of this place and those around it, which are among them all that are within the distance.
+  // Visits the points in the cube of a place and in those around it, which include all points within the distance.
   template <class Visit>
   void visit_near(const Point& place, const Visit& visit) const {
     const Cell center = cell_of(place);
@@ -51,7 +52,7 @@ class SparseGrid {
   std::vector<Entry> entries_;
 };
 
-// Two edges, or vertices, that may be one.
+// Two edges or vertices that may be joined.
 struct Match {
   double distance;
   Index a, b;
@@ -60,8 +61,8 @@ struct Match {
   }
 };
 
-// Joins what lies nearest first: where that closes the surface, nothing is open any more that could be joined to what
-// lies farther, such as the other side of a thin wall.
+// Joins the nearest corners first. Where this closes the surface, no open corner is left that could be joined to a more
+// distant one, such as the other side of a thin wall.
 class CornerJoiner {
  public:
   CornerJoiner(const TriangleMesh& mesh, double distance, double radius)
@@ -76,35 +77,35 @@ class CornerJoiner {
   }
 
   void run() {
-    // Edges first: where two run along each other, both their ends belong together. What is left are the ends of
-    // edges that are divided in different places.
+    // Edges are joined first: if two run along each other, their ends belong together. What remains are ends of edges
+    // that are divided at different places.
     for (bool joined = true; joined;) joined = join_nearest(edge_matches(), &CornerJoiner::unite_edges);
     for (bool joined = true; joined;) joined = join_nearest(vertex_matches(), &CornerJoiner::unite);
   }
-  // The vertex that each one is joined to, perhaps itself.
+  // Returns the vertex to which a vertex is joined, or itself.
   Index joined(Index vertex) { return sets_.root(vertex); }
 
  private:
-  using Edge = std::array<Index, 2>;  // from, to, as its one triangle runs
+  using Edge = std::array<Index, 2>;  // its ends in the order of its triangle
 
   const Point& place(Index vertex) const { return mesh_.vertices[vertex]; }
   double between(Index a, Index b) const { return (place(a) - place(b)).norm(); }
 
-  // How far the ends of two edges are apart at most: of edges against each other or, of triangles that are turned
-  // against each other, along each other.
+  // Returns the larger distance between the ends of two edges. The edges run in opposite directions, or in the same one
+  // if their triangles have opposite orientations; the smaller of both results counts.
   double between(const Edge& e, const Edge& f) const {
     return std::min(std::max(between(e[0], f[1]), between(e[1], f[0])),
                     std::max(between(e[0], f[0]), between(e[1], f[1])));
   }
 
-  // For each open edge the nearest other one within the distance.
+  // Returns, for each open edge, the nearest other one within the distance.
   std::vector<Match> edge_matches() const {
     std::vector<Point> middles;
     for (const Edge& edge : open_) middles.push_back(place(edge[0]) / 2 + place(edge[1]) / 2);
     return nearest(middles, [&](Index e, Index f) { return between(open_[e], open_[f]); });
   }
 
-  // For each end of an open edge the nearest other one within the distance; names vertices.
+  // Returns, for each end of an open edge, the nearest other one within the distance, as vertices.
   std::vector<Match> vertex_matches() const {
     std::vector<Index> ends;
     for (const Edge& edge : open_) ends.insert(ends.end(), edge.begin(), edge.end());
@@ -120,7 +121,7 @@ class CornerJoiner {
 
   template <class Distance>
   std::vector<Match> nearest(std::span<const Point> places, const Distance& distance) const {
-    const SparseGrid grid(places, std::max(distance_, rounding_));  // whose cubes can be counted
+    const SparseGrid grid(places, std::max(distance_, rounding_));  // large enough that the cubes can be numbered
     std::vector<Match> matches;
     for (Index i = 0; i < places.size(); ++i) {
       Match best{std::numeric_limits<double>::infinity(), 0, 0};
@@ -135,8 +136,8 @@ class CornerJoiner {
     return matches;
   }
 
-  // Joins the nearest of these, and those that are not much farther apart. Returns whether there were any: then others
-  // are nearest.
+  // Joins the nearest of these matches, and those that are not much farther apart. Returns whether there were any; the
+  // matches then have to be found again.
   bool join_nearest(const std::vector<Match>& matches, bool (CornerJoiner::*unite_both)(Index, Index)) {
     constexpr double kNotMuchFarther = 8;
     std::vector<bool> done(std::max(open_.size(), mesh_.vertices.size()), false);
@@ -160,8 +161,8 @@ class CornerJoiner {
     return first || second;
   }
 
-  // Not if a vertex would move farther than the distance, as those of a chain could. Returns whether that joined what
-  // was apart.
+  // Joins two vertices unless a vertex would move farther than the distance, which is possible in chains. Returns
+  // whether they were joined.
   bool unite(Index a, Index b) {
     a = sets_.root(a), b = sets_.root(b);
     if (a == b) return false;
@@ -175,7 +176,8 @@ class CornerJoiner {
     return true;
   }
 
-  // Edges between the same vertices close each other, two by two; an edge whose ends are joined is gone.
+  // Removes open edges that are closed now: edges between the same vertices close each other in pairs, and an edge
+  // whose ends are joined vanishes.
   void update_open() {
     for (Edge& edge : open_) edge = {sets_.root(edge[0]), sets_.root(edge[1])};
     std::erase_if(open_, [](const Edge& edge) { return edge[0] == edge[1]; });
@@ -198,7 +200,7 @@ class CornerJoiner {
   const TriangleMesh& mesh_;
   double distance_, rounding_;
   DisjointSets sets_;
-  std::map<Index, std::vector<Index>> members_;  // of each set of several vertices, by its lowest one
+  std::map<Index, std::vector<Index>> members_;  // the members of each set of several vertices, by its lowest one
   std::vector<Edge> open_;
 };
 

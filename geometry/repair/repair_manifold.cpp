@@ -23,8 +23,8 @@ class Corners {
   const TriangleMesh& mesh_;
 };
 
-// Grows with the angle of (x, y) from 0 at the first axis up to 4, without functions whose rounding differs between
-// machines.
+// Returns a number that grows with the angle of (x, y), from 0 at the first axis up to 4. It uses no functions whose
+// rounding differs between machines.
 double pseudo_angle(double x, double y) {
   const double length = std::abs(x) + std::abs(y);
   if (!(length > 0)) return 0;
@@ -32,9 +32,9 @@ double pseudo_angle(double x, double y) {
   return x >= 0 ? (y >= 0 ? t : 4 + t) : 2 - t;
 }
 
-// The triangles around an edge where more than two meet, paired so that each pair has the solid between them. Turning
-// about the edge from low to high, a triangle that runs along it from high to low has the solid behind it, one that
-// runs the other way has it before it.
+// Pairs the triangles around an edge where more than two meet, such that each pair has the solid between its triangles.
+// Seen in the order of their angles about the edge, directed from its lower to its higher vertex, a triangle that runs
+// along the edge from high to low has the solid after it, and one that runs the other way has the solid before it.
 class EdgePairs {
  public:
   explicit EdgePairs(const TriangleMesh& mesh) : mesh_(mesh), corners_(mesh) {}
@@ -44,7 +44,7 @@ class EdgePairs {
     sort_around(edge);
     pairs_.clear();
     open_.clear();
-    // Twice around: what opens before the first axis may close after it.
+    // Goes around twice, because a part of the solid may begin before the first axis and end after it.
     done_.assign(around_.size(), false);
     for (std::size_t step = 0; step < 2 * around_.size(); ++step) {
       const std::size_t i = step % around_.size();
@@ -64,7 +64,7 @@ class EdgePairs {
  private:
   struct Use {
     double angle;
-    bool closes;  // the solid ends here
+    bool closes;  // whether the solid ends here
     Index half_edge;
   };
 
@@ -79,12 +79,12 @@ class EdgePairs {
     around_.clear();
     for (const EdgeUse& use : edge) {
       const Vector arm = across(use);
-      // The first one is the axis itself; rounding must not send it once around.
+      // The first triangle is the axis itself, whose angle must be 0 in spite of rounding.
       const bool on_axis = corners_.apex(use.half_edge) == corners_.apex(edge[0].half_edge);
       const double angle = on_axis ? 0 : pseudo_angle(arm.dot(x), arm.dot(y));
       around_.push_back({angle, corners_.start(use.half_edge) == use.low, use.half_edge});
     }
-    // Where a wall between two solids lies in both, one solid ends before the other begins.
+    // If two solids share a wall, one of them ends before the other begins.
     std::sort(around_.begin(), around_.end(), [](const Use& a, const Use& b) {
       if (a.angle != b.angle) return a.angle < b.angle;
       if (a.closes != b.closes) return a.closes;
@@ -100,7 +100,7 @@ class EdgePairs {
   std::vector<Pair> pairs_;
 };
 
-// Gives each fan of triangles at a vertex a vertex of its own. Fans continue across pairs only.
+// Gives each fan of triangles at a vertex a vertex of its own. Fans continue only across the pairs.
 class FanCutter {
  public:
   FanCutter(TriangleMesh& mesh, MeshRepairReport& report) : mesh_(mesh), report_(report) {}
@@ -151,8 +151,9 @@ class FanCutter {
   MeshRepairReport& report_;
 };
 
-// An edge whose pairs still share both ends gets a midpoint for each pair: vertices at the same place that name
-// different edges. One edge of a triangle at a time. Returns whether there was any.
+// Adds a midpoint for each pair to edges whose pairs still share both ends. The midpoints are different vertices at the
+// same place, so the pairs get different edges. At most one edge of a triangle is divided in a call. Returns whether
+// there was such an edge.
 bool give_midpoints(TriangleMesh& mesh) {
   EdgePairs pairs(mesh);
   std::vector<bool> touched(mesh.triangles.size(), false);
@@ -221,7 +222,7 @@ void orient_components(TriangleMesh& mesh, MeshRepairReport& report) {
         component.push_back(other);
       }
     }
-    // The larger part of the component is right.
+    // The orientation of the larger part of the component is kept.
     const bool turn = area_against <= area_along;
     for (const Index t : component) {
       if (against[t] != turn) continue;

@@ -15,7 +15,7 @@ struct Part {
   std::vector<Index> triangles;  // ascending
   Box box;
   bool inside_out = false;
-  Index depth = 0;  // in how many others it lies
+  Index depth = 0;  // number of other parts that hold it
 
   void turn(TriangleMesh& mesh) const {
     for (const Index t : triangles) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
@@ -42,7 +42,7 @@ std::vector<Part> parts_of(const TriangleMesh& mesh) {
   return parts;
 }
 
-// Drops every part whose triangles all lie on those of a part before it, either way round.
+// Drops every part whose triangles all lie on triangles of parts before it, in the same orientation or reversed.
 void drop_repeated(TriangleMesh& mesh, MeshRepairReport& report) {
   const std::vector<Index> first = first_at_place(mesh);
   TriangleMesh welded{{}, mesh.triangles};
@@ -53,7 +53,7 @@ void drop_repeated(TriangleMesh& mesh, MeshRepairReport& report) {
   std::vector<Index> group_of(mesh.triangles.size(), kNone);
   for (Index g = 0; g < groups.size(); ++g)
     for (const Index t : groups[g]) group_of[t] = g;
-  std::vector<bool> taken(groups.size(), false);  // by a part that is kept
+  std::vector<bool> taken(groups.size(), false);  // whether a part that is kept has a triangle of the group
   std::vector<bool> drop(mesh.triangles.size(), false);
   for (const Part& part : parts_of(mesh)) {
     const bool repeated =
@@ -66,7 +66,7 @@ void drop_repeated(TriangleMesh& mesh, MeshRepairReport& report) {
   report.duplicates_dropped += erase_marked(mesh, drop);
 }
 
-// The part alone, vertices renumbered.
+// A mesh of this part alone, with vertices renumbered.
 TriangleMesh extract(const TriangleMesh& mesh, const Part& part) {
   TriangleMesh alone;
   std::vector<Index> old;
@@ -84,7 +84,7 @@ TriangleMesh extract(const TriangleMesh& mesh, const Part& part) {
   return alone;
 }
 
-// Every vertex of `inner` is strictly inside. Parts that poke out of each other are no cavities.
+// Whether every vertex of `inner` is strictly inside `outer`. A part that pokes out of another is no cavity of it.
 bool holds(const Surface& outer, const TriangleMesh& mesh, const Part& inner) {
   return std::ranges::all_of(inner.triangles, [&](Index t) {
     return std::ranges::all_of(mesh.triangles[t], [&](Index vertex) { return outer.inside(mesh.vertices[vertex]); });

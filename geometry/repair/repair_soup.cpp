@@ -14,7 +14,7 @@ using Triangle = std::array<Index, 3>;
 
 bool repeats_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-// Triangles only.
+// The triangles with all vertices welded that lie in the same place. The result has no positions.
 TriangleMesh all_welded(const TriangleMesh& mesh, const std::vector<Index>& first) {
   TriangleMesh welded{{}, mesh.triangles};
   for (Triangle& t : welded.triangles)
@@ -22,8 +22,8 @@ TriangleMesh all_welded(const TriangleMesh& mesh, const std::vector<Index>& firs
   return welded;
 }
 
-// Where welding can do good: the ends of boundary edges, corners of a triangle that lie in the same place, and
-// triangles that do.
+// The vertices that welding may help: the ends of boundary edges, the corners of triangles of which two lie in the same
+// place, and the corners of triangles that lie in the same place as another.
 std::vector<bool> weldable_vertices(const TriangleMesh& mesh, const std::vector<Index>& first) {
   std::vector<bool> weldable(mesh.vertices.size(), false);
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
@@ -40,7 +40,7 @@ std::vector<bool> weldable_vertices(const TriangleMesh& mesh, const std::vector<
   return weldable;
 }
 
-// Corner opposite the longest edge.
+// The corner opposite a triangle's longest edge.
 std::size_t apex_of(const TriangleMesh& mesh, const Triangle& t) {
   std::array<double, 3> squared{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -59,7 +59,8 @@ class FlatTriangles {
     scale_ = unit_scale(box);
   }
 
-  // One pass over those that do not touch each other's neighbours. Returns whether there were any.
+  // Removes those that do not change the same triangles as others before them. Returns whether there were any without
+  // area: the rest are left to another pass.
   bool pass() {
     const std::vector<Index> flat = find();
     if (flat.empty()) return false;
@@ -103,7 +104,7 @@ class FlatTriangles {
     const Index apex = corners[at];
     const auto across = edge(corners[(at + 1) % 3], corners[(at + 2) % 3]);
     if (std::any_of(across.begin(), across.end(), [&](const EdgeUse& use) { return touched_[use.half_edge / 3]; }))
-      return;  // another pass
+      return;  // left to another pass
     for (const EdgeUse& use : across) {
       const Index other = use.half_edge / 3, i = use.half_edge % 3;
       touched_[other] = true;
@@ -113,7 +114,7 @@ class FlatTriangles {
     ++report_.degenerate_dropped;
   }
 
-  // Splits edge i of a triangle at `apex`; a triangle folded onto the flat one goes with it.
+  // Splits edge i of a triangle at `apex`; a triangle folded onto the flat one is removed with it.
   void split(Index triangle, Index i, Index apex) {
     const Triangle corners = mesh_.triangles[triangle];
     const Index x = corners[i], y = corners[(i + 1) % 3], z = corners[(i + 2) % 3];

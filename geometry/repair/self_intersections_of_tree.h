@@ -8,7 +8,7 @@ namespace orchard::detail {
 
 class TriangleTree;
 
-// As the public one, where the mesh's tree is there already.
+// Does the same as the public self_intersections(), for a mesh whose tree already exists.
 std::vector<std::array<Index, 2>> self_intersections(const TriangleMesh& mesh, const TriangleTree& tree);
 
 }  // namespace orchard::detail

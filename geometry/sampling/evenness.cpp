@@ -7,7 +7,7 @@
 namespace orchard {
 namespace {
 
-// Points whose surface faces away lie on another sheet.
+// Two points whose normals point away from each other lie on different sides of a thin part.
 bool same_sheet(const Vector& a, const Vector& b) { return a.dot(b) > -0.3; }
 
 }  // namespace
@@ -22,7 +22,7 @@ Evenness evenness(const SurfaceSampling& sampling, const Surface& surface) {
   for (std::size_t i = 0; i < count; ++i)
     normals.push_back(surface.pseudonormal(sampling.triangles[i], sampling.features[i]));
 
-  // A point without a neighbour in the block of cells around it is searched for in cells twice as wide.
+  // For points that have no neighbour in the block of cells around them, the search goes on with cells twice as wide.
   std::vector<double> nearest(count, -1);
   double missing = static_cast<double>(count);
   const double diagonal = surface.bounding_box().diagonal().norm();

@@ -16,19 +16,21 @@ namespace {
 
 using detail::SurfacePoint;
 
-// Below it the cluster method is clearly less even than Turk's; above it, it is about as good and faster.
+// With fewer points for each cluster, the cluster method is clearly less even than Turk's. With more, it is about as
+// good and faster.
 constexpr double kFewPointsPerCluster = 32;
 constexpr std::uint64_t kPlacement = 0x706c616365;  // stage of the random numbers
 
-// Turk's (1990) uniform point of a triangle: a point of the parallelogram, folded over the diagonal.
+// Returns the weights of a uniform random point of a triangle (Turk 1990): a point of the parallelogram, folded over
+// the diagonal.
 Vector random_weights(Random& random) {
   double s = random.uniform(), t = random.uniform();
   if (s + t > 1) s = 1 - s, t = 1 - t;
   return {1 - s - t, s, t};
 }
 
-// Point k takes a random place in the k-th of `count` equal shares of the area, in the order of the clusters. Every
-// place is as likely as any other, and a cluster's number of points differs from its share by less than one.
+// Places point k at random in the k-th of `count` equal shares of the area, in the order of the clusters. All places
+// are equally likely, and the number of points of a cluster differs from its share by less than one.
 std::vector<SurfacePoint> place_at_random(const Surface& surface, const Clusters& clusters, Index count,
                                           std::uint64_t seed) {
   const std::vector<Index>& order = clusters.triangles.items;
@@ -55,9 +57,10 @@ void add_point(const Surface& surface, const Point& point, Index triangle, Point
   out.origins.push_back(origin);
 }
 
-// For each point, in order, whether it is farther than `distance` from all that were kept before it.
+// Returns, for each point in order, whether it is kept: whether it is farther than `distance` from all points kept
+// before.
 std::vector<bool> keep_apart(const Surface& surface, std::span<const Point> points, double distance) {
-  if (!(distance > 0)) return std::vector<bool>(points.size(), true);  // an object without any extent
+  if (!(distance > 0)) return std::vector<bool>(points.size(), true);  // the object has no extent
   detail::CellHash grid(surface.bounding_box().min(), 2 * distance);
   std::vector<detail::Cell> cells;
   for (const Point& p : points) cells.push_back(grid.cell_of(p));
@@ -142,7 +145,7 @@ Placed sample_by_neighbors(const Surface& surface, const Clusters& clusters, con
   const double count = static_cast<double>(options.face_points) + options.edge_points;
   const double spacing = std::sqrt(total_area(surface) / count);
   const auto candidates = detail::place_edge_points(surface, divided, options.edge_points, spacing).points;
-  // Chains that are shorter than the spacing can still bring points close together.
+  // Points of different chains may be close together if chains are shorter than the spacing.
   std::vector<Point> positions;
   positions.reserve(candidates.size());
   for (const detail::EdgePoint& p : candidates) positions.push_back(position(surface, p));
@@ -185,7 +188,7 @@ void validate(const SurfaceSampling& sampling, const Surface& surface) {
   const std::size_t count = sampling.points.size();
   if (sampling.triangles.size() != count || sampling.features.size() != count || sampling.origins.size() != count)
     throw Error("a surface sampling's arrays differ in length");
-  // Far from the origin the rounding of the coordinates themselves is larger than the tolerance.
+  // Far from the origin, the rounding of coordinates is larger than the tolerance.
   const Box& box = surface.bounding_box();
   const double max = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   const double tolerance = tolerance::kOnTriangle * surface.bounding_radius() + 1e-15 * max;

@@ -5,7 +5,7 @@
 namespace orchard::detail {
 namespace {
 
-// The part of `v` across the unit vector `along`, unit length.
+// The component of `v` at right angles to the unit vector `along`, normalized.
 Vector across(const Vector& v, const Vector& along) { return (v - v.dot(along) * along).normalized(); }
 
 void normalize(Vector& weights) {
@@ -24,13 +24,13 @@ int SurfaceWalker::advance(SurfacePoint& point, Vector& step) const {
   const auto p = surface_.corners(point.triangle);
   const Vector& normal = surface_.normal(point.triangle);
   const double twice_area = 2 * surface_.area(point.triangle);
-  Vector rates;  // of the weights along the step
+  Vector rates;  // of change of the weights along the step
   for (int i = 0; i < 3; ++i) {
     const auto next = static_cast<std::size_t>((i + 1) % 3), last = static_cast<std::size_t>((i + 2) % 3);
     rates[i] = normal.cross(p[last] - p[next]).dot(step) / twice_area;
   }
   double reached = 1;
-  int corner = -1;  // opposite the edge that is met first
+  int corner = -1;  // the corner opposite the edge that is met first
   for (int i = 0; i < 3; ++i) {
     if (rates[i] >= 0 || point.weights[i] + reached * rates[i] >= 0) continue;
     reached = point.weights[i] / -rates[i];

@@ -3,7 +3,7 @@
 
 namespace orchard::detail {
 
-// A point that cannot leave its triangle: weights of the corners, not negative, with sum 1.
+// A point of a triangle, given by weights of the corners (none negative, sum 1), so that it cannot leave the triangle.
 struct SurfacePoint {
   Index triangle = kNone;
   Vector weights = Vector::Zero();
@@ -12,8 +12,8 @@ struct SurfacePoint {
 Point position(const Surface& surface, const SurfacePoint& point);
 
 // Moves a point along `step`, which lies in the plane of its triangle, and unfolds the rest of the step across every
-// edge it meets. The walk ends where the step does or at an edge without a usable neighbour: one that is missing, of no
-// area, or not accepted by may_cross(from, to).
+// edge it meets. The walk ends where the step does, or at an edge that cannot be crossed because the triangle behind it
+// is missing, has no area or is refused by may_cross(from, to).
 class SurfaceWalker {
  public:
   explicit SurfaceWalker(const Surface& surface) : surface_(surface) {}
@@ -32,8 +32,8 @@ class SurfaceWalker {
  private:
   static constexpr int kMaxCrossings = 100;  // more only if a step winds around a vertex
 
-  // Goes to the end of the step, or to the first edge on its way: then `step` is what remains, and the edge is
-  // returned.
+  // Goes to the end of the step and returns -1; or to the first edge on the way, leaves in `step` what remains of it,
+  // and returns that edge.
   int advance(SurfacePoint& point, Vector& step) const;
   void cross(SurfacePoint& point, Vector& step, int edge, Index to) const;
 

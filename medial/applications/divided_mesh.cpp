@@ -65,7 +65,7 @@ class Divider {
     return corner;
   }
 
-  // By its long edges: into four, three or two parts, or none.
+  // Halves the part's long edges, which divides it into four, three or two; if it has none, adds it to the result.
   void divide(const Part& part) {
     std::array<bool, 3> is_long{};
     int count = 0;
@@ -74,7 +74,7 @@ class Divider {
       count += is_long[i] ? 1 : 0;
     }
     if (count == 0) return add(part);
-    // Begins with the long edge of one, after the short edge of two.
+    // A part with one long edge is turned to begin with it; one with two begins after its short edge.
     std::size_t first = 0;
     while (count < 3 && !(count == 1 ? is_long[first] : !is_long[(first + 2) % 3])) ++first;
     const Corner a = part[first], b = part[(first + 1) % 3], c = part[(first + 2) % 3];
@@ -107,7 +107,7 @@ class Divider {
   const Surface& surface_;
   const double squared_;
   Index triangle_ = 0;
-  std::unordered_map<std::uint64_t, Index> middles_;  // of two vertices
+  std::unordered_map<std::uint64_t, Index> middles_;  // by a number for the two vertices
   DividedMesh result_;
 };
 

@@ -26,7 +26,7 @@ SlabTree::SlabTree(const Surface& surface) : surface_(surface) {
   middles_ = {};
 }
 
-// Halves, along the longest side of the middles' box.
+// Divides the triangles into halves along the longest side of their middles' box.
 void SlabTree::fill(Index node, Index begin, Index end) {
   bound(nodes_[node], begin, end);
   if (end - begin <= kLeaf) {
@@ -73,8 +73,9 @@ void SlabTree::bound(Node& node, Index begin, Index end) const {
   node.low = low, node.high = high;
 }
 
-// The depth n (p - q) of places q of the node below the tangent plane, at most: by its ball, and by its slab in the
-// direction of the slab's normal and by its ball across it. The slab is what keeps the neighbourhood of p out.
+// An upper bound on the depth n (p - q) of the node's places q below the tangent plane. It is the lesser of two bounds:
+// one by the node's ball alone; and one by its slab along the slab's normal and by its ball across it. It is the slab
+// that excludes the neighbourhood of p.
 double SlabTree::max_depth(const Node& node, const TangentPlace& place, const Vector& way) {
   const double by_ball = place.normal.dot(way) + node.radius;
   const double cosine = node.normal.dot(place.normal), at = node.normal.dot(place.position);

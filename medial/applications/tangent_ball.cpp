@@ -15,19 +15,20 @@ constexpr double kSame = 1e-12;     // of a radius: two that differ by less are 
 constexpr double kLevel = 1e-9;     // descents below this are the rounding of normals
 constexpr double kParallel = 1e-6;  // radians: normals that differ by less give the same ball
 
-// By how much of its radius facets that turn by almost ThicknessOptions::smooth make a ball smaller at contacts that
-// are just far enough away to end it: (1 - cos(smooth / 2)) / (1 - cos(smooth)).
+// By what part of its radius a ball on a smooth surface may be too small because the surface is made of facets. The
+// largest part is that of facets that turn by almost ThicknessOptions::smooth, at contacts that are just far enough
+// away to end the ball: (1 - cos(smooth / 2)) / (1 - cos(smooth)).
 constexpr double kFacets = 0.25;
-// Radians: an angle that is smaller by less is as large.
+// Radians: angles that differ by less count as equal.
 constexpr double kSameAngle = 1e-7;
 
-// Between a place and another one, from the centre of the ball that touches both.
+// The angle between a place and another point, seen from the centre of the ball that touches both.
 double seen_angle(const TangentPlace& place, const Point& other) {
   const Vector way = place.position - other;
   return 2 * std::asin(std::clamp(place.normal.dot(way) / way.norm(), 0.0, 1.0));
 }
 
-// The part of a triangle that a part of another one, which shares it, is.
+// A feature (face, edge or vertex) of the triangle `other` that `triangle` shares: which of `triangle`'s own it is.
 Feature feature_on(const std::array<Index, 3>& triangle, const std::array<Index, 3>& other, Feature feature) {
   if (feature == Feature::face) return feature;
   const bool at_edge = feature <= Feature::edge2;
@@ -90,7 +91,7 @@ void TangentBallSearch::try_normal(const SurfacePlace& place, const Vector& norm
   set_thickness(tangent, best);
 }
 
-// How far the facets around a triangle turn, as far as they are those of a smooth surface.
+// The largest angle between a triangle's normal and a neighbour's, among neighbours that continue it smoothly.
 double TangentBallSearch::turn_around(Index triangle) const {
   double most = 0;
   for (const Index next : surface_.neighbors(triangle)) {
@@ -101,8 +102,9 @@ double TangentBallSearch::turn_around(Index triangle) const {
   return most;
 }
 
-// The contact that faces the place need not be the nearest: facets of a smooth surface are all a little off. A wall
-// that ended the ball at a smaller angle is no such contact where the ball would cut it farther away.
+// The contact that faces the place need not be the first that the ball meets, because the facets of a smooth surface
+// all lie a little off it: so a slightly larger ball is searched whose contact does face the place. The ball may grow
+// only by as much as facets explain, so a wall that ended it at a smaller angle is not passed over.
 void TangentBallSearch::set_thickness(const TangentPlace& place, ThicknessAt& at) {
   at.thickness = at.angle >= options_.facing - kSameAngle ? at.diameter : kNaN;
   if (!std::isnan(at.thickness) || options_.definition == ThicknessDefinition::ray) return;
@@ -133,7 +135,7 @@ void TangentBallSearch::run(Search& search, const TangentPlace& place, double li
   search.touched = touched_;
 }
 
-// The part that promises the smallest ball first, until none promises a smaller one than was found.
+// Visits the node with the least bound on the ball first, until no bound is below the ball that was found.
 void TangentBallSearch::search(const TangentPlace& place) {
   waiting_.assign(1, {bound(tree_.nodes()[0], place), 0});
   while (!waiting_.empty()) {
@@ -148,7 +150,7 @@ void TangentBallSearch::search(const TangentPlace& place) {
   low_ = found_.radius;
 }
 
-// To the leaf that promises the smallest ball, at every fork the nearer way; the other ways wait.
+// Goes down to a leaf, at every node to the child with the lesser bound. The other child waits in the queue.
 void TangentBallSearch::descend(const TangentPlace& place, Index index) {
   const auto& nodes = tree_.nodes();
   while (nodes[index].count == 0) {
@@ -166,8 +168,8 @@ void TangentBallSearch::descend(const TangentPlace& place, Index index) {
   for (const Index triangle : tree_.triangles(nodes[index])) look_at(place, triangle);
 }
 
-// From triangle to triangle across edges, as long as balls get smaller: to a place where the ball touches the surface
-// and cuts nothing beside it, if the search ended before.
+// Goes from triangle to triangle across edges as long as the ball gets smaller. Where the search ended early, the ball
+// then at least touches the surface without cutting the triangles beside the contact.
 void TangentBallSearch::slide(const TangentPlace& place) {
   for (bool better = true; better;) {
     better = false;

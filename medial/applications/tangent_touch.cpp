@@ -7,7 +7,8 @@
 namespace orchard::detail {
 namespace {
 
-// A ray that passes a corner or an edge by a rounding meets it, so that none slips through between two triangles.
+// A ray that passes a corner or an edge within this margin counts as meeting it, so that no ray passes between two
+// triangles because of rounding.
 constexpr double kOnBorder = 1e-12;  // of the triangle's area
 
 void take(Touch& best, const TangentPlace& place, const Point& at) {
@@ -36,7 +37,8 @@ struct Interval {
   double begin, end;
 };
 
-// The part of the segment a + t e, t in [0, 1], that is in the cone, which is convex.
+// Returns the part of the segment a + t e, t in [0, 1], that lies in the cone. It is an interval, since the cone is
+// convex.
 std::optional<Interval> part_in_cone(const TangentPlace& place, const Point& a, const Vector& e) {
   const bool first = is_in_cone(place, a), last = is_in_cone(place, a + e);
   if (first && last) return Interval{0, 1};
@@ -60,7 +62,8 @@ std::optional<Interval> part_in_cone(const TangentPlace& place, const Point& a, 
   return Interval{roots[0], roots[1]};
 }
 
-// Along a line the radius falls and rises again: what is nearest to the lowest place within the cone is lowest.
+// Tries the places of an edge. Along a line the radius falls and then rises, so within the cone it is least at the
+// place nearest to its minimum.
 void take_edge(Touch& best, const TangentPlace& place, const Point& a, const Point& b) {
   const Vector e = b - a, way = place.position - a;
   const double squared = e.squaredNorm();
@@ -71,17 +74,19 @@ void take_edge(Touch& best, const TangentPlace& place, const Point& a, const Poi
   const Vector across = way - along * e, turned = place.normal - slope * e;
   const double product = across.dot(turned), distance2 = across.squaredNorm();
   const double denominator = product + std::sqrt(product * product + slope * slope * squared * distance2);
-  // Where no ball touches the line, it comes ever nearer to p without end: to the foot of p.
+  // If no ball touches the line, the radius falls towards the place of the line that is nearest to p.
   const double radius = denominator > 0 ? distance2 / denominator : 0;
   const double t = std::clamp(along - radius * slope, part->begin, part->end);
   take(best, place, a + t * e);
 }
 
-// The place of a plane inside the cone that the smallest ball touches. `height`, of p above the plane, is above 0.
+// Returns the place of a plane inside the cone that the smallest ball touches. `height` is that of p above the plane,
+// above 0.
 Point lowest_of_plane(const TangentPlace& place, const Vector& up, double height) {
   const double cosine = place.normal.dot(up);
   if ((1 + cosine) / 2 >= place.sine * place.sine) return place.position - height / (1 + cosine) * (place.normal + up);
-  // What the ball touches is outside the cone, so it is on the cone's border, straight down.
+  // The ball would touch the plane outside the cone, so the place is on the border of the cone, in the steepest
+  // direction down to the plane.
   const Vector level = (up - cosine * place.normal).normalized();
   const Vector down = -place.sine * place.normal - std::sqrt(1 - place.sine * place.sine) * level;
   const double steepness = -down.dot(up);

@@ -17,7 +17,7 @@ double area_of(const TriangleMesh& mesh, Index triangle) {
   return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
 }
 
-// Triangles that share a corner and are both chosen, in one set.
+// Unites triangles that are both chosen and share a corner.
 DisjointSets joined_at_corners(const TriangleMesh& mesh, const std::vector<std::uint8_t>& chosen) {
   DisjointSets sets(mesh.triangles.size());
   std::vector<Index> first_at(mesh.vertices.size(), kNone);
@@ -41,7 +41,7 @@ void add(ThinRegion& region, const TriangleMesh& mesh, Index triangle, double ar
   region.thinnest = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
 }
 
-// The largest first; equals in the order of their first triangle.
+// The largest region comes first; equally large ones come in the order of their first triangle.
 void sort_by_area(ThinRegions& result) {
   std::vector<Index> order(result.regions.size()), place(result.regions.size());
   std::iota(order.begin(), order.end(), Index{0});

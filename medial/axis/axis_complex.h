@@ -7,8 +7,8 @@
 
 namespace orchard::detail {
 
-// The cells of a medial axis and which of them meet: faces first, then walls, numbered through; edges in the order of
-// their vertices.
+// The cells of a medial axis and which of them meet. Faces and walls are numbered together, faces first; edges are in
+// the order of their vertices.
 class AxisComplex {
  public:
   explicit AxisComplex(const MedialAxis& axis);

@@ -13,8 +13,8 @@ std::vector<Index> representatives_of_coincident(std::span<const Point> points, 
   if (points.empty()) return {};
   DisjointSets sets(points.size());
 
-  // Cells far wider than the distance: hardly a point has to look beyond its own, and still hardly two share one. A
-  // sorted list of hashes needs no buckets; equal hashes of different cells do no harm, since the distance decides.
+  // The cells are so wide that few points have to look beyond their own, and so narrow that few share one. A sorted
+  // list of hashes needs no buckets; equal hashes of different cells do no harm, since the distance decides.
   const double size = 64 * distance;
   Point origin = points[0];
   for (const Point& point : points) origin = origin.cwiseMin(point);

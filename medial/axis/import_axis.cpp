@@ -40,7 +40,7 @@ class Importer {
   }
 
  private:
-  // Each with its first contact.
+  // Adds the balls, each with its first contact: the surface's point nearest to its centre.
   void add_balls() {
     number_.assign(mesh_.size(), kNone);
     for (Index i = 0; i < mesh_.size(); ++i) {
@@ -70,7 +70,7 @@ class Importer {
     sampling.origins.push_back(PointOrigin::repair);
   }
 
-  // Each to the ball that comes nearest, the first of equals.
+  // Makes each sample a contact of the ball whose surface is nearest to it; of equals, the first.
   void share_samples_out() {
     std::vector<Box> boxes;
     for (const Point& center : axis_.centers) boxes.emplace_back(center, center);
@@ -95,7 +95,8 @@ class Importer {
     return angle_between(axis_.points[p] - axis_.centers[v], axis_.points[q] - axis_.centers[v]);
   }
 
-  // The contacts in ascending order, and how far apart the nearest one and the one opposite it are seen.
+  // Stores for each ball the largest angle, seen from its centre, between its first contact and another, and its
+  // contacts in ascending order.
   void find_angles() {
     for (Index v = 0; v < axis_.size(); ++v) {
       const Index first = contacts_[v].front();
@@ -120,7 +121,7 @@ class Importer {
     }
   }
 
-  // The first contacts of a face's corners that are farthest apart.
+  // Of the first contacts of a face's three corners, the two that are farthest apart.
   std::array<Index, 2> points_of(const std::array<Index, 3>& corners) const {
     std::array<Index, 3> first;
     for (std::size_t i = 0; i < 3; ++i) first[i] = contact_of(corners[i]);

@@ -18,7 +18,7 @@ std::vector<Index> with_cells(const Rows& rows, std::size_t count) {
   return found;
 }
 
-// Where the cells with each first corner start, of `count`, when they are in its order.
+// For each first corner (there are `count`), where its cells start in a list that is sorted by first corners.
 template <class Cell>
 std::vector<Index> starts_of(const std::vector<Cell>& cells, Index count) {
   std::vector<Index> starts(count, 0);
@@ -27,7 +27,7 @@ std::vector<Index> starts_of(const std::vector<Cell>& cells, Index count) {
   return starts;
 }
 
-// By their first corner, then among the few that have it.
+// Sorts cells by a counting sort on the first corner, then each group of cells, which is small, on its own.
 template <class Cell>
 void sort_and_deduplicate(std::vector<Cell>& cells) {
   Index count = 0;
@@ -47,7 +47,7 @@ void sort_and_deduplicate(std::vector<Cell>& cells) {
   cells = std::move(sorted);
 }
 
-// Adds what is not there yet.
+// Adds those of `more` that are not among the cells yet. Both are sorted.
 template <class Cell>
 void merge_sorted(std::vector<Cell>& cells, const std::vector<Cell>& more) {
   if (more.empty()) return;
@@ -57,7 +57,8 @@ void merge_sorted(std::vector<Cell>& cells, const std::vector<Cell>& more) {
   cells = std::move(all);
 }
 
-// Rows of what for_each() adds, (row, item), items ascending and each once; it is called twice.
+// Rows filled by for_each(), which calls its argument with (row, item). In each row the items must come ascending and
+// without repetition. for_each() is called twice: to count and to fill.
 template <class ForEach>
 Rows rows_of_ascending(Index count, const ForEach& for_each) {
   Rows rows;
@@ -123,7 +124,8 @@ EdgeNumbers::EdgeNumbers(const std::vector<std::array<Index, 2>>& edges, Index v
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
 }
 
-// Rows are short: to count what is before it is faster than to divide them by branches that cannot be predicted.
+// In a short row it is faster to count the edges before the one that is sought than to bisect, whose branches the
+// processor cannot predict.
 Index EdgeNumbers::operator()(Index a, Index b) const {
   const Index low = std::min(a, b), high = std::max(a, b);
   const Index begin = begin_[low], end = begin_[low + 1];

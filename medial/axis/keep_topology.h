@@ -9,18 +9,20 @@
 namespace orchard::detail {
 
 struct KeptTopology {
-  // Of each Voronoi vertex: the one neighbour that it is joined to; kNone for those joined to all. Empty if all are.
+  // For each Voronoi vertex that a stem (a single edge) joins to the axis, the neighbour that it is joined to; kNone
+  // for vertices that are joined to all their neighbours. Empty if all are.
   std::vector<Index> stems;
-  std::vector<std::array<Index, 2>> bridges;  // further edges, between pieces that no edge inside joins
+  std::vector<std::array<Index, 2>> bridges;  // further edges, between pieces that no edge inside the solid joins
   Index left_out = 0;                         // vertices
 };
 
-// See AxisOptions::keep_topology. inside: of each Voronoi vertex whether it is inside; those left out become 0.
-// Taking a vertex in, together with the edges and faces that it completes, leaves the homotopy type alone if the edges,
-// joined where two of them bound a completed face, form a tree: then what the vertex is glued to is contractible. Grown
-// from one ball for each part of the surface. Where that ends, an edge alone changes nothing either: vertices next to
-// what is there are joined by a stem; then a bridge leads along the shortest way over the outside to another piece, and
-// that grows in turn. No ball is lost with the sheets that spoil the topology. O(n log n) for each bridge.
+// See AxisOptions::keep_topology. `inside` tells of each Voronoi vertex whether it is inside; it is set to 0 for
+// vertices that are left out. The axis grows from one ball for each part of the surface. Adding a vertex, together with
+// the edges and faces that it completes, keeps the homotopy type if these edges, two of them linked where they bound a
+// completed face, form a tree: then the part of the axis that the vertex is glued to is contractible. When no further
+// vertex can be added in this way, vertices next to the axis are joined by a stem: a single edge does not change the
+// homotopy type either. Then a bridge along the shortest way through the outside leads to another piece, which grows in
+// turn. So the sheets that would spoil the topology are left out, but not their balls. O(n log n) for each bridge.
 KeptTopology keep_topology(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
                            const VoronoiFaces& faces, std::vector<std::uint8_t>& inside);
 

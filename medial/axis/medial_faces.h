@@ -6,8 +6,8 @@
 
 namespace orchard::detail {
 
-// Fills axis.face_points, axis.faces, axis.wall_points and axis.walls. medial: for each Voronoi vertex its medial
-// vertex, or kNone. stems: of keep_topology(); those vertices have no faces.
+// Fills axis.face_points, axis.faces, axis.wall_points and axis.walls. `medial`: the medial vertex of each Voronoi
+// vertex, or kNone. `stems`: KeptTopology::stems; a vertex that a stem joins to one neighbour has no faces.
 void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, const VoronoiFaces& voronoi,
                        const std::vector<Index>& medial, const std::vector<Index>& stems, MedialAxis& axis);
 

@@ -31,7 +31,8 @@ class Segmenter {
            separation_angle(axis_, complex_.corners(face), complex_.points(face)) >= options_.angle;
   }
 
-  // Joined across edges that do not touch the surface; but what never gets away from it opens no sheet.
+  // Joins faces across edges that do not touch the surface. A set becomes a sheet if it has a face away from the
+  // surface.
   void number_sheets(Index edges) {
     const Index faces = complex_.face_count();
     std::vector<std::uint8_t> counted(faces), opens(faces, 0);
@@ -65,7 +66,8 @@ class Segmenter {
     }
   }
 
-  // By rings around what is numbered; what is left then makes sheets of its own.
+  // Adds the other faces to sheets, in rings around the numbered faces. Faces that no ring reaches become sheets of
+  // their own.
   void hand_out_the_rest(std::vector<Index>& number) {
     std::vector<Index> open_faces;
     for (Index face = 0; face < number.size(); ++face) {
@@ -89,7 +91,7 @@ class Segmenter {
     }
   }
 
-  // Edges without faces, joined at vertices where exactly two of them meet and nothing else does.
+  // Joins edges without faces at vertices where two of them and no other cells meet.
   void number_curves(Index edges) {
     DisjointSets sets(edges);
     const auto alone = [&](Index edge) { return complex_.faces_at(edge).empty(); };

@@ -11,7 +11,7 @@
 namespace orchard {
 namespace {
 
-// A medial mesh seen as AxisComplex shows an axis.
+// A medial mesh with the interface of AxisComplex.
 class MeshComplex {
  public:
   explicit MeshComplex(const MedialMesh& mesh) : mesh_(mesh), at_(mesh.edges, mesh.triangles, mesh.size()) {}
@@ -60,7 +60,7 @@ class StructureFinder {
     return static_cast<Index>(result_.parts.size() - 1);
   }
 
-  // The part of each item that counts, one for each set, in the order of their first items.
+  // Adds a part for each set of the items that count, in the order of their first items, and numbers the items.
   template <class Counts, class Kind>
   std::vector<Index> number(DisjointSets& sets, Index items, const Counts& counts, const Kind& kind) {
     std::vector<Index> part_of_root(items, kNone), part(items, kNone);
@@ -84,8 +84,8 @@ class StructureFinder {
         sheets, complex_.face_count(), [](Index) { return true; }, [](Index) { return StructureKind::sheet; });
   }
 
-  // A vertex is inside a line if two edges of one kind are all the lines at it, and inside a sheet if none are; and if
-  // its faces hang together around it.
+  // Finds the junctions. A vertex is no junction if its faces are connected around it and either exactly two line edges
+  // meet there, both of one kind (it is inside a line), or none (it is inside a sheet).
   void find_junctions() {
     junction_.assign(vertices_, 0);
     for (Index vertex = 0; vertex < vertices_; ++vertex) {

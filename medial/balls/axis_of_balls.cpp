@@ -10,7 +10,7 @@
 namespace orchard::detail {
 namespace {
 
-// Adds the contacts of a ball; returns the widest angle that two of them are seen at.
+// Adds the contacts of a ball, and returns the largest angle at which two of them are seen.
 double add_contacts(const ExactBall& ball, SurfaceSampling& contacts) {
   double widest = 0;
   const auto touching = ball.touching();
@@ -27,7 +27,7 @@ double add_contacts(const ExactBall& ball, SurfaceSampling& contacts) {
   return widest;
 }
 
-// The contacts of one corner that are seen farthest apart from the middle.
+// Returns the two contacts, of one corner of a triangle, that are seen farthest apart from its middle.
 std::array<Index, 2> points_of_triangle(const MedialAxis& axis, const std::array<Index, 3>& corners) {
   const Point middle = (axis.centers[corners[0]] + axis.centers[corners[1]] + axis.centers[corners[2]]) / 3;
   std::array<Index, 2> best{axis.forming_points[corners[0]][0], axis.forming_points[corners[1]][0]};

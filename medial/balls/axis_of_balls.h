@@ -4,8 +4,8 @@
 
 namespace orchard::detail {
 
-// A complex of balls as a medial axis: vertices in their order, triangles for faces, no walls; its points are the
-// contacts, vertex by vertex. O(n log n).
+// Converts a complex of balls to a medial axis. Its vertices keep their order, its faces are the triangles, it has no
+// walls, and its points are the contacts, vertex by vertex. O(n log n).
 MedialAxis axis_of_balls(const Surface& surface, const BallComplex& complex);
 
 }  // namespace orchard::detail

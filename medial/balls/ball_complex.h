@@ -8,8 +8,8 @@
 
 namespace orchard::detail {
 
-// A medial mesh whose vertices know their contacts. Edges are sorted and each there once, those of triangles included.
-// Complete: triangles as well.
+// A medial mesh with the contacts of its vertices. Edges are sorted and occur once, including those of triangles. In a
+// complete complex, the same holds for triangles.
 struct BallComplex {
   std::vector<ExactBall> balls;
   std::vector<std::array<Index, 2>> edges;
@@ -22,28 +22,30 @@ struct BallComplex {
   EdgeNumbers edge_numbers() const { return {edges, size()}; }
 };
 
-// Cuts edges of a complete complex in two, and with them the triangles at them: the same topology. cut[e] is the vertex
-// that divides edge e, which is in `complex.balls` already, or kNone. O(n) and O(log n) for each cut.
+// Divides edges of a complete complex, and the triangles at these edges, which does not change the topology. cut[e] is
+// the vertex that divides edge e, which must be in `complex.balls`; kNone if the edge is not divided. Takes O(n), and
+// O(log n) for each cut.
 void subdivide(BallComplex& complex, const std::vector<Index>& cut);
 
-// Which cells of a complex stay, by their numbers.
+// The cells of a complex that are kept, by their numbers.
 struct Alive {
   std::vector<std::uint8_t> vertices, edges, triangles;
 };
 
-// Takes all other cells away; what stays must have its corners and sides. The order stays. O(n).
+// Removes all other cells, and keeps the order. Precondition: the corners and sides of kept cells are kept. O(n).
 void keep_alive(BallComplex& complex, const Alive& alive);
 
-// What may be taken away, by edges and vertices; a triangle may go if one of its edges may. Nothing else does.
+// The edges and vertices that may be removed. A triangle may be removed if one of its edges may.
 struct Doomed {
-  // Nothing yet.
+  // At first, nothing may be removed.
   explicit Doomed(const BallComplex& complex) : edges(complex.edges.size(), 0), vertices(complex.balls.size(), 0) {}
 
   std::vector<std::uint8_t> edges, vertices;
 };
 
-// Takes away cells from the free ends on, triangles at free doomed edges and doomed edges at free doomed vertices,
-// which changes no topology; edges with the least value of an end first. What has nothing free stays. O(n log n).
+// Collapses cells from their free ends on: triangles at free edges, and edges at free vertices, if these may be
+// removed. This does not change the topology. Edges whose ends have the smallest value come first. Cells without a free
+// side remain. O(n log n).
 void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex);
 
 }  // namespace orchard::detail

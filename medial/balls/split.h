@@ -7,8 +7,8 @@
 
 namespace orchard::detail {
 
-// Tolerances: balls between the places that dividing looks at may be off by the tolerance once more. So much do balls
-// stick out of the solid at most, which is proven of each cell.
+// The proven bound on how far balls protrude, as a multiple of the tolerance. It is not 1, because balls between the
+// places that are checked may be off by another tolerance.
 inline constexpr double kMaxStickingOut = 2;
 
 struct SplitOptions {
@@ -21,32 +21,38 @@ struct SplitReport {
   Index divided = 0, undivided = 0;
 };
 
-// The errors of sorted cells, so that no cell is looked at twice; negative ones of what earlier calls gave up.
+// The errors of cells that have been checked, so that no cell is checked twice. Cells are sorted. The error is negative
+// for a cell that an earlier call gave up.
 template <class Cell>
 struct CellErrors {
   std::vector<Cell> cells;
   std::vector<double> errors;
 };
 
-// What dividing a complex found out, for the next time: as long as its vertices keep their numbers and balls.
+// The known errors of a complex, for the next call. They are valid as long as vertices keep their numbers and balls.
 struct SplitErrors {
-  // For vertices that have other numbers now, in the same order, or none (kNone): cells with such are forgotten.
+  // Adapts the cells to new numbers of the vertices, in the same order. Cells with a vertex that has no number (kNone)
+  // are dropped.
   void renumber(const std::vector<Index>& number);
 
   CellErrors<std::array<Index, 2>> edges;
   CellErrors<std::array<Index, 3>> triangles;
 };
 
-// Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
-// than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten
-// tolerances of long ones, or closer where they are thin; and until it is proven that they protrude by no more than
-// kMaxStickingOut tolerances. A triangle's error counts for its longest edge. Edges
-// through a wall of a surface that cuts itself are not divided: no division makes them linear. New vertices
-// are exact where that is possible; what `known` has as left by an earlier call is left again. Deterministic; parallel.
+// Divides edges until two conditions hold for the balls that are interpolated on edges and triangles:
+// - At the places that are checked, balls protrude or fall short by at most the tolerance. These places are the
+// quarters of
+//   edges and the middles of triangles; on long cells, they are at most ten tolerances apart, and less where the solid
+//   is thin.
+// - It is proven that balls protrude by at most kMaxStickingOut tolerances.
+// The error of a triangle counts for its longest edge. Edges through a wall of a surface that cuts itself are not
+// divided, because no division makes them linear. Cells that `known` lists as given up are left as they are. New
+// vertices are exact where that is possible. The result is deterministic; the work is parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             SplitErrors& known, const Progress& progress);
 
-// Whether a triangle alone, divided like that, has no error beyond the tolerance left: its balls are all of one sheet.
+// Returns whether a triangle by itself can be divided in this way until no error exceeds the tolerance. Then all its
+// balls belong to one sheet.
 bool becomes_linear(const Surface& surface, const ExactBall& a, const ExactBall& b, const ExactBall& c,
                     const SplitOptions& options);
 

@@ -10,16 +10,17 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kAt = 1e-9;  // bounding radii: what rounding puts beside an edge
+constexpr double kAt = 1e-9;  // bounding radii: how far rounding moves a place off an edge
 
 using MeshEdge = std::array<Index, 2>;  // vertices of the mesh, ascending
 
-// What is on one edge of the mesh.
+// The vertices and edges of the complex on one edge of the mesh.
 struct Row {
-  std::vector<std::pair<double, Index>> places;  // how far along, and the vertex; ascending
-  std::vector<int> along;                        // edges of the complex from a place to the next one
+  std::vector<std::pair<double, Index>> places;  // positions along the edge, with the vertex there; ascending
+  std::vector<int> along;                        // the number of edges of the complex between a place and the next
 
-  // An edge of the complex starts at one of them and ends at the other; `along` is summed up when all are there.
+  // Adds an edge of the complex between two places: +1 at the first and -1 at the second. Sums of `along` from the left
+  // then count the edges.
   void add_edge(const std::pair<double, Index>& a, const std::pair<double, Index>& b) {
     const auto number = [&](const std::pair<double, Index>& place) {
       return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), place) - places.begin());
@@ -64,7 +65,7 @@ std::map<MeshEdge, Row> rows_on_edges(const Surface& surface, const BallComplex&
 std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex,
                                                 const FeatureEdges& features) {
   std::vector<std::array<Index, 2>> gaps;
-  std::map<Index, std::vector<Index>> nearest;  // to a vertex of the mesh, on each sharp edge
+  std::map<Index, std::vector<Index>> nearest;  // for each vertex of the mesh, the nearest place on each sharp edge
   for (const auto& [edge, row] : rows_on_edges(surface, complex, features)) {
     for (std::size_t i = 0; i + 1 < row.places.size(); ++i) {
       if (row.along[i] == 0) gaps.push_back({row.places[i].second, row.places[i + 1].second});

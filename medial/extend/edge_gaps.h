@@ -8,9 +8,9 @@
 
 namespace orchard::detail {
 
-// Pairs of vertices of radius 0 that are next to each other on a feature edge of the mesh, or around
-// a corner where two such edges meet, and no edge of the complex runs along the edge between them. In the order of the
-// mesh's vertices. O(n log n).
+// Returns pairs of vertices of radius 0 that are next to each other on a feature edge of the mesh, or around a corner
+// where two such edges meet, without an edge of the complex between them along the feature edge. They are in the order
+// of the vertices of the mesh. O(n log n).
 std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex,
                                                 const FeatureEdges& features);
 

@@ -63,7 +63,7 @@ class CornerReacher {
     return kNone;
   }
 
-  // From the end of a seam to the corner where the edges meet that its sheets reach.
+  // The way from the end of a seam to the corner in which those edges meet that the seam's sheets reach.
   struct Way {
     Index from = kNone;
     ExactBall corner;
@@ -90,8 +90,8 @@ class CornerReacher {
     return rest.norm() < to.norm() && angle_between(rest, to) < kAside;
   }
 
-  // The nearest vertices of a seam go first. Those behind them, whose ways lead through them, go nowhere: they would
-  // fold their sheets onto those of the first.
+  // Called for the vertices nearest to their corner first. A vertex whose way leads through one of these is not
+  // extended: its sheets would fold onto those of the first.
   void extend(const Way& way, const std::vector<Index>& on_edges) {
     const Index v = way.from;
     const ExactBall ball = sheets_.complex.balls[v];

@@ -26,14 +26,15 @@ class EdgeReacher {
   }
 
  private:
-  // Where a sheet at a vertex ends: the place, and its vertex once there is one.
+  // The place on an edge of the surface at which a sheet beyond a vertex ends, and the vertex there, once there is one.
   struct End {
     ExactBall ball;
     Index vertex = kNone;
   };
 
-  static constexpr double kMaxAlong = 3;  // lengths of an edge, and as many spacings: between the ends of its vertices
-  static constexpr double kSame = 0.5;    // cosine of the angle around an edge between two triangles of one sheet
+  static constexpr double kMaxAlong =
+      3;  // the most that the ends of an edge's vertices may be apart, in (lengths of the edge + spacings)
+  static constexpr double kSame = 0.5;  // least cosine of the angle around an edge between two triangles of one sheet
 
   void find_ends() {
     ends_.resize(sheets_.complex.size());
@@ -75,7 +76,7 @@ class EdgeReacher {
         sheets_.triangles.add_strip(a, b, vertex_of(a, x), vertex_of(b, *y));
     }
   }
-  // A triangle where a row of strips ends; alone it would be a spike.
+  // Adds the triangle at which a row of strips ends. Without a strip beside it, it would be a spike and is not added.
   void add_end(Index e) {
     const auto [a, b] = sheets_.complex.edges[e];
     if (ends_[a].size() + ends_[b].size() != 1 || sheets_.complex.balls[a].radius == 0 ||
@@ -92,7 +93,8 @@ class EdgeReacher {
     return found == ends.end() ? nullptr : &*found;
   }
 
-  // Whether the strip from an edge to two ends, or one, is right, and its sheet not there yet.
+  // Whether the strip from an edge to two ends (or one) may be added: its triangles are right, and there is no other
+  // triangle of the same sheet.
   bool fits(Index e, const End& x, const End& y) {
     const ExactBall &p = sheets_.complex.balls[sheets_.complex.edges[e][0]],
                     &q = sheets_.complex.balls[sheets_.complex.edges[e][1]];
@@ -116,7 +118,7 @@ class EdgeReacher {
            is_triangle_right(sheets_.surface, q, x.ball, y.ball, sheets_.options.tolerance);
   }
 
-  // One that is there already, if v is joined to it.
+  // The vertex at an end: one that v is joined to if it is there already, else a new one.
   Index vertex_of(Index v, End& end) {
     if (end.vertex != kNone) return end.vertex;
     for (const Index e : sheets_.at.edges_at[v]) {

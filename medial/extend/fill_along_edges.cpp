@@ -20,7 +20,8 @@ class EdgeFiller {
   }
 
  private:
-  static constexpr double kMaxLength = 8;  // spacings, between two places with no border in between
+  static constexpr double kMaxLength =
+      8;  // the largest distance between two places without a border in between, in spacings
 
   const ExactBall& ball(Index v) const { return sheets_.complex.balls[v]; }
 

@@ -6,23 +6,24 @@
 
 namespace orchard::detail {
 
-// Adds cells to a complete complex that change no topology: triangles that meet it in one edge, their third vertex
-// being new, or in two edges; and edges to new vertices. What is added could be collapsed again from its free ends on.
+// Adds cells to a complete complex without a change of topology: triangles that share one edge with it and have a new
+// third vertex, triangles that share two edges with it, and edges to new vertices. The added cells could be collapsed
+// again from their free ends on.
 class FreeExtension {
  public:
   explicit FreeExtension(BallComplex& complex) : complex_(complex), first_new_(complex.size()) {}
 
   bool joined(Index a, Index b) const;
-  // A vertex for triangles to come. It is dropped if none comes.
+  // Adds a vertex for later triangles. It is dropped if no cell uses it.
   Index add_vertex(const ExactBall& ball);
-  // False, and nothing is added, if that would change the topology.
+  // Adds a triangle. Returns false and adds nothing if that would change the topology.
   bool add(Index a, Index b, Index c);
-  // The edge from a vertex to a new one that nothing has yet: a curve goes on. False if there is such.
+  // Continues a curve by an edge from a vertex to a new vertex. Returns false if a cell already uses the new vertex.
   bool add_edge(Index from, Index to);
-  // The strip between the edge ab and the edge xy: two triangles along the shorter diagonal, or what of them is free;
-  // one triangle if x is y.
+  // Adds the strip between the edges ab and xy: two triangles along the shorter diagonal, or only those that do not
+  // change the topology. If x is y, it is one triangle.
   void add_strip(Index a, Index b, Index x, Index y);
-  // Completes the complex. Returns how many triangles and edges without triangles were added.
+  // Completes the complex. Returns the number of triangles and of edges without triangles that were added.
   Index finish();
 
  private:
@@ -32,10 +33,10 @@ class FreeExtension {
 
   BallComplex& complex_;
   const Index first_new_;
-  std::vector<std::uint8_t> used_;  // of the new vertices
+  std::vector<std::uint8_t> used_;  // for each new vertex
   std::vector<std::array<Index, 3>> added_;
   std::vector<std::array<Index, 2>> added_edges_;  // of curves
-  std::unordered_set<std::uint64_t> new_edges_;    // asked only whether it holds a pair
+  std::unordered_set<std::uint64_t> new_edges_;    // used only to test whether it contains a pair
 };
 
 }  // namespace orchard::detail

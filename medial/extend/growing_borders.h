@@ -12,18 +12,18 @@ namespace orchard::detail {
 // The borders of sheets while triangles are added to them.
 class GrowingBorders {
  public:
-  // Of the sheets as they were; `reach` (mesh units) is how far from a place borders are looked for. `sheets` must
-  // outlive it. O(n) for n border edges.
+  // Starts with the present borders of the sheets. `reach` (mesh units) is the distance within which near() searches.
+  // `sheets` must outlive this object. O(n) for n border edges.
   GrowingBorders(const SheetExtension& sheets, double reach);
 
-  // A triangle that has been added to the sheets.
+  // Records a triangle that was added to the sheets.
   void add(Index a, Index b, Index c);
 
-  // Whether an edge has just one triangle.
+  // Returns whether an edge has exactly one triangle.
   bool has(const std::array<Index, 2>& edge) const;
 
-  // The edges with one triangle and an end within reach of a place, the nearer end first: those before others from
-  // which a triangle to the place makes the borders longer by less.
+  // Returns the edges with one triangle and an end within reach of a place, each with its nearer end first. They are in
+  // ascending order of the length by which a triangle from the edge to the place would lengthen the borders.
   std::vector<std::array<Index, 2>> near(const Point& place) const;
 
  private:
@@ -35,7 +35,7 @@ class GrowingBorders {
   const SheetExtension& sheets_;
   double reach_;
   std::vector<std::array<Index, 2>> edges_;
-  std::unordered_map<std::uint64_t, int> triangles_at_;  // how many, of these edges
+  std::unordered_map<std::uint64_t, int> triangles_at_;  // the number of triangles of each edge
   PointGrid ends_;
 };
 

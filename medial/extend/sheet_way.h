@@ -6,17 +6,18 @@
 
 namespace orchard::detail {
 
-// The shortest way over old edges and vertices of radius above 0 from any of some vertices to any of others, `length`
-// (mesh units) being how far what they belong to is apart; nothing if it is far longer.
+// The shortest way along old edges, over vertices whose radius is above 0, from any vertex of `from` to any of `to`.
+// `length` (mesh units) is the distance of what the two ends belong to: a way that is far longer is not returned, and
+// the result is empty.
 std::vector<Index> way_between(const SheetExtension& sheets, std::span<const Index> from, std::span<const Index> to,
                                double length);
 
-// Fills what is between the line from vertex x to vertex y and a way whose ends are joined to x and to y: a fan at x,
-// a fan at y, and one triangle with both. `is_right(a, b, c)` tells whether a triangle may be there whose side bc is
-// new. Adds nothing unless all may. Returns whether x and y are joined now.
+// Fills the gap between the line from vertex x to vertex y and a way whose ends are joined to x and to y, by triangles:
+// a fan around x, a fan around y, and one triangle with both. `is_right(a, b, c)` tells whether a triangle is allowed
+// whose side bc is new. Adds nothing unless all are allowed. Returns whether x and y are joined now.
 template <class IsRight>
 bool fill_between(SheetExtension& sheets, Index x, Index y, std::vector<Index> way, const IsRight& is_right) {
-  // What x and y are joined to already needs no fan.
+  // Vertices of the way that x or y is joined to already need no fan.
   std::size_t first = 0, last = way.size();
   for (std::size_t i = 0; i < way.size(); ++i) {
     if (sheets.triangles.joined(x, way[i])) first = i;
@@ -29,7 +30,7 @@ bool fill_between(SheetExtension& sheets, Index x, Index y, std::vector<Index> w
   const auto apart = [&](Index a, Index b) {
     return (sheets.complex.balls[a].center - sheets.complex.balls[b].center).norm();
   };
-  // The fans meet where both are as near.
+  // The fans meet at the vertex of the way that is about as near to x as to y.
   std::size_t meet = 0;
   while (meet + 1 < way.size() && apart(x, way[meet + 1]) < apart(y, way[meet])) ++meet;
   for (std::size_t i = 0; i < meet; ++i) {

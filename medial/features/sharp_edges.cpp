@@ -7,8 +7,8 @@
 namespace orchard::detail {
 namespace {
 
-// Of the way between two places: how far an edge between them may be from its middle, which is what it is around a
-// corner of 120 degrees.
+// How far an edge between two places may be from the middle of the way between them, as a part of this way. Around a
+// corner of 120 degrees it is just as far.
 constexpr double kMaxAside = 0.25;
 
 }  // namespace

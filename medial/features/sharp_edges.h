@@ -7,22 +7,22 @@
 
 namespace orchard::detail {
 
-// Looks for places on the feature edges of a mesh. Not for several threads at once.
+// Finds places on the feature edges of a mesh. An object must not be used by several threads at once.
 class SharpEdges {
  public:
   SharpEdges(const Surface& surface, const FeatureEdges& features) : surface_(surface), features_(features) {}
 
-  // The nearest place on them closer than `far`; false if there is none.
+  // Finds the nearest place on the feature edges, if one is closer than `far`. Returns whether there is one.
   bool nearest(const Point& place, double far, ClosestPoint& found);
-  // Whether two places on them are on one, or on such as turn little between them.
+  // Whether two places on feature edges are on the same edge, or on edges that turn little between the two.
   bool goes_between(const Point& a, const Point& b);
-  // All that come within `far`, as pairs of ascending vertices. Cleared first.
+  // Finds all feature edges that come within `far`, as pairs of ascending vertices. `found` is cleared first.
   void all_at(const Point& place, double far, std::vector<std::array<Index, 2>>& found);
-  // The nearest of their ends.
+  // Finds the nearest end of a feature edge, like nearest().
   bool nearest_end(const Point& place, double far, ClosestPoint& found);
 
  private:
-  // Calls visit(triangle, side) for each with a triangle within `far` of a place.
+  // Calls visit(triangle, side) for each feature edge that has a triangle within `far` of the place.
   template <class Visit>
   void visit_near(const Point& place, double far, const Visit& visit);
   template <class PlaceOnEdge>

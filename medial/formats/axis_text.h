@@ -6,8 +6,8 @@
 #include "orchard/geometry/text_lines.h"
 #include "orchard/medial/read_axis.h"
 
-// The readers behind read_axis(), each of one kind of text. Any text will do: the result has a complete and valid mesh,
-// or InputError names the line.
+// The readers behind read_axis(), one for each kind of text. They accept any text: either the result has a complete and
+// valid mesh, or InputError names the faulty line.
 namespace orchard::detail {
 
 ForeignAxis parse_ma_axis(TextLines lines);
@@ -21,7 +21,7 @@ ForeignAxis parse_balls(const std::string& name, std::string text);
 // A PLY file, ASCII or binary.
 ForeignAxis parse_ply_axis(std::string_view bytes, const std::string& name);
 
-// The files of one axis that Point2Skeleton and programs like it write side by side.
+// The files that Point2Skeleton and similar programs write side by side for one axis.
 ForeignAxis read_axis_family(const std::filesystem::path& file);
 
 }  // namespace orchard::detail

@@ -7,7 +7,7 @@
 namespace orchard::detail {
 namespace {
 
-// Words that begin a line which says nothing of an axis.
+// The words that begin lines without information about an axis.
 constexpr std::array<std::string_view, 15> kOther{"vn", "vt",     "vp",     "p",    "o",   "g",    "s",  "usemtl",
                                                   "mg", "mtllib", "cstype", "curv", "deg", "parm", "end"};
 
@@ -44,7 +44,7 @@ class ObjReader {
     std::size_t count = 0;
     while (count < more.size() && lines_.real_if_any(more[count])) ++count;
     if (!lines_.word().empty()) lines_.fail("a vertex with something that is not a finite number");
-    // Three or four more are a colour.
+    // Three or four further numbers are a colour.
     const int columns = count == 1 ? 4 : 3;
     if (count == 2 || count == 5) lines_.fail("a vertex of " + std::to_string(3 + count) + " numbers");
     if (columns_ != 0 && columns != columns_)
@@ -55,7 +55,8 @@ class ObjReader {
     axis_.mesh.radii.push_back(columns == 4 ? more[0] : 0);
   }
 
-  // The vertex that a word such as "7", "-1" or "7/2/3" names; they count from 1, and back from the last one.
+  // Returns the vertex of a word such as "7", "-1" or "7/2/3". Vertices are counted from 1, negative numbers from the
+  // last one backwards.
   Index corner(std::string_view word) {
     std::int64_t number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -81,7 +82,7 @@ class ObjReader {
       axis_.mesh.edges.push_back({all[i], all[i + 1]});
     }
   }
-  // A polygon becomes a fan.
+  // Reads a polygon, and divides it into a fan of triangles.
   void read_face() {
     const std::vector<Index> all = corners(3);
     std::vector<Index> sorted = all;
@@ -92,7 +93,7 @@ class ObjReader {
 
   TextLines lines_;
   bool cg_;
-  int columns_ = 0;  // numbers that count, of each vertex
+  int columns_ = 0;  // how many numbers of each vertex count
   ForeignAxis axis_;
 };
 

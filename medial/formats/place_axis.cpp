@@ -1,4 +1,4 @@
-// Whether the balls of a file are those of the mesh beside it, and which frame would make them so.
+// Tests whether the balls of a file fit the mesh that they are read with, and if not, in which frame they would.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double kMostly = 0.9;      // of all balls
 constexpr double kFits = 0.25;       // of what it was: a frame that makes it so much better is named
 constexpr double kFarOff = 3;        // times tolerance::kFrameError: no frame need fit for a refusal
 
-// From the file's coordinates to the mesh's: scale, then move; before both, axes change places.
+// A map from the file's coordinates to the mesh's: first axes are exchanged, then it scales, then it moves.
 struct Frame {
   std::array<int, 3> axes{0, 1, 2};
   std::array<int, 3> signs{1, 1, 1};
@@ -57,7 +57,8 @@ std::string in_words(const Frame& frame) {
          number(frame.move.y()) + ", " + number(frame.move.z()) + ")";
 }
 
-// What is to be near the surface: the balls, the centres, which are to be inside, or the centres on the surface itself.
+// How an axis is to fit the surface: its balls touch the surface; its centres lie inside; or its centres lie on the
+// surface itself (then it is a copy of the surface).
 enum class Fit : std::uint8_t { balls, inside, surface };
 
 class FrameFinder {
@@ -74,7 +75,8 @@ class FrameFinder {
     }
   }
 
-  // Of the diagonal: the median of how far the balls are off the surface; centres alone, how far they are outside.
+  // The median, as a fraction of the diagonal, of the balls' distances from touching the surface; for centres without
+  // radii, of their distances outside the solid.
   double median(const Frame& frame) const {
     std::vector<double> errors;
     for (const auto& [center, radius] : balls_) {
@@ -85,12 +87,13 @@ class FrameFinder {
     std::nth_element(errors.begin(), middle, errors.end());
     return *middle / diagonal_;
   }
-  // The same and how far the balls are from filling the solid's box: small ones are near any surface around them.
+  // The median, plus how far the box of the balls is from the solid's box: the median alone would favour frames that
+  // make everything small.
   double error(const Frame& frame) const {
     return median(frame) + (fit_ == Fit::inside ? size_error(frame.scale) : box_error(frame));
   }
 
-  // Of the diagonal: how far a frame moves the corners of the solid's box.
+  // The farthest that the frame moves a corner of the solid's box, as a fraction of the diagonal.
   double moved(const Frame& frame) const {
     double farthest = 0;
     for (int i = 0; i < 8; ++i) {
@@ -119,7 +122,8 @@ class FrameFinder {
   }
 
  private:
-  // Centres alone fill the solid's box by a third to all of it; of other sizes every place might be inside.
+  // How far the size of the centres' box is outside the range that is usual, as a part of the solid's box. Without this
+  // condition a frame that shrinks all centres to a point inside would fit.
   double size_error(double scale) const {
     const double ratio = scale * box_.diagonal().norm() / diagonal_;
     return ratio > 1.5 ? ratio - 1.5 : ratio < 0.25 ? 0.25 - ratio : 0;
@@ -134,8 +138,9 @@ class FrameFinder {
     return std::max(0.0, off / diagonal_ - kUnfilled);
   }
 
-  // Frames that programs bring a mesh into, undone: its lowest corner or its middle at 0, its longest side, diagonal or
-  // half of these of a given length; and the one in which the boxes of balls and mesh agree. As it is, or with z for y.
+  // The inverses of the frames into which programs commonly bring a mesh before they compute: the lowest corner or the
+  // middle of its box at 0; the longest side, the diagonal or half of either scaled to a round length. Also the
+  // identity, and the frame in which the boxes of balls and mesh agree. Each as it is and with y and z exchanged.
   std::vector<Frame> candidates() const {
     std::vector<Frame> all;
     const Box& box = surface_.bounding_box();
@@ -184,7 +189,8 @@ void check_frame(const Surface& surface, const ForeignAxis& axis) {
   const std::vector<double>& radii = axis.mesh.radii;
   if (!axis.has_radii || std::all_of(radii.begin(), radii.end(), [&](double r) { return r == radii.front(); })) {
     const FrameFinder copies(surface, axis, Fit::surface);
-    // Lines and points alone fit onto many surfaces: the circle in a ring does if it is made larger.
+    // An axis of lines and points alone can be scaled onto many surfaces (a ring's circle, made larger, lies on the
+    // ring), so only one with triangles is tried in other frames.
     const bool surface_like = !axis.mesh.triangles.empty();
     if (copies.on_surface({}) || (surface_like && copies.on_surface(copies.best()))) refuse_surface(axis);
   }
@@ -192,7 +198,8 @@ void check_frame(const Surface& surface, const ForeignAxis& axis) {
   const double now = finder.error({}), balls_off = finder.median({});
   if (now <= tolerance::kFrameError) return;
   const Frame best = finder.best();
-  // Coarse axes, whose balls are too large, would fit better if they were a little smaller.
+  // A coarse axis, whose balls are too large, would always fit better if it were a little smaller: such a frame is not
+  // reported as another one.
   const bool other = finder.moved(best) > kSameFrame;
   const double then = finder.error(best);
   const std::string off = name_of(axis) + ": the balls do not lie near the mesh: half of them are off its surface by " +

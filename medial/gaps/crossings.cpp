@@ -27,8 +27,8 @@ std::vector<Index> clusters_at(const Surface& surface, std::span<const Index> tr
   return clusters;
 }
 
-// Which of the pairs of clusters have a vertex in common. A cluster may have very many vertices inside, and a fan very
-// many clusters around its middle, so each pair's own border vertices are looked at, once.
+// Returns the pairs of clusters that have a common vertex. Only the border vertices of the clusters are compared: a
+// cluster may have very many inner vertices, and a vertex may have very many clusters around it.
 std::vector<ClusterPair> adjoining_pairs(const Surface& surface, std::vector<ClusterPair> pairs) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -53,10 +53,10 @@ std::vector<ClusterPair> adjoining_pairs(const Surface& surface, std::vector<Clu
   return result;
 }
 
-// The definitions of 6.2.4, seen from the cell: a face crosses a cluster where the two cells meet on it, and it may if
-// the cluster is allowed to both. So each cell answers for the clusters it reaches; one component for each forbidden
-// one. Allowed are the clusters that the cell's point lies on, and for the loose definition those that adjoin one of
-// them.
+// Applies the definitions of 6.2.4 to cells instead of faces. A face crosses a cluster if its two cells meet on the
+// cluster, which is harmless if the cluster is allowed for both cells. So it suffices to find, for each cell, the
+// clusters that it reaches and that are not allowed for it; each gives a component. The clusters that contain the
+// cell's point are allowed, and with the loose definition also those that adjoin one of these.
 class ForbiddenClusters {
  public:
   ForbiddenClusters(const Surface& surface, const SurfaceSampling& sampling,
@@ -111,7 +111,7 @@ class ForbiddenClusters {
   std::vector<std::vector<Index>> own_, reached_;  // of each component: clusters, ascending; reached_: not allowed yet
 };
 
-// The cells beyond the component's borders whose faces cross harmfully.
+// Returns the cells beyond the borders of a component whose faces cross where they should not.
 std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampling& sampling,
                                      const RestrictedVoronoi& restricted, const CellComponent& component,
                                      double joined_radius) {
@@ -136,7 +136,7 @@ std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampli
   return harmful;
 }
 
-// Nothing for a component that is as it should be.
+// Returns the crossing of a component, or nullopt if it has none.
 std::optional<Crossing> gap_crossing(const Surface& surface, const SurfaceSampling& sampling,
                                      const RestrictedVoronoi& restricted, const CellComponent& component,
                                      const GapRepairOptions& options) {
@@ -145,13 +145,14 @@ std::optional<Crossing> gap_crossing(const Surface& surface, const SurfaceSampli
     const bool has_border = std::any_of(component.triangles.begin(), component.triangles.end(), [&](Index triangle) {
       return !restricted.piece(triangle, component.cell)->borders.empty();
     });
-    // A closed component without a point of its own has no border; no face would ever tell of it.
+    // A closed component without a point of its own has no border, so no face crosses there.
     if (has_border || options.definition != GapDefinition::connected) return std::nullopt;
   }
   return Crossing{component, std::move(harmful), false, false};
 }
 
-// A harmless second component of a cell looks like a neck to its neighbours.
+// Whether necks are repaired. They are not if harmless crossings remain, because a harmless second component of a cell
+// looks like a neck to the adjacent cells.
 bool mends_necks(const GapRepairOptions& options) {
   return options.mend_necks && options.definition == GapDefinition::connected && !(options.joined_radius > 0);
 }

@@ -24,14 +24,15 @@ namespace {
 using detail::Crossing;
 using detail::RepairProposal;
 
-// Two new points of one pass keep this share of the wider gap between them: what one of them does not mend is seen in
-// the next pass, so that wide gaps get few points.
+// Two new points of one pass are at least this share of a gap's width apart. What the first of them does not mend is
+// found in the next pass, so wide gaps get few points.
 constexpr double kSpread = 1;
 
-// Repair points that spawn repair points, across a gap and back again: after so many, the bounce is cut short.
+// Repair points can cause further repair points, back and forth across a gap. After so many in a row, propose_repair()
+// is asked to end that.
 constexpr int kBounceLength = 3;
 
-// Whether insert_points() rebuilt the diagram, so that old cells, too, may differ.
+// Whether insert_points() rebuilt the whole diagram, so that cells of old points may have changed, too.
 bool was_rebuilt(const InsertionReport& report, std::size_t inserted) {
   return report.certified_insertions + report.settled_insertions + report.exact_insertions +
              report.constrained_insertions >
@@ -117,7 +118,7 @@ class Repair {
     pass.faces_crossing = detail::count_faces(crossings_);
   }
 
-  // Gaps first: closing them mends the necks around them, so those have to wait.
+  // The crossings to mend in this pass: gaps first, since closing them also mends necks around them. Those necks wait.
   std::vector<const Crossing*> what_to_mend() const {
     std::vector<std::uint8_t> at_gap(result_.sampling.size(), 0);
     for (const Crossing& crossing : crossings_) {
@@ -136,7 +137,8 @@ class Repair {
     return chosen;
   }
 
-  // Projections before points to snap to, wide gaps before narrow ones, then by cell.
+  // Repair points for these crossings: projections before points to snap to, wide gaps before narrow ones, then by
+  // cell.
   std::vector<Candidate> propose(const std::vector<const Crossing*>& crossings) const {
     std::vector<Candidate> candidates(crossings.size());
     tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
@@ -167,7 +169,7 @@ class Repair {
         ++pass.added_by_projection;
         continue;
       }
-      // The cell across the face may have found a projection where this one did not; then that is to be tried first.
+      // If a cell across the face found a projection in this pass, that may mend this crossing as well: it waits.
       const bool wait = std::any_of(candidate.neighbors.begin(), candidate.neighbors.end(),
                                     [&](Index other) { return projected[other] != 0; });
       if (wait) continue;
@@ -188,10 +190,10 @@ class Repair {
         position, spread, [&](const Point& point) { return (point - position).squaredNorm() < spread * spread; });
   }
 
-  // False if the place is taken.
+  // Adds a repair point. Returns false if there is a point already.
   bool add(const ClosestPoint& place, Index cell, detail::PointTree& new_points) {
     SurfaceSampling& sampling = result_.sampling;
-    // At least what insert_points() takes for coincident.
+    // At least the distance below which insert_points() takes points for coincident.
     const double coincident = tolerance::kCoincidentPoints * surface_.bounding_box().diagonal().norm() / 2;
     const auto taken = [&](const Point& point) { return !((point - place.position).norm() > coincident); };
     const Index nearest = detail::nearest_point(result_.diagram.points, neighbors_, place.position, cell);
@@ -206,7 +208,7 @@ class Repair {
     return true;
   }
 
-  // What was wrong with cells that stay as they are is still wrong with them.
+  // Inserts the new points and finds the crossings of changed cells again. Those of unchanged cells are still there.
   void update(Index first_new) {
     const auto added = std::span<const Point>(result_.sampling.points).subspan(first_new);
     const InsertionReport inserted = insert_points(result_.diagram, added);
@@ -235,15 +237,16 @@ class Repair {
   std::vector<int> generations_;  // of each point: how many repair points led to it
   detail::CellNeighbors neighbors_;
   std::optional<detail::RestrictedVoronoi> restricted_;
-  std::vector<Crossing> crossings_;         // known to be left, ascending by cell
-  bool from_scratch_ = false;               // they come from scratch, not from updates
-  Index cells_tested_ = 0;                  // when they were last looked for
-  std::vector<std::array<Index, 2>> cuts_;  // triangles that cut each other, both ways round; ascending
+  std::vector<Crossing> crossings_;         // crossings that are left, ascending by cell
+  bool from_scratch_ = false;               // whether the crossings were found from scratch, not by updates
+  Index cells_tested_ = 0;                  // number of cells in the last search for crossings
+  std::vector<std::array<Index, 2>> cuts_;  // pairs of triangles that cut each other, in both orders; ascending
 };
 
 constexpr int kThinningRounds = 4;  // the first saves most; later ones a few percent each
 
-// Takes crowded pairs out and mends again. What the report says of passes goes on; the diagram is rebuilt.
+// Removes points of crowded pairs, makes a new diagram and mends it, in several rounds. The report lists the passes of
+// all rounds.
 GapRepair thinned(const Surface& surface, GapRepair repaired, Index original, const GapRepairOptions& options,
                   const Progress& progress) {
   const double spacing = std::sqrt(surface.report().area / original);

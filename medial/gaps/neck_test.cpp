@@ -11,15 +11,16 @@
 namespace orchard::detail {
 namespace {
 
-// A part of a border between two cells: where it runs through one triangle.
+// The part of the border between two cells in one triangle.
 struct Stretch {
   Index other, triangle;
   std::uint8_t edges;
 };
 
-// Whether the stretches of one border hang together. Those on triangles that share an edge do if either ends on it; a
-// border that runs through a vertex or along an edge is told by the positions of its ends. A border around the middle
-// of a fan crosses each of its triangles, so nothing here compares all stretches with all.
+// Whether the stretches of one border form a single arc. Stretches in triangles that share an edge are joined if one of
+// them ends on this edge. Where a border runs through a vertex or along an edge, the positions of its ends decide. A
+// border can have very many stretches (around the middle of a fan it crosses every triangle), so stretches are never
+// all compared with all.
 class SingleArc {
  public:
   SingleArc(const Surface& surface, const RestrictedVoronoi& restricted, Index cell)
@@ -66,7 +67,7 @@ class SingleArc {
     return arcs.count == 1;
   }
 
-  // Along the axis on which the ends spread most, only those that are near each other are compared.
+  // Ends are sorted along the axis on which they spread most, and only those near each other along it are compared.
   bool joined_at_ends(std::span<const Stretch> stretches) {
     ends_.clear();
     Box box;
@@ -77,7 +78,8 @@ class SingleArc {
     std::sort(ends_.begin(), ends_.end(),
               [&](const End& a, const End& b) { return a.position[axis] < b.position[axis]; });
     const double near = 4 * tolerance::kTouch * surface_.bounding_radius();
-    const double window = near * (1 + 0x1p-20);  // beyond it, no rounding makes two ends near
+    const double window =
+        near * (1 + 0x1p-20);  // ends farther apart along the axis are not near, whatever the rounding
     Arcs arcs(stretches.size());
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       for (std::size_t k = i + 1; k < ends_.size(); ++k) {

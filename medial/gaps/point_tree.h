@@ -7,22 +7,22 @@
 
 namespace orchard::detail {
 
-// A tree around points that come one by one, each to be asked about before the next one comes. It halves space, not
-// points, so that no order of arrival makes it deep; the boxes are tight around the points that are there.
+// A tree of points that are added one by one, with queries in between. It halves space and not the points, so no order
+// of insertion makes it deep. The boxes are tight around the present points.
 class PointTree {
  public:
-  // `bounds`: about where the points will be. Others are found, too, but may be looked for longer.
+  // `bounds` is the approximate box of the points. Points outside are found, too, but searching them may take longer.
   explicit PointTree(const Box& bounds) : bounds_(bounds), nodes_(1) {}
 
-  // O(log n) for points that keep apart.
+  // Adds a point. O(log n) for points that are not too close together.
   void add(const Point& point);
 
-  // Whether any point passes the test among those that lie within the distance of the query. Some that lie farther away
-  // are tested, too, so the test has to measure; what it answers to does not depend on the tree. O(log n) if few points
-  // lie near the edge of that ball.
+  // Returns whether a point within the distance of the query passes the test. Some points that lie farther away are
+  // tested, too, so the test has to measure the distance itself. O(log n) if few points lie near the boundary of that
+  // ball.
   template <typename Test>
   bool any_within(const Point& query, double distance, const Test& test) const {
-    // Rounding may let a box seem farther away than its points are.
+    // Because of rounding, a box may seem to be farther away than its points.
     const double limit = distance * distance * (1 + 0x1p-40) + std::numeric_limits<double>::min();
     open_.assign(1, 0);
     while (!open_.empty()) {
@@ -43,15 +43,16 @@ class PointTree {
     return false;
   }
 
-  // How many boxes and points all questions together have looked at: the cost, in numbers that no machine changes.
+  // Returns the number of boxes and points that all queries together have visited, which measures the cost
+  // independently of the machine.
   std::size_t steps() const { return steps_; }
 
  private:
   struct Node {
     Box box;                 // of its points
-    Index children = kNone;  // the first of two, one after the other; kNone in a leaf
-    Index first = kNone;     // a leaf's points, each followed by next_
-    Index count = 0;         // of a leaf's points
+    Index children = kNone;  // the first of two consecutive children; kNone in a leaf
+    Index first = kNone;     // the first point of a leaf; next_ has the others
+    Index count = 0;         // the number of points of a leaf
   };
 
   void split(Index node, int axis, double middle);

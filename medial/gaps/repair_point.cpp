@@ -13,14 +13,14 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kMaxWalk = 1000;
-// In gap widths: a V deeper than this has parallel sides for all that matters.
+// In gap widths: if the bottom of a V is farther away than this, its sides count as parallel.
 constexpr double kNearBottom = 4;
-// Cosine between the direction of a projection and the surface's normal at its end: 25 degrees.
+// The least cosine of the angle between a projection's direction and the surface's normal at its end: 25 degrees.
 constexpr double kAlongNormal = 0.9;
-// Fraction of the bounding radius: a projection farther than this from the surface floats.
+// Fraction of the bounding radius: a projection farther than this from the surface is not on it.
 constexpr double kFreeFloating = 1e-10;
 
-// `position` as a point of the triangle, with its feature.
+// The point of the triangle nearest to `position`, with its feature and its distance from `from`.
 ClosestPoint place_on(const Surface& surface, Index triangle, const Point& position, const Point& from) {
   const auto [a, b, c] = surface.corners(triangle);
   ClosestPoint place = closest_point_of_triangle(position, a, b, c);
@@ -53,7 +53,7 @@ class Projector {
   Projector(const Surface& surface, const RestrictedVoronoi& restricted, const CellComponent& component)
       : surface_(surface), restricted_(restricted), component_(component), from_(restricted.points()[component.cell]) {}
 
-  // `target`, which lies in the plane of the triangle's cluster, if the cluster holds it.
+  // `target`, which lies in the plane of the triangle's cluster, if it is a point of the cluster.
   std::optional<ClosestPoint> within_cluster(const Point& target, Index triangle) const {
     const ClosestPoint found = surface_.closest(target);
     if (!(found.distance <= kFreeFloating * surface_.bounding_radius())) return std::nullopt;
@@ -66,8 +66,8 @@ class Projector {
     return std::nullopt;
   }
 
-  // Downhill on the distance to `target`, over edges that are all but flat, and not into another of the cell's
-  // components.
+  // Walks from triangle `start` over nearly flat edges as long as the distance to `target` falls. Returns nothing if
+  // the walk enters another component of the cell, or if the way to its end is too far from the surface's normal there.
   std::optional<ClosestPoint> walk(const Point& target, Index start) const {
     ClosestPoint at = nearest_on(start, target);
     std::vector<Index> around;
@@ -108,8 +108,8 @@ class Projector {
   const Point from_;
 };
 
-// The mirror image of a point with normal `own` in the bisector of its tangent plane and the plane through `other` with
-// normal `normal`: the one on which both planes' signed distances agree.
+// The mirror image of a point with normal `own` in a bisector of two planes: its tangent plane and the plane through
+// `other` with normal `normal`. Of the two bisectors, the one on which the signed distances from both are equal.
 std::optional<Point> straight_across(const Point& from, const Vector& own, const Point& other, const Vector& normal) {
   const Vector direction = own - normal;
   const double squared = direction.squaredNorm();
@@ -118,7 +118,7 @@ std::optional<Point> straight_across(const Point& from, const Vector& own, const
   return from - (2 * offset / squared) * direction;
 }
 
-// Of the planes that a sample lies on, the normal of the one that faces a plane with the given normal most.
+// Of the triangles that a sample lies on, the normal that is most nearly opposite to `normal`.
 Vector facing_normal(const Surface& surface, const SurfaceSampling& sampling, Index cell, const Vector& normal) {
   std::vector<Index> around;
   surface.triangles_at(sampling.triangles[cell], sampling.features[cell], around);

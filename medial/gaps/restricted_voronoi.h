@@ -17,30 +17,31 @@ struct CellPolygon {
   std::vector<Index> labels;
 };
 
-// Where a piece adjoins another cell within the triangle.
+// The border between a piece and another cell within the triangle.
 struct CellBorder {
   Index cell = kNone;
-  std::uint8_t edges = 0;  // bit i: ends on the triangle's edge i
+  std::uint8_t edges = 0;  // bit i: the border ends on the triangle's edge i
 };
 
-// Where one Voronoi cell meets one triangle.
+// The part of one triangle that lies in one Voronoi cell.
 struct CellPiece {
-  Index cell = kNone;               // a point
-  std::uint8_t edges = 0;           // bit i: reaches the triangle's edge i along more than a touch
+  Index cell = kNone;               // number of the cell's point
+  std::uint8_t edges = 0;           // bit i: the piece meets the triangle's edge i in more than a touch
   std::vector<CellBorder> borders;  // longer than a touch, ascending by cell
 };
 
-// The Voronoi diagram of points restricted to a surface: every triangle divided among the cells that it lies in. This
-// is the intersection of all cell faces with all triangles (dissertation 6.2.4), found from the side of the surface:
-// from the cell that holds a corner, on across every border that the polygon of a cell has within the triangle.
-// Unbounded faces need no special care and faces away from the surface cost nothing.
+// The Voronoi diagram of points restricted to a surface: each triangle is divided among the cells that it lies in. This
+// finds all intersections of cell faces with triangles (dissertation 6.2.4), but it starts from the surface: in each
+// triangle from the cell that holds a corner, and then across every border that a cell's polygon has within the
+// triangle. So unbounded faces are no special case, and faces away from the surface cost nothing.
 class RestrictedVoronoi {
  public:
-  // All references must outlive this object. Parallel; the same for any thread count. O(pieces x neighbours of a cell).
+  // All references must outlive this object. Parallel; the result does not depend on the number of threads. O(pieces x
+  // neighbours of a cell).
   RestrictedVoronoi(const Surface& surface, std::span<const Point> points, const CellNeighbors& neighbors);
 
-  // Divides the triangles again where a `changed` cell has or may have got a part, after `neighbors` was updated;
-  // returns these triangles, ascending.
+  // Divides those triangles again in which a `changed` cell has a part or may have got one. Returns them, ascending. To
+  // be called after `neighbors` was updated.
   std::vector<Index> update(std::span<const Point> points, const std::vector<std::uint8_t>& changed);
 
   std::span<const CellPiece> pieces(Index triangle) const { return pieces_[triangle]; }  // ascending by cell

@@ -7,14 +7,15 @@
 
 namespace orchard::detail {
 
-// Of each point whether it stays. Two points of opposite sheets, each the other's nearest one across and no farther
-// than `spacing`, go together if both have another point that stays on their own sheet within kCrowded spacings: gap
-// repair gives every point of a thin part one across, which doubles them, while half as many pairs would do. The most
-// crowded pairs first. O(n log n).
+// Returns, for each point, whether it is kept. Gap repair gives every point of a thin part a point on the opposite
+// sheet, which doubles the points, although half as many pairs would suffice. So pairs are removed, the most crowded
+// ones first. A pair consists of two points of opposite sheets each of which is the nearest one across for the other,
+// at a distance of at most `spacing`. It is removed if each of its points has another kept point on its own sheet
+// within kCrowded spacings. O(n log n).
 std::vector<std::uint8_t> without_crowded_pairs(const Surface& surface, const SurfaceSampling& sampling,
                                                 double spacing);
 
-// The points that stay, in their order.
+// Returns the points that are kept, in their order.
 SurfaceSampling points_that_stay(const SurfaceSampling& sampling, const std::vector<std::uint8_t>& stay);
 
 }  // namespace orchard::detail

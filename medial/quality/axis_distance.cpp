@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxPlaces = 1'000'000;
 
-// The triangles; where no triangle has an edge, or no edge a vertex, a flat triangle for that.
+// Returns the triangles of a mesh, and flat triangles for edges without triangles and for vertices without edges.
 TriangleMesh cells_of(const MedialMesh& mesh) {
   TriangleMesh cells{.vertices = mesh.centers, .triangles = mesh.triangles};
   const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
@@ -28,7 +28,7 @@ TriangleMesh cells_of(const MedialMesh& mesh) {
 using detail::Corners;
 using detail::PieceValue;
 
-// One-sided: from the cells of one axis to another.
+// The one-sided distance from the cells of one axis to another axis.
 class OneSided {
  public:
   OneSided(const TriangleMesh& from, const Surface& to, double accuracy) : to_(to) {
@@ -47,8 +47,9 @@ class OneSided {
   double mean() const { return mean_; }
 
  private:
-  // At the middle, and with it a bound: no place is farther from there than the farthest corner is, and to the triangle
-  // nearest there, the distance to which is convex, no place is as far as the farthest corner is.
+  // Returns the distance at the middle of a piece and an upper bound for the piece. There are two bounds: the distance
+  // at the middle plus that of the farthest corner from the middle, and the largest distance of a corner to the
+  // triangle that is nearest to the middle, because the distance to one triangle is convex.
   PieceValue evaluate(const Corners& corners) const {
     const Point middle = middle_of(corners);
     const ClosestPoint nearest = to_.closest(middle);
@@ -61,7 +62,8 @@ class OneSided {
     return {.value = nearest.distance, .bound = std::min(nearest.distance + reach, at_corners), .place = middle};
   }
 
-  // Of cells at their middles, weighted by what they measure; large ones in parts of the mean one's size.
+  // Measures the mean distance at the middles of cells, weighted by area or length. Large cells are divided into parts
+  // of the mean size.
   void measure_mean(const std::vector<Corners>& cells) {
     std::vector<double> area, length;
     for (const auto& [a, b, c] : cells) {

@@ -10,16 +10,16 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;  // of what was found: not searched for more
-constexpr int kMaxLevels = 40;        // then a cube is as small as rounding
+constexpr double kShareAbove = 0.02;  // of the found maximum: deeper places by less than this are not searched
+constexpr int kMaxLevels = 40;        // after these a cube is as small as rounding errors
 constexpr std::size_t kBlock = 64;    // cubes that one task divides
-constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound is off by
+constexpr double kRounding = 1e-12;   // of the coordinates: more than the error of a bound
 
 struct Cube {
   Point center;
-  double bound;    // no boundary of the reconstruction in it is deeper
-  Sphere ball;     // of the reconstruction: one of the deepest at the centre
-  Index triangle;  // of the surface, nearest to the centre
+  double bound;    // at least the depth of the reconstruction's boundary in it
+  Sphere ball;     // a ball of the reconstruction in which the centre is deepest
+  Index triangle;  // of the surface, nearest to the centre or to a larger cube's
 };
 
 // A place of the reconstruction's boundary.
@@ -101,7 +101,7 @@ class DentSearch {
     return deepest;
   }
 
-  // A part of a cube: nothing of the boundary is in it if the reconstruction holds it wholly, or has nothing in it.
+  // Tests a part of a cube. The boundary does not meet it if the reconstruction holds all of it or none of it.
   void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, Place& deepest) const {
     const double reach = std::sqrt(3.0) * half_ + rounding_;
     const auto farthest_from = [&](const Point& place) {
@@ -111,7 +111,7 @@ class DentSearch {
     Cube cube{.center = center, .bound = whole.bound, .ball = whole.ball, .triangle = whole.triangle};
     if (holds_all(cube.ball)) return;
     const double at_most = (center - cube.ball.center).norm() - cube.ball.radius;
-    // No place is deeper than it is far from any place of the surface.
+    // The depth of a place is at most its distance from any point of the surface.
     const auto [a, b, c] = surface_.corners(whole.triangle);
     cube.bound = std::min(cube.bound, farthest_from(closest_point_of_triangle(center, a, b, c).position));
     if (cube.bound <= found_.depth || is_held_or_shallow(cube)) return;
@@ -121,8 +121,8 @@ class DentSearch {
     cube.bound = std::min({cube.bound, depth + reach, farthest_from(nearest.position)});
     if (cube.bound <= found_.depth) return;
     if (cube.triangle != whole.triangle && is_held_or_shallow(cube)) return;
-    // Searching for the deepest ball takes longest. Where the one of the whole cube ends in this part, too, it can but
-    // tell of a place that is deeper than what was found.
+    // The search for the deepest ball takes most of the time. If the ball of the whole cube ends in this part, too, the
+    // search is useful only if the part may have a place deeper than the found maximum.
     if (at_most > 0 || depth + at_most > found_.depth) {
       const double gap = reconstruction_.distance_between(-reach, std::min(at_most, reach), center, cube.ball);
       if (!(std::abs(gap) < reach) || holds_all(cube.ball)) return;
@@ -133,13 +133,14 @@ class DentSearch {
     parts.push_back(cube);
   }
 
-  // Whether each place of a cube is in its ball, or no deeper than what was found. How far it is from the triangle,
-  // which is no less than its depth, and how far beyond the ball are convex functions of the place, and so is their
-  // sum, which is nowhere more than at the corners: where that is less than what was found, one or the other holds. A
-  // cube across the surface is held by no ball, and along the surface this is what spares its parts.
+  // Whether every place of a cube is in the cube's ball or no deeper than the found maximum. The distance from the
+  // cube's triangle, which is at least the depth, and the distance beyond the ball are convex functions of the place.
+  // So is their sum, which is therefore largest at a corner of the cube. If it is below the found maximum there, each
+  // place is either inside the ball or not deeper. For cubes that the surface cuts, which no ball holds, this is the
+  // test that avoids dividing them.
   bool is_held_or_shallow(const Cube& cube) const {
     const auto [a, b, c] = surface_.corners(cube.triangle);
-    // The corner farthest from the ball comes first, which tells soonest.
+    // The corner farthest from the ball comes first: it fails most often.
     const Vector away = cube.center - cube.ball.center;
     const int first = (away.x() > 0 ? 1 : 0) | (away.y() > 0 ? 2 : 0) | (away.z() > 0 ? 4 : 0);
     for (int k = 0; k < 8; ++k) {
@@ -153,7 +154,7 @@ class DentSearch {
     return true;
   }
 
-  // The place of the boundary that is nearest to a point outside the reconstruction.
+  // Takes the place of the ball's boundary that is nearest to a point outside the reconstruction, if it is the deepest.
   void take_boundary(const Point& from, const Sphere& ball, Place& deepest) const {
     const Vector way = from - ball.center;
     const double length = way.norm();
@@ -167,9 +168,9 @@ class DentSearch {
   const Reconstruction& reconstruction_;
   const std::size_t max_cubes_;  // to divide, all levels together
   std::vector<Cube> cubes_;
-  double half_ = 0;      // side, halved, of the cubes
-  double open_ = 0;      // the largest bound of what is not divided any more
-  double rounding_ = 0;  // of coordinates
+  double half_ = 0;      // half of the cubes' side
+  double open_ = 0;      // the largest bound of cubes that are not divided any more
+  double rounding_ = 0;  // bound on the rounding errors of coordinates
   std::size_t divided_ = 0;
   int level_ = 0;
   Place found_;

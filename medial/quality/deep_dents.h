@@ -3,10 +3,11 @@
 
 namespace orchard::detail {
 
-// max_dent() by cubes around the solid, which are divided until none can have more than the larger of `accuracy` (mesh
-// units) and 2 % above what was found, or until `max_cubes` were: `upper` says then how much is left open. About one
-// query of each kind for each cube, and some (D / known)^2 cubes, D being the diagonal: for what lies deep. Any solid,
-// one whose surface cuts itself, too. Parallel, and the same for any number of threads.
+// Does the same as max_dent(), by cubes around the solid. They are divided until no cube can hold a dent that exceeds
+// the found maximum by more than the larger of `accuracy` (mesh units) and 2 %, or until `max_cubes` have been looked
+// at: then `upper` bounds what is left open. Takes about one query of each kind for each cube, and about (D / known)^2
+// cubes, where D is the diagonal, so it is meant for deep dents. Works for any solid, even if its surface cuts itself.
+// Parallel; the result does not depend on the number of threads.
 SearchedMax max_deep_dent(const Surface& surface, const Reconstruction& reconstruction, double known, double accuracy,
                           Index max_cubes);
 

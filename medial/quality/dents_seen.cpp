@@ -11,11 +11,12 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // balls that one task looks from
-constexpr int kMaxWayOut = 50;      // balls on the way out of the reconstruction
+constexpr std::size_t kBlock = 64;  // balls in one task
+constexpr int kMaxWayOut = 50;      // steps on the way out of the reconstruction
 constexpr double kOut = 1e-6;       // of the diagonal: a way out ends this near to the boundary
 
-// Straight out of the nearest ball, from ball to ball, until none holds the place; nothing if that does not end.
+// Moves a place straight out of the nearest ball, then out of the next one, until no ball contains it. Returns false if
+// that does not end.
 bool go_out(const Reconstruction& reconstruction, Point& at, Sphere ball, double gap, double arrived) {
   for (int step = 0; step < kMaxWayOut; ++step) {
     const Vector way = at - ball.center;

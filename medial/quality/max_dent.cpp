@@ -8,9 +8,10 @@
 namespace orchard::detail {
 namespace {
 
-// Depths from which on dents are searched in cubes. Cubes take time as one over the square of it, the shell above takes
-// the more the more of it is where the solid is as thin.
-constexpr double kDeep = 3;        // times what is known
+// Dents deeper than a certain depth are searched in cubes, the others in the shell above that depth. The time for the
+// cubes is inversely proportional to the square of the depth; the shell takes more time the more of the solid is as
+// thin as it. The numbers that choose the depth:
+constexpr double kDeep = 3;        // times the dent that is already known
 constexpr double kMinDeep = 4e-3;  // of the diagonal, at least
 constexpr double kOfDeep = 0.1;    // accuracy: what cubes leave open is in the shell
 

@@ -15,16 +15,16 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;      // of what was found: not searched for more
-constexpr int kMaxLevels = 100;           // of halving: then a cell is as small as rounding
+constexpr double kShareAbove = 0.02;      // of the found maximum: values above it by less than this are not searched
+constexpr int kMaxLevels = 100;           // of halving: after these a cell is as small as rounding errors
 constexpr std::size_t kBlock = 64;        // cells that one task looks at
-constexpr std::size_t kMaxHalves = 4096;  // of a single cell: if these do not decide, the cell may stick out
-constexpr double kRounding = 1e-12;       // of the coordinates: more than a bound is off by
+constexpr std::size_t kMaxHalves = 4096;  // of a single cell: if these do not decide, the cell is taken to protrude
+constexpr double kRounding = 1e-12;       // of the coordinates: more than the error of a bound
 
 // Balls interpolated linearly on up to three; edges and vertices repeat their last.
 struct Cell {
   std::array<Sphere, 3> balls;
-  const BallDepth* depth = nullptr;  // of the middle, where it is known
+  const BallDepth* depth = nullptr;  // depth of the middle ball, if it is known
   std::array<const BallDepth*, 3> corner_depths{};
   double bound = std::numeric_limits<double>::infinity();
 };
@@ -64,9 +64,10 @@ std::array<Cell, 2> halves_of(const Cell& cell) {
   return {Cell{{a, middle, c}, nullptr, {}, cell.bound}, Cell{{middle, b, c}, nullptr, {}, cell.bound}};
 }
 
-// An upper bound on r - distance over a cell: |x|^2 - distance^2 is a convex function, so the squared distance is no
-// less than what is interpolated of it on the corners less their squared distances from x, so interpolated, which is a
-// third of the longest side's square at most. Infinity where no distances are known, or that says nothing.
+// An upper bound on (radius - distance from the surface) over a cell. |x|^2 - distance^2 is a convex function of x. So
+// the squared distance at x is at least the squared distances at the corners, interpolated, minus the squared distances
+// of the corners from x, interpolated likewise; and the latter is at most a third of the longest side's square.
+// Infinity if the distances at the corners are not known or the bound is useless.
 struct CornerBound {
   double bound = std::numeric_limits<double>::infinity();
   bool inside = false;  // the balls around the corners prove that all centres are in the solid
@@ -98,7 +99,7 @@ class ProtrusionSearch {
   }
 
   SearchedMax run(std::vector<Cell> cells) {
-    double open = 0;  // the largest bound of what is not halved any more
+    double open = 0;  // the largest bound of cells that are not halved any more
     std::size_t looked_at = 0;
     for (int level = 0; level < kMaxLevels && !cells.empty(); ++level) {
       looked_at += cells.size();
@@ -135,9 +136,10 @@ class ProtrusionSearch {
     }
   }
 
-  // Of r + signed distance over the cell. The signed distance is 1-Lipschitz; and where all centres are inside, the
-  // distance to each triangle is convex, so no less than its tangent at the middle says, which is linear as r is: what
-  // that leaves is largest at a corner. Where balls touch flat faces the tangents are exact.
+  // An upper bound on (radius + signed distance) over the cell. The signed distance is 1-Lipschitz, which gives one
+  // bound. If all centres are inside, there is a better one: the distance to each triangle is convex, so it is at least
+  // its tangent at the middle. This tangent and the radius are linear, so the bound is largest at a corner. Where balls
+  // touch flat faces, the tangents are exact.
   double bound_of(const Cell& cell, double known, SearchedMax& found) const {
     const CornerBound by_corners = bound_by_corners(cell);
     if (by_corners.inside && by_corners.bound + rounding_ <= known) return by_corners.bound + rounding_;
@@ -165,12 +167,12 @@ class ProtrusionSearch {
 
   const Surface& surface_;
   const double accuracy_;
-  const std::size_t max_cells_;  // to look at, all levels together
+  const std::size_t max_cells_;  // the most that are tested, on all levels together
   double rounding_ = 0;
   SearchedMax found_;
 };
 
-// What depth_of() finds for a ball in the solid that touches the surface.
+// The result of depth_of() for a ball in the solid that touches the surface.
 BallDepth depth_of_touching(const Sphere& ball) {
   BallDepth depth;
   depth.signed_distance = -ball.radius;

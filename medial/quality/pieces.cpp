@@ -22,7 +22,7 @@ Index small_ones(const std::vector<Extent>& extents) {
   }));
 }
 
-// Those that hold anything.
+// The number of extents that are not empty.
 Index count_of(const std::vector<Extent>& extents) {
   return static_cast<Index>(
       std::count_if(extents.begin(), extents.end(), [](const Extent& extent) { return !extent.box.isEmpty(); }));

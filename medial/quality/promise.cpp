@@ -10,9 +10,10 @@ namespace orchard {
 namespace {
 
 constexpr const char* kStage = "checking what was promised";
-constexpr double kAccuracy = 1e-5;    // diagonals: to which the largest values are searched
-constexpr double kKnown = 0.97;       // of the limit: what is proven is up to 2 % more, and no more than the limit
-constexpr Index kMaxCells = 300'000;  // that the search for what sticks out looks at
+constexpr double kAccuracy = 1e-5;  // diagonals: how near the bounds on the largest values are brought
+constexpr double kKnown =
+    0.97;  // of the limit: the proven bound is up to 2 % more than that, so it stays below the limit
+constexpr Index kMaxCells = 300'000;  // of the search for what protrudes
 
 }  // namespace
 
@@ -25,7 +26,7 @@ PromiseCheck check_promise(const Surface& surface, const MedialMesh& mesh, const
   const double diagonal = surface.bounding_box().diagonal().norm(), accuracy = kAccuracy * diagonal;
   if (promise.open) {
     const double limit = *promise.open * diagonal;
-    const double known = limit - accuracy;  // so that what is proven is no more than the limit
+    const double known = limit - accuracy;  // so that the proven bound is at most the limit
     const detail::MaxOverTriangles open = detail::max_coverage(
         surface, detail::Reconstruction(mesh), {.max = known, .upper = known, .place = Point::Zero()}, diagonal);
     if (open.max > limit) check.open = open.max / diagonal;

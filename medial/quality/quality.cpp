@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kSampleStage = 0x717561;
 
-// `most` of `count` items at even steps.
+// Visits `max` of `count` items (or all, if there are no more) at even steps.
 template <class Visit>
 void evenly(std::size_t count, Index max, const Visit& visit) {
   const std::size_t chosen = std::min<std::size_t>(count, max);

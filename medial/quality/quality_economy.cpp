@@ -9,9 +9,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kCluster = 64;  // samples that are looked at together
+constexpr std::size_t kCluster = 64;  // samples that are tested together
 
-// Balls that, enlarged by the error, keep within it of the solid: those that protrude no more.
+// Returns the admissible balls, those that protrude from the solid by at most `error`.
 std::vector<Sphere> admissible_balls(const Surface& surface, const MedialMesh& mesh, Index max, double error) {
   const std::size_t count = mesh.centers.size(), chosen = std::min<std::size_t>(count, max);
   std::vector<std::uint8_t> good(chosen);
@@ -35,7 +35,7 @@ struct Cluster {
   Box box;
 };
 
-// Halves samples along the longest side of their box until few are left.
+// Divides samples into clusters by halving them along the longest side of their box.
 void add_clusters(std::vector<SurfaceSample>& samples, std::size_t begin, std::size_t end,
                   std::vector<Cluster>& clusters) {
   Box box;
@@ -55,7 +55,7 @@ void add_clusters(std::vector<SurfaceSample>& samples, std::size_t begin, std::s
   add_clusters(samples, middle, end, clusters);
 }
 
-// The samples within `error` of each ball; puts those next to each other that lie close to each other.
+// Returns the samples within `error` of each ball. Reorders the samples such that near ones are adjacent.
 std::vector<std::vector<Index>> samples_of_balls(const std::vector<Sphere>& balls, std::vector<SurfaceSample>& samples,
                                                  double error) {
   std::vector<Cluster> clusters;
@@ -76,8 +76,8 @@ std::vector<std::vector<Index>> samples_of_balls(const std::vector<Sphere>& ball
 
 }  // namespace
 
-// Greedy cover: again and again the ball that reaches most of what is left. What a ball still reaches only shrinks, so
-// an old count is an upper bound and most counts need not be renewed.
+// Computes the greedy cover: the next ball is always the one that reaches most of the remaining samples. The number
+// that a ball reaches can only fall, so an old count is an upper bound, and most counts need no update.
 Economy measure_economy(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options,
                         double diagonal) {
   const double error = options.economy_error * diagonal;

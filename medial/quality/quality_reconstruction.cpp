@@ -11,21 +11,22 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kArrived = 1e-6;    // of the diagonal: a march ends this near to the boundary
+constexpr double kArrived = 1e-6;    // of the diagonal: a march ends at a place this near to the boundary
 constexpr double kOnSurface = 1e-9;  // of the diagonal: centres that are no farther outside are on the surface
 constexpr int kMaxSteps = 50;
-constexpr std::size_t kBlock = 64;                                  // samples that one task takes, one after the other
-constexpr double kProtrusionAccuracy = 1e-5, kDentAccuracy = 1e-4;  // diagonals: to which maxima are searched
+constexpr std::size_t kBlock = 64;                                  // samples that one task handles in turn
+constexpr double kProtrusionAccuracy = 1e-5, kDentAccuracy = 1e-4;  // diagonals: accuracies of the maxima
 
-// How far along a unit direction a point inside a ball is from leaving it.
+// The distance from a point inside a ball to the ball's border in a unit direction.
 double way_out(const Sphere& ball, const Point& from, const Vector& direction) {
   const Vector offset = from - ball.center;
   const double along = offset.dot(direction);
   return std::sqrt(std::max(0.0, along * along + ball.radius * ball.radius - offset.squaredNorm())) - along;
 }
 
-// From a point that `ball` holds `depth` deep straight out of the deepest ball, from ball to ball, until none holds the
-// place: how far that is from there, and whether it is a place of the union's boundary. One step is the shortest way.
+// Moves from a point that `ball` holds `depth` deep straight out of the deepest ball, again and again, until no ball
+// holds the place. Returns the distance of this place of the union's boundary from the point; infinity if none is
+// reached. If one step is enough, it is the shortest way.
 double straight_out(const Reconstruction& reconstruction, const Point& from, Sphere ball, double depth,
                     double diagonal) {
   Point at = from;
@@ -44,7 +45,7 @@ bool is_loose(const SurfaceReach& reach, double diagonal) {
   return reach.to_boundary > 1.1 * reach.min_to_boundary + kArrived * diagonal;
 }
 
-// Where ways ended for other points is boundary, too, and may be nearer.
+// Shortens ways that may be too long: places of the boundary at which the ways of other samples ended may be nearer.
 void tighten(std::span<const SurfaceSample> samples, std::vector<SurfaceReach>& reaches, double diagonal) {
   std::vector<std::size_t> loose;
   TriangleMesh places;
@@ -63,8 +64,8 @@ void tighten(std::span<const SurfaceSample> samples, std::vector<SurfaceReach>& 
   });
 }
 
-// Outward along the normal, from ball to ball, until none holds the point. `cell`: one that may be near, or kNone; then
-// the nearest one.
+// Marches from a sample outward along its normal, from ball to ball, until none holds the place. `cell`: a cell that
+// may be near the sample, or kNone; it becomes the nearest one.
 SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstruction, const SurfaceSample& sample,
                       Index& cell, double diagonal) {
   SurfaceReach reach;
@@ -79,7 +80,7 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   if (depth < 0) {
     reach.uncovered = reach.to_boundary = -depth;
     const Vector way = reach.ball.center - sample.position;
-    // A ball of radius 0 may be there itself.
+    // The ball may have radius 0 and lie at the sample.
     if (way.norm() > 0) reach.farthest -= depth / way.norm() * way;
     reach.from_boundary = surface.distance(reach.farthest);
     return reach;
@@ -97,7 +98,7 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   reach.arrived = !(depth > kArrived * diagonal);
   reach.to_boundary = (reach.farthest - sample.position).norm();
   reach.min_to_boundary = first_depth;
-  // The way along the normal is the shortest but where the ball is not the surface's own.
+  // The way along the normal is the shortest, unless the ball does not belong to this place of the surface.
   if (is_loose(reach, diagonal)) {
     reach.to_boundary =
         std::min(reach.to_boundary, straight_out(reconstruction, sample.position, deepest, first_depth, diagonal));
@@ -117,7 +118,7 @@ Vector outward_at(const Surface& surface, const Point& position) {
   return surface.pseudonormal(nearest.triangle, nearest.feature);
 }
 
-// Of one value of each sample.
+// The spread of one of the samples' values.
 Spread spread_over(std::span<const SurfaceReach> reaches, double SurfaceReach::*value) {
   std::vector<double> values;
   values.reserve(reaches.size());

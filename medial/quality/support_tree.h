@@ -9,26 +9,28 @@
 
 namespace orchard::detail {
 
-// A four-wide bounding volume hierarchy over families of balls, each interpolated linearly on up to three: triangles of
-// points in four dimensions, centre and radius. Nodes are boxes there, along the axes of what they hold.
+// A four-wide bounding volume hierarchy over families of balls, each of which is interpolated linearly on up to three
+// balls. A ball is a point (centre, radius) in four dimensions, so a family is a triangle there. Nodes are boxes in
+// four dimensions, along the principal axes of the points in them.
 //
-// For a unit vector u, |q - c| - r is at least u * q - (u, 1) * (c, r), and (u, 1) * (c, r) is at most what it is at
-// the middle of a box and what the box's half axes add. With u from the middle to q they add next to nothing where
-// balls touch a surface near q: along a medial sheet the radius changes so that (u, 1) stands at right angles to the
-// sheet in four dimensions. Bounds by boxes of centres and largest radii are worse by the size of the box.
+// For a unit vector u, |q - c| - r is at least u * q - (u, 1) * (c, r). Over a box, (u, 1) * (c, r) is at most its
+// value at the middle plus the contributions of the half axes. If u points from the middle to q, these contributions
+// are almost 0 where the balls touch a surface near q, because along a medial sheet the radius changes such that (u, 1)
+// is perpendicular to the sheet in four dimensions. Bounds from boxes of centres and from largest radii would be worse
+// by the size of the box.
 //
-// Boxes are floats around the middle of the centres, scaled to size one, and their bounds are low by more than what
-// rounding does: values are the callers', in doubles.
+// Boxes are stored as floats, relative to the middle of the centres and scaled to size 1. Their bounds are lowered by
+// more than the rounding. The values of items are computed by the callers in doubles.
 class SupportTree {
  public:
-  using Item = std::array<Sphere, 3>;  // the balls interpolated; edges and single balls repeat theirs
+  using Item = std::array<Sphere, 3>;  // the three balls; edges and single balls repeat some
 
   SupportTree() = default;
   explicit SupportTree(std::vector<Item> items);
 
-  // The least of `best` and value(item, balls of the item, least so far) over all items. Precondition: value() is at
-  // least the least |query - c| - r of the item. Items that cannot be the least are not asked. A value below `enough`
-  // ends the search.
+  // Returns the minimum of `best` and value(item, balls of the item, minimum so far) over all items. Precondition:
+  // value() is at least the minimum of |query - c| - r over the item. Items that cannot have the minimum are not
+  // evaluated. A value below `enough` ends the search.
   template <class Value>
   double min(const Point& query, double best, const Value& value,
              double enough = -std::numeric_limits<double>::infinity()) const {
@@ -56,9 +58,9 @@ class SupportTree {
   }
 
  private:
-  using Float4 = float __attribute__((vector_size(16)));  // side by side, one for each child
-  static constexpr Index kItem = 0x80000000u;             // and more: a child that is an item
-  static constexpr std::size_t kDepth = 128;              // three entries a level of a tree that is cut in the middle
+  using Float4 = float __attribute__((vector_size(16)));  // one number for each child
+  static constexpr Index kItem = 0x80000000u;             // a child with a number from here on is an item
+  static constexpr std::size_t kDepth = 128;              // room for three entries for each level of a balanced tree
   struct Entry {
     float bound;
     Index child;
@@ -69,7 +71,7 @@ class SupportTree {
   };
   struct Query {
     Float4 place[3];
-    float slack;  // what rounding may do to a bound, and more
+    float slack;  // more than the rounding error of a bound
   };
   class Builder;
 
@@ -81,7 +83,7 @@ class SupportTree {
   Point center_ = Point::Zero();
   double scale_ = 1;            // a power of two
   std::vector<Item> items_;     // in the order of the leaves
-  std::vector<Index> numbers_;  // of each, as given
+  std::vector<Index> numbers_;  // the number of each item in the order given
   std::vector<Node> nodes_;
 };
 

@@ -6,7 +6,7 @@
 namespace orchard::detail {
 
 std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, double apart) {
-  // Position decides between equals, so that the result depends on nothing else.
+  // Among equal values the position decides, so that the order of the input does not matter.
   std::sort(places.begin(), places.end(), [](const WorstPlace& a, const WorstPlace& b) {
     const auto key = [](const WorstPlace& place) {
       return std::tuple(-place.value, place.position.x(), place.position.y(), place.position.z());

@@ -7,17 +7,18 @@
 
 namespace orchard::detail {
 
-// Looks for dents between the balls of an axis, again and again while it grows: places that the balls reach from
-// nowhere, though what is above them is left open by little, since balls stand around it.
+// Finds dents between the balls of an axis: places inside the solid that lie deep below the surface and that no ball
+// holds, although the surface above them is left open by little, because balls stand around it. It may be asked again
+// and again while the axis grows.
 class DentsBelow {
  public:
-  // For dents deeper than 1.1 `limit` and wider than `resolution`: what is `limit` below the surface, along its
-  // normals, is looked at as by UncoveredSearch. What is below reflex edges alone is not. Mesh units.
+  // Finds dents deeper than 1.1 `limit` and wider than `resolution` (mesh units), by an UncoveredSearch of the places
+  // that lie `limit` below the surface along its normals. Places that are only below reflex edges are not searched.
   DentsBelow(const Surface& surface, double limit, double resolution);
 
-  // The deepest first; no two within `apart` of each other. As UncoveredSearch::find().
+  // Like UncoveredSearch::find(): the deepest first, and no two within `apart` of each other.
   std::vector<UncoveredPlace> find(const Reconstruction& reconstruction, double apart);
-  // As UncoveredSearch::look_again().
+  // See UncoveredSearch::look_again().
   void look_again(std::span<const Sphere> spheres) { below_.look_again(spheres); }
 
  private:

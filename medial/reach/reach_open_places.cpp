@@ -34,7 +34,8 @@ class OpenPlaceReacher {
         left_(left),
         dividing_(dividing) {}
 
-  // From each place that is reached on to the nearest ones, so that what stands out along a ridge becomes one sheet.
+  // Reaches the places. From each reached place it continues with the nearest ones, so that places along a ridge get
+  // one sheet.
   Index run(std::span<const UncoveredPlace> places) {
     const double beside = kBeside * sheets_.options.spacing;
     PointGrid grid(beside);
@@ -61,13 +62,13 @@ class OpenPlaceReacher {
   }
 
  private:
-  static constexpr double kSlack = 1.15;     // of what a ball is to leave open: what will do
-  static constexpr double kTouching = 1e-3;  // of a ball's radius: how far it may hold something of the surface
-  static constexpr int kSteps = 20;          // of bisection, and of shrinking
-  static constexpr int kAttempts = 4;        // each from half as far in as the last
-  static constexpr int kProbed = 4;          // parts of a side, of the balls between an edge and a new ball
-  static constexpr double kBeside = 8;       // spacings, between what is reached for and a border that it grows from
-  static constexpr double kAt = 1e-9;        // bounding radii: what rounding puts beside a vertex or an edge
+  static constexpr double kSlack = 1.15;     // a ball may leave this many times the aimed value open
+  static constexpr double kTouching = 1e-3;  // the surface may be this far inside a ball, in radii
+  static constexpr int kSteps = 20;          // steps of bisection and of shrinking
+  static constexpr int kAttempts = 4;        // each starts half as far inside as the last one
+  static constexpr int kProbed = 4;     // the parts of a side at which balls between an edge and a new ball are tested
+  static constexpr double kBeside = 8;  // the largest distance of a place from its border edge, in spacings
+  static constexpr double kAt = 1e-9;   // bounding radii: how far rounding moves a place off a vertex or an edge
 
   bool reach(const UncoveredPlace& place) {
     const Reconstruction::Nearest nearest = reconstruction_.nearest(place.inside);
@@ -80,11 +81,11 @@ class OpenPlaceReacher {
     const Index end = end_of_curve(reconstruction_.corners_of(nearest.cell), foot);
     if (end != kNone && attach_to_curve(ball, end)) return true;
     if (attach_beside(ball) || attach(ball, candidates)) return true;
-    // Where no triangle leads all the way, one may lead half of it, or one from farther back.
+    // If no triangle can reach the aim, one may reach half of it, or start farther back.
     const ExactBall half = ball_at(place.position, foot, place.value / 2);
     const std::vector<Index> around = edges_around(reconstruction_.corners_of(nearest.cell));
     if (attach(half, candidates) || attach(ball, around) || attach(half, around)) return true;
-    // Better a ball beside the axis, which is counted as inexact, than a hole.
+    // A ball beside the axis, which counts as inexact, is better than a hole.
     const ExactBall beside = solver_.at(on_way(place.position, foot, left_));
     return attach(beside, candidates) || attach(beside, around);
   }
@@ -107,8 +108,8 @@ class OpenPlaceReacher {
     return vertex != kNone;
   }
 
-  // The free end of a curve at which the foot of a place is, as below the tip of a cone; kNone if it is not at one, or
-  // the curve went on from there.
+  // Returns the free end of a curve at the foot of a place, as below the tip of a cone; kNone if there is none, or if
+  // the curve was already continued from there.
   Index end_of_curve(const std::array<Index, 3>& cell, const Point& foot) const {
     if (cell[1] != cell[2]) return kNone;
     const double at = kAt * sheets_.surface.bounding_radius();
@@ -119,7 +120,7 @@ class OpenPlaceReacher {
     return kNone;
   }
 
-  // An edge from a curve's end to the ball, which is where the curve goes on: no triangle has an area there.
+  // Continues a curve by an edge from its end to the ball. Triangles would have no area there.
   bool attach_to_curve(const ExactBall& ball, Index end) {
     if (ball.count == 0) return false;
     const ExactBall& last = sheets_.complex.balls[end];
@@ -134,9 +135,9 @@ class OpenPlaceReacher {
     return true;
   }
 
-  // Beside what is there: a triangle from the border edge that lets the borders grow by the least, and one for each of
-  // its free sides that closes a corner with another. From farther in, each place would get a spike of its own, with a
-  // border twice as long as its way.
+  // Adds a triangle from the border edge with which the borders become longer by the least, and a triangle for each of
+  // its free sides that closes a corner with another border. From edges farther inside, each place would get a spike of
+  // its own with two long borders.
   bool attach_beside(const ExactBall& ball) {
     if (ball.count == 0) return false;
     const std::vector<std::array<Index, 2>> near = borders_.near(ball.center);
@@ -161,8 +162,8 @@ class OpenPlaceReacher {
     return true;
   }
 
-  // Whether a triangle from a border edge, its nearer end first, is one that will be right once it is divided; over
-  // sharp edges it goes along these.
+  // Returns whether a triangle from a border edge, with its nearer end first, can be divided until it is right. At
+  // sharp edges of the mesh, it has to run along these.
   bool may_grow(Index a, Index b, const ExactBall& ball) {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
     if (p.radius == 0 && q.radius == 0) return false;
@@ -170,8 +171,8 @@ class OpenPlaceReacher {
     return is_inside(a, b, ball) && becomes_linear(sheets_.surface, p, q, ball, dividing_);
   }
 
-  // The centre of the largest ball on the way from a place to the centre of its nearest ball that leaves the place open
-  // by no more than `left`: the farther in, the more is left open.
+  // Returns the centre, on the way from a place to the centre of its nearest ball, of the largest ball that leaves the
+  // place open by at most `left`. Balls farther inside leave more open.
   Point on_way(const Point& place, const Point& inside, double left) const {
     const double length = (inside - place).norm();
     double from = 0, to = 1;
@@ -182,7 +183,7 @@ class OpenPlaceReacher {
     return place + from * (inside - place);
   }
 
-  // An exact ball that leaves a place open by hardly more than `left`; one without contacts where none is found.
+  // Returns an exact ball that leaves a place open by about `left` at most; one without contacts if none is found.
   ExactBall ball_at(const Point& place, const Point& inside, double left) {
     const Vector way = on_way(place, inside, left) - place;
     double part = 1;
@@ -194,8 +195,8 @@ class OpenPlaceReacher {
     return {};
   }
 
-  // The ball of the medial axis that touches at a contact, seen from `start`: one that is too large shrinks until it
-  // holds nothing of the surface.
+  // Returns the ball of the medial axis that touches at a contact, on the side of `start`. A ball that is too large
+  // shrinks until it contains no part of the surface.
   ExactBall ball_touching(const ClosestPoint& contact, const Point& start) {
     if (!(contact.distance > 0)) return {};
     const Vector inward = (start - contact.position) / contact.distance;
@@ -215,7 +216,7 @@ class OpenPlaceReacher {
     return sheets_.surface.inside(ball.center) ? ball : ExactBall{};  // where a mesh cuts itself, it may be outside
   }
 
-  // The edges of a cell that a place of it is on; or its edges.
+  // Returns the edges of a cell on which a place lies, or all its edges if it lies on none.
   std::vector<Index> edges_at(const std::array<Index, 3>& cell, const Point& place) const {
     const double at = kAt * sheets_.surface.bounding_radius();
     std::vector<Index> edges;
@@ -233,7 +234,7 @@ class OpenPlaceReacher {
     return edges;
   }
 
-  // All edges at the corners of a cell, each once.
+  // Returns all edges at the corners of a cell, each once.
   std::vector<Index> edges_around(const std::array<Index, 3>& cell) const {
     std::vector<Index> edges;
     for (const Index v : cell) {
@@ -254,10 +255,10 @@ class OpenPlaceReacher {
     return (place - a - t * along).norm();
   }
 
-  // Whether there are balls between an edge and a new one, and they protrude by little.
+  // Returns whether there are balls between an edge and a new ball, and these protrude only a little.
   bool is_inside(Index a, Index b, const ExactBall& ball) const {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
-    // What has no area, or no balls, goes at last.
+    // Triangles without area or without balls are refused.
     if (is_flat_triangle(p.center, q.center, ball.center) || std::max({p.radius, q.radius, ball.radius}) == 0)
       return false;
     const auto protrudes = [&](double u, double v, double w) {
@@ -276,12 +277,12 @@ class OpenPlaceReacher {
 
   SheetExtension sheets_;
   GrowingBorders borders_;
-  const EdgeNumbers edge_numbers_;  // of the edges as they were
+  const EdgeNumbers edge_numbers_;  // of the edges before this object added any
   BallSolver& solver_;
   SharpEdges edges_;
   const Reconstruction& reconstruction_;
-  const double left_;             // mesh units: what a new ball leaves open of its place
-  std::vector<Index> continued_;  // ends of curves that an edge was added to
+  const double left_;             // mesh units: how far a new ball leaves its place open
+  std::vector<Index> continued_;  // the ends of curves that were continued
   const SplitOptions& dividing_;
 };
 

@@ -22,7 +22,7 @@ bool is_before(const Point& a, const Point& b) {
   return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
 }
 
-// Each once, as parts that are points.
+// The corners of the parts, each once, as parts that are single points.
 std::vector<Corners> corners_of(const std::vector<Corners>& parts) {
   std::vector<Point> points;
   for (const Corners& part : parts) points.insert(points.end(), part.begin(), part.end());
@@ -47,7 +47,8 @@ std::vector<Corners> all_corners(const Surface& surface) {
 struct UncoveredSearch::Block {
   std::span<const Corners> parts;
   std::vector<UncoveredPlace> places;
-  std::vector<Corners> open, not_covered;  // of what is in `parts`: the parts of it that may be open, and it
+  std::vector<Corners> open,
+      not_covered;  // smaller parts of `parts` that may be open; the parts of `parts` that they belong to
 };
 
 UncoveredSearch::UncoveredSearch(const Surface& surface, std::vector<Corners> parts, double depth, double resolution)
@@ -68,7 +69,7 @@ UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double re
       given_(all_corners(surface)),
       parts_(given_) {}
 
-// How near a cell is to be to a place so that what reaches that far from there is likely to be covered by it.
+// How near a cell has to be to a place so that it is likely to cover a part that reaches `reach` from there.
 double UncoveredSearch::enough(double reach) const {
   if (depth_ > 0) return -std::min(reach, kEnough * depth_);
   return reach < limit_ ? limit_ - reach : kEnough * limit_;
@@ -92,7 +93,7 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block
       if (!(nearest.distance < enough)) nearest = reconstruction.nearest_from(nearest, middle, enough);
       if (nearest.cell != kNone) recent.add(nearest.cell);
       const double value = nearest.distance;
-      // The distance to all of them is 1-Lipschitz.
+      // The distance from the reconstruction is 1-Lipschitz.
       if (value + reach <= limit_ || recent.cover(corners, limit_)) continue;
       if (reach < kEnough * depth_ && surface_.distance(middle) + reach < depth_) continue;
       if (value > limit_) block.places.push_back({value, middle, middle});
@@ -130,7 +131,8 @@ std::vector<UncoveredPlace> UncoveredSearch::find(const Reconstruction& reconstr
   Block found = look_at_all(reconstruction, parts_);
   std::vector<UncoveredPlace> all = std::move(found.places);
   if (with_corners_) {
-    // Of parts that are too small to be divided only the middles were looked at; corners of the surface stand out.
+    // Only the middles of the smallest parts were tested. The farthest places are often corners, so these are tested,
+    // too.
     const Block corners = look_at_all(reconstruction, corners_of(found.not_covered));
     all.insert(all.end(), corners.places.begin(), corners.places.end());
     found.open.insert(found.open.end(), corners.open.begin(), corners.open.end());

@@ -11,7 +11,8 @@
 namespace orchard::detail {
 namespace {
 
-// Some of the cells of a complex, as a mesh of their own: vertices that none of them has would count as balls.
+// Makes a mesh of some cells of a complex. Only their vertices are taken, because a vertex without a cell would count
+// as a ball.
 class Part {
  public:
   explicit Part(const BallComplex& complex) : complex_(complex), number_(complex.size(), kNone) {}
@@ -20,7 +21,7 @@ class Part {
   void add(const std::array<Index, 3>& t) { mesh_.triangles.push_back({number(t[0]), number(t[1]), number(t[2])}); }
   void add(Index vertex) { number(vertex); }
 
-  // Once all cells are there.
+  // To be called when all cells have been added.
   const MedialMesh& finish() {
     for (auto& edge : mesh_.edges) std::sort(edge.begin(), edge.end());
     for (auto& triangle : mesh_.triangles) std::sort(triangle.begin(), triangle.end());
@@ -62,7 +63,7 @@ std::vector<Index> lone_vertices(const BallComplex& complex) {
   return lone;
 }
 
-// Boxes around places, one for each piece that they are near to.
+// For each piece, a box around the places near it.
 class Reach {
  public:
   Reach(std::span<const Point> places, const std::vector<Index>& piece_near, double limit) {
@@ -77,7 +78,7 @@ class Reach {
   }
 
   bool empty() const { return boxes_.empty(); }
-  // Whether balls that are interpolated on these may be within the limit of a place.
+  // Whether a ball interpolated on these balls may be within the limit of a place.
   template <class Corners>
   bool holds(const BallComplex& complex, const Corners& corners) const {
     Box cell;
@@ -123,7 +124,7 @@ std::vector<std::uint8_t> CoverGuard::needed(const BallComplex& complex,
     }
   });
 
-  // Of what stays, only what may be in reach of these places.
+  // Of the cells that stay, only those that may be in reach of these places are used.
   const Reach reach(places_, piece_near, limit_);
   if (reach.empty()) return needed;
   Part stays(complex);

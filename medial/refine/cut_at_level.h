@@ -4,10 +4,11 @@
 
 namespace orchard::detail {
 
-// Cuts sheets along the line inside their triangles where what a border loses is `level` (mesh units), by exact balls,
-// and takes away what loses less from the free ends on, so that the topology stays. `merging` (mesh units) is that of
-// BallSolver. Returns how many edges were cut. Deterministic; parallel. O(n log n), and some nearest-point queries for
-// each edge that is cut.
+// Shortens sheets to the places where a border would lose `level` (mesh units). Triangles are cut along the line on
+// which the loss has this value, at exact balls. The cells with a smaller loss are removed from their free ends on,
+// which does not change the topology. `merging` (mesh units) is that of BallSolver. Returns the number of edges that
+// were cut. The result is deterministic; the work is parallel. Takes O(n log n), and some nearest-point queries for
+// each cut edge.
 Index cut_at_level(const Surface& surface, BallComplex& complex, double level, double merging);
 
 }  // namespace orchard::detail

@@ -13,7 +13,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxPasses = 8;  // what is divided at a corner may be flat, too
+constexpr int kMaxPasses = 8;  // passes: the parts of a divided triangle may be flat, too
 
 class DegenerateCells {
  public:
@@ -33,7 +33,8 @@ class DegenerateCells {
   }
   double apart(Index a, Index b) const { return (mesh_.ball(a) - mesh_.ball(b)).head<3>().norm(); }
 
-  // What stays of two: what ends on the surface, then what is exact, then what has more contacts.
+  // Whether a stays if a and b become one. First a vertex on the surface stays, then an exact one, then one with more
+  // contacts.
   bool stays(Index a, Index b) const {
     const auto key = [&](Index v) {
       const ExactBall& ball = complex_.balls[v];
@@ -59,7 +60,7 @@ class DegenerateCells {
     }
   }
 
-  // False if there is nothing to divide.
+  // Divides flat triangles. Returns false if there are none that can be divided.
   bool divide_flat() {
     bool divided = false;
     for (const auto& corners : mesh_.triangles()) {
@@ -91,7 +92,7 @@ class DegenerateCells {
     return true;
   }
 
-  // What stays of vertices are such of the complex.
+  // Writes the mesh back to the complex. The vertices that are left are vertices of the complex.
   void write_back() {
     Index count = 0;
     for (Index v = 0; v < complex_.size(); ++v) {

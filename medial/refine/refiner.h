@@ -14,26 +14,27 @@
 
 namespace orchard::detail {
 
-// Diagonals: places of the surface that a refined axis leaves open by less are not reached for. `points`: how many the
-// axis was built from.
+// In diagonals: a refined axis does not reach for places of the surface that it leaves open by less than this.
+// `points`: the number of points that the axis was built from.
 double left_open(const Surface& surface, const RefineOptions& options, Index points);
 
-// The steps of refine_axis(), for who looks at what the first ones make before the last ones run. What is given by
-// reference must outlive it, unchanged. The surface must be a solid.
+// The steps of refine_axis(), for callers that need the result of the first ones before the last ones run. Arguments
+// that are given by reference must outlive it and not change. The surface must be a solid.
 class Refiner {
  public:
   // Throws InputError if an option is out of range.
   Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis, const RefineOptions& options,
           const Progress& progress);
 
-  // All steps but dividing what is not linear and reaching for places left open. To be called once, first. Takes
-  // balls from `found`, if given, and adds those that it has to find.
+  // Runs all steps before those of finish(). Must be called once, and first. If `found` is given, takes exact balls
+  // from it and adds those that are not there.
   void refine(FoundBalls* found = nullptr);
-  // What there is so far.
+  // The axis so far.
   MedialMesh mesh() const { return complex_.mesh(); }
-  // Mesh units: what is left open by less is not reached for.
+  // The value of the function above, in mesh units.
   double left_open() const;
-  // Divides, reaches, takes degenerate cells away, and gives the result. To be called once, last.
+  // Divides cells along which the balls are not linear, reaches for places that are left open, removes degenerate
+  // cells, and returns the result. Must be called once, and last.
   RefinedAxis finish();
 
  private:
@@ -63,12 +64,12 @@ class Refiner {
   const Progress& progress_;
   const double diagonal_, level_;  // mesh units
   BallComplex complex_;
-  const CoverGuard guard_;                     // of the surface points, against all that is taken away
-  std::vector<Point> places_;                  // of the surface: what is covered of them stays covered
+  const CoverGuard guard_;                     // keeps the surface points covered whatever is removed
+  std::vector<Point> places_;                  // places of the surface: those that are covered stay covered
   std::vector<std::array<double, 3>> evened_;  // centres of the vertices after evening out, ascending
   const FeatureEdges features_;
   SplitErrors split_errors_;
-  std::vector<Index> face_of_triangle_;  // of the axis as it came
+  std::vector<Index> face_of_triangle_;  // face of the given axis, for each triangle
   RefineReport report_;
 };
 

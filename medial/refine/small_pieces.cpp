@@ -30,7 +30,7 @@ class PieceDropper {
  private:
   bool is_wire(Index e) const { return at_.triangles_at[e].empty(); }
 
-  // Triangles that share edges are of one piece, and wires that nothing else is at the end of.
+  // Joins triangles that share edges to pieces; and edges without triangles that meet where nothing else does.
   void find_pieces() {
     for (const auto& [ab, ac, bc] : at_.sides) {
       piece_of_edge_.unite(ab, ac);
@@ -42,7 +42,7 @@ class PieceDropper {
     }
   }
 
-  // Vertices at which several pieces meet, and how many of them each piece has.
+  // Finds the joints (vertices at which several pieces meet), and how many of them each piece has.
   void find_joints() {
     joint_.assign(complex_.edges.size(), kNone);
     joints_.assign(complex_.edges.size(), 0);
@@ -60,7 +60,7 @@ class PieceDropper {
     }
   }
 
-  // How far each piece with one joint reaches from there, and its largest radius.
+  // Measures how far each piece with a single joint reaches from it, and its largest radius.
   void measure() {
     reach_.assign(complex_.edges.size(), 0);
     radius_.assign(complex_.edges.size(), 0);
@@ -78,7 +78,7 @@ class PieceDropper {
     return joints_[p] == 1 && (reach_[p] <= kPieceReach * complex_.balls[joint_[p]].radius || radius_[p] == 0);
   }
 
-  // The small ones, but for those that cover something alone.
+  // Chooses the small pieces to remove: not those that alone cover something that `guard` needs.
   void choose(const CoverGuard* guard) {
     goes_.assign(complex_.edges.size(), kNone);
     for (Index e = 0; e < complex_.edges.size(); ++e) {
@@ -117,8 +117,8 @@ class PieceDropper {
   BallComplex& complex_;
   const CellIncidence at_;
   DisjointSets piece_of_edge_;
-  std::vector<Index> goes_;             // of each edge: its piece, if that is to go
-  std::vector<Index> joint_, joints_;   // of each piece: the last of its joints, how many
+  std::vector<Index> goes_;             // for each edge, its piece if that is to be removed
+  std::vector<Index> joint_, joints_;   // for each piece, its last joint and its number of joints
   std::vector<double> reach_, radius_;  // of each piece, mesh units
 };
 

@@ -6,11 +6,11 @@
 
 namespace orchard::detail {
 
-// Takes away spikes and flakes: chains of edges without triangles that end freely, and pieces of triangles, that hang
-// on the rest by one vertex and reach no farther from it than `kPieceReach` times its radius, or have no ball of radius
-// above 0; but for what the topology needs, and what `guard`, if given, holds. Pieces that are left by that hang on
-// nothing stay. Returns how many cells went. O(n log n). Adds spheres to `around`, if given, that hold all balls of
-// these.
+// Removes spikes (chains of edges without triangles that have a free end) and flakes (pieces of triangles) that hang on
+// the rest by one vertex. They are removed if they reach no farther from this vertex than `kPieceReach` times its
+// radius, or if all their balls have radius 0. Cells that the topology needs, or that `guard` (if given) needs, stay.
+// So do pieces that no longer hang on anything after that. Returns the number of removed cells. If `around` is given,
+// spheres are added to it that hold all balls of these. O(n log n).
 Index drop_small_pieces(BallComplex& complex, const CoverGuard* guard = nullptr, std::vector<Sphere>* around = nullptr);
 inline constexpr double kPieceReach = 2;
 

@@ -12,11 +12,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kEnough = 0.5;  // of the limit: nearer cells need not be looked for
+constexpr double kEnough = 0.5;  // of the limit: a cell that is nearer than this is near enough
 
 Sphere sphere(const SheetMesh& mesh, Index v) { return {mesh.ball(v).center, mesh.ball(v).radius}; }
 
-// The distance of a place to the balls of one cell.
+// Returns the distance of a place to the balls of a cell.
 double distance_to_cell(const SheetMesh& mesh, const SheetMesh::Cell& cell, const Point& place) {
   const Sphere a = sphere(mesh, cell[0]);
   Sphere nearest = a;
@@ -67,7 +67,7 @@ CoverSamples::CoverSamples(const SheetMesh& mesh, std::span<const Point> places,
   }
 }
 
-// The living cells at these vertices that are none of the made ones.
+// Finds the existing cells at the touched vertices, without those that were just made.
 void CoverSamples::find_around(const SheetMesh& mesh, std::span<const Index> made, std::span<const Index> touched) {
   for (const Index v : touched) around_.insert(around_.end(), mesh.cells_at(v).begin(), mesh.cells_at(v).end());
   std::sort(around_.begin(), around_.end());

@@ -6,10 +6,11 @@
 
 namespace orchard::detail {
 
-// Some cells of a mesh give way to others. All is as before, numbers included, unless the change is kept.
+// A change that replaces cells of a mesh by others. Unless keep() is called, the destructor restores everything,
+// including the numbers of cells.
 class MeshChange {
  public:
-  // Takes the cells away.
+  // Removes the old cells.
   MeshChange(SheetMesh& mesh, std::vector<Index> old) : mesh_(mesh), old_(std::move(old)), first_(mesh.cells()) {
     for (const Index c : old_) gone_.push_back(mesh.corners(c));
     for (const Index c : old_) mesh.remove(c);
@@ -23,7 +24,7 @@ class MeshChange {
     for (std::size_t i = 0; i < gone_.size(); ++i) mesh_.put_back(old_[i], gone_[i]);
   }
 
-  // One vertex, once.
+  // Changes the ball of a vertex. May be called only once.
   void set_ball(Index v, const ExactBall& ball) {
     ball_before_ = mesh_.ball(v);
     moved_ = v;
@@ -32,7 +33,7 @@ class MeshChange {
   const std::vector<Index>& old() const { return old_; }
   const std::vector<SheetMesh::Cell>& gone() const { return gone_; }  // the corners of the old cells
   Index first_made() const { return first_; }
-  // The cells that were added since, and not removed again.
+  // The cells that were added since then and are still there.
   std::vector<Index> made() const {
     std::vector<Index> cells;
     for (Index c = first_; c < mesh_.cells(); ++c) {

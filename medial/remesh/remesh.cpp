@@ -10,10 +10,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kCornerTurn = 35 * std::numbers::pi / 180;  // of a border on the surface: a corner keeps its place
-constexpr double kOutside = 2;     // tolerances, that an edge sticks out by which leads through the outside
-constexpr double kMaxAside = 0.3;  // of an edge: how far the ball in its middle may be from there
-constexpr int kRings = 3;          // of neighbours of what may be changed that may be changed, too
+constexpr double kCornerTurn =
+    35 * std::numbers::pi / 180;   // the turn of a border on the surface from which on a vertex is a corner
+constexpr double kOutside = 2;     // tolerances: an edge that protrudes by more leads through the outside
+constexpr double kMaxAside = 0.3;  // of an edge's length: how far its exact ball may be from its middle
+constexpr int kRings = 3;          // of neighbours of the vertices that may be changed: these may be changed, too
 constexpr int kSmoothings = 2;     // in a round
 
 }  // namespace
@@ -57,7 +58,7 @@ void Remesher::run(const Progress& progress) {
   }
 }
 
-// Takes in the neighbours of what may be changed.
+// Allows changes to the neighbours of vertices that may be changed.
 void Remesher::widen() {
   const std::vector<std::uint8_t> before = open_;
   for (Index c = 0; c < mesh_.cells(); ++c) {
@@ -68,7 +69,8 @@ void Remesher::widen() {
   }
 }
 
-// Where a border turns on the surface, or leaves it; and edges that lead through the outside stay as they are.
+// Pins the vertices where a border on the surface turns or leaves the surface, and the ends of edges that lead through
+// the outside.
 void Remesher::pin_corners() {
   std::vector<Index> along, corners;
   for (Index v = 0; v < mesh_.vertices(); ++v) {
@@ -77,7 +79,7 @@ void Remesher::pin_corners() {
     if (along.size() != 2) continue;
     const double turn =
         angle_between(mesh_.center(v) - mesh_.center(along[0]), mesh_.center(along[1]) - mesh_.center(v));
-    // Places that are so close are one place, reached twice.
+    // Two vertices as close as this count as the same place, so the direction between them means nothing.
     if (is_one_place(std::min(length(v, along[0]), length(v, along[1])))) continue;
     if (!on_surface(along[0]) || !on_surface(along[1]) || turn > kCornerTurn) corners.push_back(v);
   }
@@ -98,7 +100,7 @@ std::vector<Index> Remesher::cells_at_edge(Index a, Index b) const {
   return cells;
 }
 
-// The ball in the middle of an edge: exact where one is found that is not far off.
+// The ball in the middle of an edge: an exact ball, unless that is too far from the middle.
 ExactBall Remesher::middle(Index a, Index b) {
   const Point straight = 0.5 * (mesh_.center(a) + mesh_.center(b));
   if (on_surface(a) && on_surface(b)) {
@@ -110,7 +112,7 @@ ExactBall Remesher::middle(Index a, Index b) {
   return (near && surface_.inside(exact.center)) || !surface_.inside(straight) ? exact : solver_.at(straight);
 }
 
-// What is near a change may move now.
+// Keeps a change; vertices near it may move again.
 void Remesher::keep(MeshChange& change, std::span<const Index> made) {
   change.keep();
   cover_.settle();

@@ -8,19 +8,19 @@
 
 namespace orchard::detail {
 
-// Where a vertex of a medial complex is, or the inside of an edge. A junction is all that is none of the others: the
-// end of a seam or a curve, where sheets touch in one point, a corner of a border.
+// What a vertex of a medial complex, or the inside of an edge, belongs to. A vertex that belongs to none of the others
+// is a junction: the end of a seam or a curve, a point in which sheets touch, a corner of a border.
 enum class Stratum : std::uint8_t { junction, curve, border, seam, sheet };
 
-// A medial complex that is changed cell by cell. Cells are what no larger cell holds: triangles, bare edges, which
-// repeat their last corner, and lone vertices, which repeat it twice.
+// A medial complex that is changed cell by cell. Its cells are those that are part of no larger one: triangles, bare
+// edges (their last corner is repeated) and lone vertices (repeated twice).
 class SheetMesh {
  public:
   using Cell = std::array<Index, 3>;
   using Edge = std::array<Index, 2>;
 
   explicit SheetMesh(const BallComplex& complex);
-  // Without what is gone, complete; vertices in their order.
+  // The complex as it is now, with all edges of triangles, without removed vertices; the others keep their order.
   BallComplex complex() const;
 
   Index vertices() const { return static_cast<Index>(balls_.size()); }
@@ -34,30 +34,31 @@ class SheetMesh {
   const Cell& corners(Index cell) const { return cells_[cell]; }
   std::span<const Index> cells_at(Index v) const { return cells_at_[v]; }
   bool has(Index v) const { return !cells_at_[v].empty(); }
-  // What keeps its place; it is a junction.
+  // Makes a vertex a junction whatever is around it, so that it keeps its place.
   void pin(Index v);
 
   Index add(const Cell& cell);
   void remove(Index cell);
-  // Undoes: a removed cell comes back under its number; the last cells, from `first` on, go with their numbers.
+  // Undo remove() and add(): put_back() gives a removed cell its number back; take_back() removes the cells from number
+  // `first` on and frees their numbers.
   void put_back(Index cell, const Cell& corners);
   void take_back(Index first);
 
   Stratum stratum(Index v) const;
-  // Of an edge of a cell; seams and borders are so by the number of their triangles.
+  // Of an edge of a cell: the number of triangles at it tells curves, borders, sheets and seams apart.
   Stratum stratum(Index a, Index b) const;
   bool has_edge(Index a, Index b) const;
-  // The vertices that an edge joins to this one, ascending.
+  // The vertices that share an edge with this one, ascending.
   void neighbors(Index v, std::vector<Index>& out) const;
-  // Those joined to it by edges of the vertex's own stratum: two, but for junctions and in sheets.
+  // The neighbours along edges of the vertex's own stratum: two for a vertex of a curve, border or seam.
   void neighbors_along(Index v, std::vector<Index>& out) const;
-  // The corners of the triangles at an edge that are not on it.
+  // The third corners of the triangles at an edge.
   void opposite(Index a, Index b, std::vector<Index>& out) const;
-  // Edges of cells, ascending, each once: all, or those between vertices that are marked.
+  // The edges of all cells, ascending, each once; with `of`, only those between vertices that it marks.
   std::vector<Edge> edges(std::span<const std::uint8_t> of = {}) const;
 
-  // Whether drawing an edge together to a point changes no topology: what both ends' cells meet is on the edge (the
-  // link condition; Attali, Lieutier and Salinas 2012).
+  // Whether contracting an edge to a point keeps the topology. The test is the link condition (Attali, Lieutier and
+  // Salinas 2012): the links of the two ends meet only in the link of the edge.
   bool contractible(Index a, Index b) const;
 
  private:

@@ -7,10 +7,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kAside = 0.5;          // of a step: how far the exact ball may be from where it was looked for
-constexpr double kSlack = 0.1;          // of the length aimed at: so far in any case
+constexpr double kAside = 0.5;          // of a step: how far the exact ball may be from the place aimed at
+constexpr double kSlack = 0.1;          // of the length aimed at: it may be this far in any case
 constexpr double kNothing = 0.01;       // of that length: shorter steps change nothing
-constexpr std::array kParts{1.0, 0.4};  // of a step that are tried
+constexpr std::array kParts{1.0, 0.4};  // parts of a step that are tried
 
 // The two contacts that lie farthest apart along a normal.
 std::array<ClosestPoint, 2> sides(const ExactBall& ball, const Vector& normal) {
@@ -45,7 +45,8 @@ void Remesher::smooth() {
   }
 }
 
-// To the middle of its triangles, in their plane: larger ones count more, in units of the length aimed at.
+// Moves a vertex in the plane of its triangles to the mean of their centroids, weighted by their areas. Areas are
+// measured in units of the length aimed at.
 bool Remesher::smooth_in_sheet(Index v) {
   Vector sum = Vector::Zero(), normal = Vector::Zero();
   double weight = 0;
@@ -65,8 +66,9 @@ bool Remesher::smooth_in_sheet(Index v) {
   return move(v, step, &normal);
 }
 
-// To a quadratic curve through five vertices of the border, by least squares (Savitzky and Golay 1964), so that zigzags
-// go and arcs stay; along the border to the middle of its neighbours.
+// Moves a vertex of a border towards the quadratic curve that fits five vertices of the border by least squares
+// (Savitzky and Golay 1964), which removes zigzags and keeps arcs; and along the border towards the middle of its
+// neighbours.
 bool Remesher::smooth_border(Index v) {
   std::vector<Index> along, next;
   mesh_.neighbors_along(v, along);
@@ -100,7 +102,7 @@ bool Remesher::smooth_along(Index v) {
   return move(v, 0.25 * (mesh_.center(along[0]) + mesh_.center(along[1]) - 2 * mesh_.center(v)), nullptr);
 }
 
-// Along a feature edge of the surface.
+// Moves a vertex along a feature edge of the surface.
 bool Remesher::slide(Index v) {
   std::vector<Index> along;
   mesh_.neighbors_along(v, along);

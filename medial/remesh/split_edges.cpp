@@ -14,7 +14,7 @@ void Remesher::split_long() {
   for (const auto& [over, edge] : chosen) split(edge[0], edge[1]);
 }
 
-// Where balls between the ends are off by more than the tolerance, however long the edge is meant to be.
+// Splits the edges whose balls between the ends are off by more than the tolerance, even if they are short enough.
 void Remesher::split_wrong() {
   std::vector<std::pair<double, Edge>> chosen;  // the worst first
   for (const Edge& edge : open_edges()) {

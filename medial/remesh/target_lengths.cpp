@@ -10,13 +10,13 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kErrorPart = 0.4;   // of the tolerance, at an edge of the length aimed at
-constexpr double kFine = 0.05;       // of the tolerance: smaller errors ask for no length below the most
-constexpr double kBorderLength = 1;  // radii
-constexpr double kGrading = 0.25;    // by which the length may grow along a way
-constexpr double kShortest = 0.5;    // of the least length: shorter edges tell nothing
+constexpr double kErrorPart = 0.4;   // the error of an edge with the target length, in tolerances
+constexpr double kFine = 0.05;       // errors below this many tolerances do not shorten the target
+constexpr double kBorderLength = 1;  // the target length at borders, in radii
+constexpr double kGrading = 0.25;    // the largest gradient of the target length
+constexpr double kShortest = 0.5;    // edges shorter than this many smallest target lengths are ignored
 
-// What is wanted at a vertex is wanted around it, a little longer.
+// Limits the gradient of the target lengths: a short target at a vertex also shortens those around it.
 void grade(const SheetMesh& mesh, std::vector<double>& lengths) {
   using Next = std::pair<double, Index>;
   std::priority_queue<Next, std::vector<Next>, std::greater<>> next;
@@ -43,7 +43,7 @@ std::vector<double> target_lengths(const SheetMesh& mesh, const CellErrors& erro
   for (const auto& [a, b] : mesh.edges()) {
     const double length = (mesh.center(a) - mesh.center(b)).norm();
     if (length < kShortest * limits.least) continue;
-    // Errors go with the square of the length.
+    // Errors are proportional to the square of the length.
     const double error = std::max(errors.of_edge(a, b, kFine * limits.tolerance), std::numeric_limits<double>::min());
     const double wanted =
         std::clamp(length * std::sqrt(kErrorPart * limits.tolerance / error), limits.least, limits.most);

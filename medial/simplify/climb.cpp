@@ -26,7 +26,7 @@ class Climber {
   }
 
  private:
-  // To the best of four places around; false if none is better.
+  // Moves the sample to the best of four places around it. Returns false if none is better than where it is.
   bool climb_once(FitSample& sample, Foot& foot, double step) const {
     const Vector side = sample.normal.unitOrthogonal(), other = sample.normal.cross(side);
     const FitSample from = sample;

@@ -1,4 +1,4 @@
-// The search with its moves and what each costs: one object, hence a little more than 300 lines.
+// The search, its moves and their costs share one state, hence a little more than 300 lines in one file.
 #include "contract_by_samples.h"
 
 #include <tbb/blocked_range.h>
@@ -24,13 +24,13 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kExpected = 0.5;   // of what an edge cost before: it is looked at again when its turn comes with that
-constexpr double kToMiddle = 1e-3;  // of the trace: towards the middle of the edge
-// Of the largest distance at the beginning: a triangle without area counts as if so much of the surface as its share of
-// the triangles were as far off.
+constexpr double kExpected = 0.5;   // of an edge's earlier cost: it is evaluated again when its turn comes with this
+constexpr double kToMiddle = 1e-3;  // of the trace: weight of the term that draws the ball to the middle of the edge
+// A part of the largest distance at the beginning. A triangle without area counts as if a part of the surface, which is
+// as large as one triangle's share of all, were off by this.
 constexpr double kBadTriangle = 0.5;
 
-// An edge, and the ball that its ends may become.
+// The ball to which an edge may be contracted, and what that costs.
 struct Candidate {
   double cost = 0;
   Ball4 ball = Ball4::Zero();
@@ -82,20 +82,21 @@ class SampledContraction {
   }
 
  private:
-  // Whether what protrudes is in a cost, which is looked at only of those whose turn comes, since it takes longest; and
-  // what has to be taken away before, which is looked for of those only that the link condition stands against.
+  // What the cost of a queued edge contains. of_samples: only the samples' part. whole: also what protrudes, which is
+  // computed only when the edge's turn comes, since it takes longest. For edges that the link condition forbids:
+  // expected: an estimate from the last time; opened: the cost of removing triangles first.
   enum class Kind : std::uint8_t { of_samples, whole, expected, opened };
-  // Cost, edge, the sum of its ends' stamps when that was found.
+  // The cost, the edge, and the sum of its ends' stamps when the cost was computed.
   using Turn = std::tuple<double, Index, Index, Index, Kind>;
 
-  // An edge's stamps when it was looked at, and what was found, which may have changed since.
+  // The sum of an edge's stamps when it was evaluated, and the cost found then, which may have changed since.
   struct Known {
     Index stamp = kNone;
     double cost = 0;
   };
   static std::uint64_t key(Index a, Index b) { return std::uint64_t{a} << 32 | b; }
 
-  // A foot as a function of the common ball: what it has of others, and its share.
+  // A sample's foot as a function of the common ball: the contribution of other balls, and the weight of this one.
   struct Part {
     const FitSample* sample;
     Ball4 rest;
@@ -121,7 +122,7 @@ class SampledContraction {
     for (std::size_t i = 0; i < edges.size(); ++i)
       turns_.emplace(costs[i], edges[i][0], edges[i][1], 0, Kind::of_samples);
   }
-  // Not again what is offered as it is now.
+  // Queues an edge with its cost, unless it is queued since its last change.
   void offer(Index a, Index b) {
     const auto [p, q] = std::minmax(a, b);
     const Index stamp = stamp_[p] + stamp_[q];
@@ -151,13 +152,13 @@ class SampledContraction {
     return best;
   }
 
-  // What no sample sees: what protrudes, and worse triangles.
+  // The part of the cost that samples do not show: protrusion, and worse triangles.
   double added_cost(Index a, Index b, const Ball4& ball) {
     const double protruding = kProtrusionWeight * feet_.sample(0).weight * protrusion_.added(a, b, ball);
     return shape_weight_ > 0 ? protruding + shape_weight_ * shape_.added(a, b, ball) : protruding;
   }
 
-  // An edge that the link condition stands against, with what it costs at least.
+  // Queues an edge that the link condition forbids. `min_cost` is the least that it costs.
   void offer_opened(Index a, Index b, double min_cost) {
     const Index stamp = stamp_[a] + stamp_[b];
     Known& opened = opened_[key(a, b)];
@@ -170,7 +171,8 @@ class SampledContraction {
       look_opened(a, b);
     }
   }
-  // What it costs to take triangles away and to contract the edge then. Nothing is changed in the end.
+  // Finds what it costs to remove triangles and then contract the edge, and queues the edge with that. The mesh is the
+  // same afterwards.
   void look_opened(Index a, Index b) {
     const auto collapses = open_link(mesh_, a, b);
     if (!collapses) return;
@@ -200,7 +202,7 @@ class SampledContraction {
       }
     }
   }
-  // Samples whose foot is on what was taken away, and their feet.
+  // The samples whose feet are on removed cells, and these feet.
   std::vector<std::pair<Index, Foot>> samples_on(std::span<const Collapse> collapses) const {
     std::vector<std::pair<Index, Foot>> result;
     for (const auto& [a, b, c] : collapses) {
@@ -233,7 +235,7 @@ class SampledContraction {
     const Ball4 ball = candidate(a, b).ball;
     mesh_.contract(a, b, ball);
     feet_.contract(a, b, seen);
-    // What the neighbours cost may have changed; it is found again when their turn comes.
+    // The costs of neighbouring edges may have changed. They are computed again when their turn comes.
     stamp_[a] += stamp_[b] + 1;
     std::vector<Index> around(mesh_.neighbors(a).begin(), mesh_.neighbors(a).end());
     for (const Index other : around) ++stamp_[other];
@@ -242,7 +244,7 @@ class SampledContraction {
     around.push_back(b);
     for (const Index v : around) offer_blocked(v);
   }
-  // Edges that were held, for they may be free.
+  // Queues edges again that the link condition forbade: they may be allowed now.
   void offer_blocked(Index v) {
     const std::vector<Index> ends = std::exchange(blocked_[v], {});
     for (const Index end : ends) {
@@ -267,7 +269,7 @@ class SampledContraction {
     return part;
   }
 
-  // Least squares of what is linear about the middle.
+  // The ball with the least sum of squares of the samples' values, linearized at the middle.
   Ball4 optimum(const std::vector<Part>& parts, const Ball4& middle) const {
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
     Ball4 side = Ball4::Zero();
@@ -297,14 +299,14 @@ class SampledContraction {
   const Surface& surface_;
   ContractibleMesh& mesh_;
   const bool medial_;
-  const double error_;  // mesh units: how far the radius of a ball that is to be medial may be off
+  const double error_;  // mesh units: the most that the radius of a medial ball may be off
   FeetByVertex feet_;
   const ShapeCost shape_;
   const double shape_weight_;  // 0: worse triangles cost nothing
   ProtrusionCost protrusion_;
-  std::vector<std::vector<Index>> blocked_;  // other ends of edges that the link condition stood against
-  // By edge: when it was offered, and what protruded; when it was looked at for what may be taken away, and what that
-  // cost.
+  std::vector<std::vector<Index>> blocked_;  // for each vertex, the other ends of edges that the link condition forbade
+  // By edge. offered_: the stamp when it was queued, and the cost that protrusion added. opened_: the stamp when
+  // removing triangles was tried, and the cost found.
   std::unordered_map<std::uint64_t, Known> offered_, opened_;
   std::vector<Index> stamp_;  // grows with each change around a vertex
   std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns_;

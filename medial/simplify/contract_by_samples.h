@@ -6,16 +6,16 @@
 namespace orchard::detail {
 
 struct ContractionOptions {
-  SimplifiedBalls balls = SimplifiedBalls::free;  // what balls contractions make
-  bool keeps_shape = false;                       // worse triangles and pinched sheets cost, too
+  SimplifiedBalls balls = SimplifiedBalls::free;  // the kind of ball that a contraction makes
+  bool keeps_shape = false;                       // whether worse triangles and pinched sheets add to the cost
 };
 
-// Contracts edges until no more than `target` vertices are left or no edge may be contracted, always that whose
-// contraction costs the samples least: with the best common ball of the ends, how much larger the sum of the fourth
-// powers of the distances gets, each to what becomes of its foot, and with what protrudes from the solid around the
-// ends counted as so many samples. Where the link condition holds an edge, a few triangles of fins may be taken away
-// first, if that costs less than any other contraction. The feet are followed, and walk to better ones around.
-// Deterministic; parallel at its beginning.
+// Contracts edges, always the one that costs least, until at most `target` vertices are left or no edge may be
+// contracted. The cost of a contraction, with the best common ball of the two ends, is by how much the sum of the
+// fourth powers of the samples' distances from their feet grows, plus a term for what protrudes from the solid around
+// the ends, which counts like samples. If the link condition forbids an edge, a few triangles of fins may be removed
+// first, if that costs less than any other contraction. The feet of the samples are updated after each contraction:
+// they move to better places nearby. Deterministic; parallel at its beginning.
 void contract_by_samples(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
                          Assignment& feet, const ContractionOptions& options, Index target);
 

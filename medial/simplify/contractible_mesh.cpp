@@ -11,7 +11,7 @@ bool holds(const ContractibleMesh::Triangle& triangle, Index vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
-// The corner that is neither of two that the triangle has.
+// The third corner of a triangle that has the other two.
 Index third(const ContractibleMesh::Triangle& triangle, Index a, Index b) {
   for (const Index corner : triangle) {
     if (corner != a && corner != b) return corner;
@@ -66,7 +66,7 @@ bool ContractibleMesh::may_contract(Index a, Index b) const {
                         std::back_inserter(common));
   if (common.size() != count_triangles_at(a, b)) return false;
   const auto is_common = [&](Index v) { return std::binary_search(common.begin(), common.end(), v); };
-  // An edge that both see, each by a triangle of its own, would be seen by one triangle twice.
+  // If a and b both form a triangle with the same edge of common neighbours, the two triangles would become one.
   for (const Index t : triangles_at_[a]) {
     const Triangle& triangle = triangles_[t];
     if (holds(triangle, b)) continue;

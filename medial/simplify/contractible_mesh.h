@@ -16,7 +16,7 @@ inline Ball4 ball4(const Point& center, double radius) { return {center.x(), cen
 
 // A medial mesh that changes by steps which keep its homotopy type, and so its Betti numbers: contractions of edges
 // under the link condition (Attali, Lieutier, Salinas 2012), divisions of edges, free extensions and elementary
-// collapses. Vertices keep their numbers; those that are gone are not alive.
+// collapses. Vertices keep their numbers; a vertex that was contracted into another is no longer alive.
 class ContractibleMesh {
  public:
   using Triangle = std::array<Index, 3>;
@@ -38,33 +38,34 @@ class ContractibleMesh {
 
   // The link condition: the links of a and b meet in that of their edge. Precondition: they are adjacent.
   bool may_contract(Index a, Index b) const;
-  // Both become a, with this ball. Precondition: may_contract(a, b).
+  // Contracts the edge to vertex a, which gets this ball. Precondition: may_contract(a, b).
   void contract(Index a, Index b, const Ball4& ball);
-  // A new vertex on an edge. Returns its number.
+  // Divides an edge, and the triangles at it, by a new vertex. Returns its number.
   Index divide(Index a, Index b, const Ball4& ball);
-  // A new vertex, joined to one, or by a triangle to an edge's two. Returns its number.
+  // Adds a vertex that is joined to a vertex by an edge, or to an edge by a triangle. Returns its number.
   Index extend(Index a, const Ball4& ball);
   Index extend(Index a, Index b, const Ball4& ball);
-  // Takes away an edge, and the only triangle at it: an elementary collapse. Returns the third corner.
+  // Removes an edge and the only triangle at it: an elementary collapse. Returns the triangle's third corner.
   // Precondition: count_triangles_at(a, b) == 1.
   Index collapse(Index a, Index b);
-  // A triangle on two edges, and the edge that they lack: undoes collapse(a, b), which returned c.
+  // Undoes collapse(a, b), which returned c: adds the edge ab and the triangle abc.
   void expand(Index a, Index b, Index c) { add_triangle(a, b, c); }
-  // For meshes without an edge that may be contracted: takes triangles away, each with an edge that has no other, which
-  // are elementary collapses, until there is one. False if there is nothing left to take.
+  // For meshes in which no edge may be contracted: removes triangles by elementary collapses until an edge may be.
+  // Returns false if no triangle is left that can be collapsed.
   bool make_contractible();
 
-  // For meshes without an edge that may be contracted, such as rings that share a vertex: lays one edge onto another
-  // with which it shares a vertex, the nearest two, so that there is one vertex less: an elementary expansion, a
-  // triangle between the two, and a contraction. False if no two may be: where the others ends have more than that
-  // vertex in common.
+  // For meshes in which no edge may be contracted, such as rings that share a vertex: folds two edges that share a
+  // vertex onto each other, so that there is one vertex less. Of all pairs, the one whose other ends are nearest. It
+  // is an elementary expansion (a triangle between the two edges) followed by a contraction. Two edges can be folded
+  // only if their other ends are not adjacent and have no other neighbour in common. Returns false if no two can.
   bool fold();
 
-  // The living cells, vertices renumbered in their order.
+  // The cells that are alive, with vertices renumbered in their order.
   MedialMesh mesh() const;
-  // The living triangles.
+  // The triangles that are alive.
   std::vector<Triangle> triangles() const;
-  // For each of its cells that no larger one holds, its corners by the numbers here; missing ones repeat the first.
+  // The cells that are part of no larger one: their corners, by the numbers of this mesh. Edges and vertices repeat the
+  // first corner to have three.
   std::vector<Triangle> maximal_cells() const;
 
  private:

@@ -14,25 +14,26 @@
 namespace orchard::detail {
 namespace {
 
-// How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
-// samples, which see more, have what is left.
+// Quadrics are used down to kBySlabs times the wanted number of vertices, but at least kMinBySlabs. They are fast; the
+// rest is left to the samples, which are more accurate.
 constexpr Index kBySlabs = 2, kMinBySlabs = 1000;
-constexpr double kFree = 1e-5;     // diagonals: contractions that move a ball no farther from its planes cost nothing
-constexpr double kGuarded = 5e-4;  // diagonals: quadrics take no sample farther off while they can do without
+constexpr double kFree = 1e-5;     // diagonals: contractions that move a ball from its planes by less cost nothing
+constexpr double kGuarded = 5e-4;  // diagonals: quadrics move no sample farther off as long as they can avoid it
 constexpr double kShrink = 0.6;    // vertices left by one pass of contractions
 constexpr double kMoved = 0.08;    // share of the vertices that the first round moves
-constexpr double kWorthwhile = 0.02;  // of the largest distance: rounds that gain less, two in turn, are the last
-constexpr double kNotable = 0.6;      // of the largest distance: places that are as far off become samples
-constexpr double kInvisible = 2e-4;   // diagonals: dents so deep are not looked for
-constexpr std::size_t kSamplesPerDent = 50;  // of the surface, for each dent at most that becomes one
-constexpr std::size_t kBallsPerLook = 3;     // balls of the axis of which one looks for dents
+constexpr double kWorthwhile =
+    0.02;                            // of the largest distance: the search ends after two rounds in turn that gain less
+constexpr double kNotable = 0.6;     // of the largest distance: places that are at least this far off become samples
+constexpr double kInvisible = 2e-4;  // diagonals: shallower dents are not searched
+constexpr std::size_t kSamplesPerDent = 50;  // samples of the surface for each dent that becomes a sample, at least
+constexpr std::size_t kBallsPerLook = 3;     // one in so many balls of the axis is used to search for dents
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
 constexpr FitOptions kAtEnd[] = {
     {.power = 2, .steps = 2}, {.power = 4, .steps = 4, .search = false}, {.power = 8, .steps = 6, .search = false}};
 constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .search = false, .middles = false}};
 constexpr FitOptions kAfterMoving[] = {{.power = 4, .steps = 2}, {.power = 8, .steps = 5, .search = false}};
 
-// The vertices of a mesh, so that most of them are neighbours of the one before.
+// The vertices of a mesh in an order in which most are neighbours of the one before.
 std::vector<Index> in_depth_first_order(const ContractibleMesh& mesh) {
   std::vector<Index> order, stack;
   std::vector<std::uint8_t> seen(mesh.size(), 0);
@@ -83,7 +84,7 @@ void Descent::go_down(Stage& stage, Index count) const {
     contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
     if (stage.mesh.living() == before) {
       if (!stage.mesh.make_contractible() && !stage.mesh.fold()) break;
-      stage.feet.feet.clear();  // some may be gone
+      stage.feet.feet.clear();  // the cells of some may be gone
     }
     refine(stage, kBetween);
   }
@@ -116,7 +117,7 @@ Stage Descent::finished(Stage stage) const {
     refine(next, kAfterMoving);
     next.feet.find_off(next.mesh, next.samples, kNotable * next.feet.max);
     look_closer(next, round + 1);
-    // Judged at the same places, and known from now on, whichever stays.
+    // Both meshes are judged at the same places, and these are samples from now on, whichever mesh is kept.
     const std::vector<FitSample> found(next.samples.begin() + static_cast<std::ptrdiff_t>(stage.samples.size()),
                                        next.samples.end());
     add(stage, found);
@@ -125,7 +126,7 @@ Stage Descent::finished(Stage stage) const {
     const bool enough = gain < kWorthwhile;
     if (enough && failed) break;
     failed = enough;
-    if (enough) share /= 2;  // fewer may find their places where many were in each other's way
+    if (enough) share /= 2;  // moving fewer vertices may succeed where many hindered each other
   }
   if (options_.balls == SimplifiedBalls::medial) make_medial(surface_, stage.mesh, stage.feet.worst());
   return stage;
@@ -147,10 +148,10 @@ void Descent::look_closer(Stage& stage, int round) const {
   if (enough > kInvisible * diagonal_) add_dents(stage, round, enough);
 }
 
-// What the envelope leaves open below the surface: no place of the surface is as far from it as the bottom of a dent is
-// from the surface.
+// Adds samples for dents, that is, for what the envelope leaves open deep below the surface. Samples on the surface
+// cannot show the depth of a dent: none is as far from the envelope as the dent's bottom is from the surface.
 void Descent::add_dents(Stage& stage, int round, double min_depth) const {
-  std::vector<Sphere> balls;  // others in each round: a dent is seen from many
+  std::vector<Sphere> balls;  // others in each round, since each dent is found from many balls
   for (std::size_t i = static_cast<std::size_t>(round) % kBallsPerLook; i < axis_balls_.size(); i += kBallsPerLook)
     balls.push_back(axis_balls_[i]);
   std::vector<Dent> dents = dents_seen_from(balls_beyond(stage.mesh, balls, min_depth), surface_,

@@ -9,21 +9,22 @@
 
 namespace orchard::detail {
 
-// Places of a surface and the balls of a medial mesh that come nearest to them.
+// For places of a surface (samples), their feet: the balls of a medial mesh that come nearest to them.
 struct Assignment {
-  std::vector<Foot> feet;  // one for each sample, whose depth is added to the value: what is missing at it, or too much
-  double max = 0;          // of |value|
+  std::vector<Foot> feet;  // one for each sample; with the sample's depth added, its value is what the balls miss
+                           // there, or protrude if negative
+  double max = 0;          // largest |value|
 
-  double max_protrusion = 0;  // as the last fit() left it, of the balls that it looked at
+  double max_protrusion = 0;  // largest protrusion of the balls that the last fit() tested
 
   double worst() const { return std::max(max, max_protrusion); }
-  // Deterministic; parallel.
+  // Finds all feet. Deterministic; parallel.
   void find(const ContractibleMesh& mesh, std::span<const FitSample> samples);
-  // Exact where the value is `enough` or more, or its negative or less; the others are somewhere between. Begins where
-  // the feet are, if there is one for each sample; else faster where samples follow each other over the surface.
-  // Several times as fast. Deterministic; parallel.
+  // The same, several times as fast, but exact only for values of at least `enough` or at most -`enough`; other values
+  // are only known to lie between these. Starts from the present feet, if there is one for each sample. If there is
+  // not, it is faster if consecutive samples are neighbours on the surface. Deterministic; parallel.
   void find_off(const ContractibleMesh& mesh, std::span<const FitSample> samples, double enough);
-  // Near where the feet are.
+  // Searches feet only near the present ones.
   void walk(std::span<const FitSample> samples, const FootWalker& walker);
 
  private:
@@ -31,25 +32,26 @@ struct Assignment {
 };
 
 struct FitOptions {
-  double power = 2;  // of the distances whose weighted sum is made small; at least 2
+  double power = 2;  // of the distances in the sum that is minimized; at least 2
   int steps = 5;
-  // Contractions follow feet to places nearby; what came to protrude there from elsewhere is seen by a search alone.
+  // Whether feet are searched among all cells. Otherwise they are only followed to places nearby, and a ball from
+  // elsewhere that has come to protrude there is not found.
   bool search = true;
-  bool middles = true;  // look at balls in the middles of cells, too, which protrude where no sample is
+  bool middles = true;  // also test balls in the middles of cells, which may protrude where no sample is
 };
 
-// Moves the balls of a medial mesh, which keeps its cells, so that the boundary of its envelope comes to the samples,
-// and no vertex' ball protrudes: Levenberg-Marquardt steps with every sample held by its foot; powers above 2 by
-// reweighting. Balls that are to be medial are brought back to what they may be after each step, and what all samples
-// together say of the volume counts, too. `feet` are cells of the mesh, or none; they are searched for if there are
-// none, or options.search, and followed. Deterministic; parallel.
+// Moves the balls of a medial mesh, whose cells stay, so that the boundary of its envelope comes near the samples and
+// no vertex's ball protrudes. It takes Levenberg-Marquardt steps in which every sample keeps its foot; powers above 2
+// are reached by changing the samples' weights. If balls have to be medial, they are made so again after each step. The
+// volume, as far as all samples together determine it, counts, too. `feet` must be on cells of the mesh, or empty; they
+// are searched if they are empty or with options.search, and followed in any case. Deterministic; parallel.
 void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
          SimplifiedBalls balls, const FitOptions& options);
 
-// The nearest ball, or next to it, whose centre is not outside and whose radius is off its distance to the surface by
-// `error` at most.
+// A ball near the given one, about the nearest, whose centre is not outside the solid and whose radius differs from the
+// distance to the surface by at most `error`.
 Ball4 medial_ball(const Surface& surface, const Ball4& ball, double error);
-// Makes all balls of a mesh so.
+// Replaces all balls of a mesh by their medial_ball().
 void make_medial(const Surface& surface, ContractibleMesh& mesh, double error);
 
 }  // namespace orchard::detail

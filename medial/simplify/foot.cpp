@@ -10,10 +10,11 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kMaxHops = 6;
-constexpr std::size_t kBallsInTurn = 64;  // that one task takes, one after the other
+constexpr std::size_t kBallsInTurn = 64;  // balls that one task handles in turn
 
-// A lower bound on what a cell has: what is seen of the distance along one direction is linear on it, so no less than
-// at a corner. Along the way from the middle it is nearly all of the distance.
+// A lower bound on the value of a cell's foot. The component of the distance along one direction, minus the radius, is
+// linear on the cell, so it is least at a corner. In the direction from the cell's middle, the component is nearly the
+// whole distance.
 double bound_on(const ContractibleMesh& mesh, const std::array<Index, 3>& corners, const Point& query) {
   const Ball4 &a = mesh.ball(corners[0]), &b = mesh.ball(corners[1]), &c = mesh.ball(corners[2]);
   Vector direction = query - (a + b + c).head<3>() / 3;
@@ -27,7 +28,7 @@ double bound_on(const ContractibleMesh& mesh, const std::array<Index, 3>& corner
 
 bool inside(const Foot& foot) { return *std::min_element(foot.weights.begin(), foot.weights.end()) > 0; }
 
-// `improve` looks for a better one on the cells at a corner.
+// `improve` searches the cells at a corner for a better foot.
 template <class Improve>
 Foot walk_from(Foot best, const Improve& improve) {
   Index last = kNone;
@@ -102,7 +103,7 @@ Foot FootWalker::foot_of(const Point& query, const Foot& start) const {
 
 Foot FootWalker::walk(const Point& query, const Foot& start) const {
   const Foot here = foot_of(query, start);
-  if (inside(here)) return here;  // the best around
+  if (inside(here)) return here;  // its neighbours have no better one
   return walk_from(here, [&](Index corner, Foot& best) {
     const auto from = best.corners;
     for (const Index cell : at_[corner]) {

@@ -8,20 +8,21 @@
 
 namespace orchard::detail {
 
-// The ball of a medial mesh that comes nearest to a point: the corners of its cell, and what it takes of each.
+// The ball of a medial mesh whose surface comes nearest to a point (its value is least): the corners of its cell, and
+// their weights in the ball.
 struct Foot {
   std::array<Index, 3> corners{kNone, kNone, kNone};  // smaller cells repeat the first
   std::array<double, 3> weights{1, 0, 0};             // of corners that are repeated: 0
   double value = 0;                                   // |point - centre| - radius
 
-  // Of a point so deep in the solid: what is missing to that depth.
+  // The foot of a point that lies `depth` below the surface: its value is 0 where the ball just reaches the surface.
   Foot below(double depth) const { return {corners, weights, value + depth}; }
   Ball4 ball(const ContractibleMesh& mesh) const {
     return weights[0] * mesh.ball(corners[0]) + weights[1] * mesh.ball(corners[1]) + weights[2] * mesh.ball(corners[2]);
   }
 };
 
-// The best ball of one cell.
+// The foot of a point among the balls of one cell.
 Foot foot_on(const ContractibleMesh& mesh, const std::array<Index, 3>& corners, const Point& query);
 
 // Like FootWalker::walk(), for meshes whose cells change.
@@ -35,12 +36,12 @@ class FootWalker {
  public:
   explicit FootWalker(const ContractibleMesh& mesh);
 
-  // After balls of the mesh moved.
+  // Must be called after balls of the mesh moved.
   void follow_mesh();
 
-  // The best ball of the cell of `start` if it is inside a triangle; else of the cells around its heaviest corner, and
-  // so on from there while it gets better. Its corners are a cell of the mesh. Many times as fast as a search of all,
-  // and mostly the same.
+  // Walks from `start`, whose corners are a cell of the mesh: if the best ball of that cell lies inside a triangle, it
+  // is the answer; else the cells around its heaviest corner are tried, and so on from the best of them, as long as the
+  // value falls. Many times as fast as a search of all cells, and mostly with the same result.
   Foot walk(const Point& query, const Foot& start) const;
 
  private:
@@ -51,17 +52,18 @@ class FootWalker {
   Rows at_;  // numbers of cells at each vertex
 };
 
-// Those of these balls that stick out of the mesh's, as far as these are found at once, by more than `depth`: most are
-// inside of one. Fastest where balls follow each other along the axis. Parallel, deterministic.
+// Those of `balls` that stick out of the mesh's balls by `depth` or more, by a quick search. It may miss the best ball
+// of the mesh, so that a few of the result stick out by less. Fastest where consecutive balls are neighbours on the
+// axis. Parallel, deterministic.
 std::vector<Sphere> balls_beyond(const ContractibleMesh& mesh, std::span<const Sphere> balls, double depth);
 
-// Finds feet while the mesh stays as it is.
+// Finds the feet of points by a search of all cells, while the mesh does not change.
 class FootFinder {
  public:
   explicit FootFinder(const ContractibleMesh& mesh);
 
-  // `guess`, if its corners are a cell of the mesh, is where to look first: that saves most of the time. What is found
-  // instead, if anything, is nearer by more than `slack`, which saves more.
+  // `guess` is where to look first, if its corners are a cell of the mesh: that saves most of the time. A foot that is
+  // better than the guess by at most `slack` may be missed, which saves more time.
   Foot find(const Point& query, const Foot* guess = nullptr, double slack = 0) const;
 
  private:

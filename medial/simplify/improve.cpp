@@ -11,8 +11,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kWorst = 0.5;     // of the largest distance: others are no worst places
-constexpr double kNoShare = 1e-3;  // weight that counts as none
+constexpr double kWorst = 0.5;     // places with less than this many largest distances do not count as worst
+constexpr double kNoShare = 1e-3;  // a weight that counts as 0
 
 double distance_to_segment(const Point& query, const Point& a, const Point& b) {
   const Vector along = b - a;
@@ -30,7 +30,7 @@ class Insertion {
     struct Place {
       double value;
       Foot foot;
-      const FitSample* sample;  // null: a ball that protrudes
+      const FitSample* sample;  // null for a ball that protrudes
     };
     std::vector<Place> places;
     for (std::size_t i = 0; i < samples_.size(); ++i)
@@ -58,7 +58,7 @@ class Insertion {
       }
       for (const Index v : foot.corners) touched_[v] = 1;
     }
-    // The cell of a foot may be divided; each of its corners is a cell.
+    // Cells of feet may be divided, so feet are assigned to vertices, which remain.
     for (Foot& foot : feet_.feet) {
       const auto heaviest = std::max_element(foot.weights.begin(), foot.weights.end()) - foot.weights.begin();
       const Index corner = foot.corners[static_cast<std::size_t>(heaviest)];
@@ -68,7 +68,7 @@ class Insertion {
   }
 
  private:
-  // The longest edge of the cell; false if it has none.
+  // Divides the longest edge of the cell of a foot. Returns false if it has none.
   bool divide(const Foot& foot) {
     const auto& [a, b, c] = foot.corners;
     if (b == a) return false;
@@ -80,7 +80,7 @@ class Insertion {
     return true;
   }
 
-  // A triangle to the sample from the border edge that the foot is on or at; false if it is inside a sheet.
+  // Adds a triangle from the border edge at the foot to the sample. Returns false if the foot is inside a sheet.
   bool reach_out(const FitSample& sample, const Foot& foot) {
     std::vector<Index> corners;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -9,13 +9,13 @@ namespace orchard {
 namespace {
 
 constexpr Index kStarts = 8;
-constexpr double kTouching = 1e-7;  // of the radius: what is nearer than this beyond the nearest place holds the ball
+constexpr double kTouching = 1e-7;  // of the radius: places this much farther than the nearest one also stop the ball
 constexpr double kMinStep = 1e-9;   // of the radius
 constexpr int kMaxSteps = 400;
 constexpr int kHullSteps = 200;
 
-// The way on which a ball leaves all places that are within `reach` of it at once, or next to nothing where there is
-// none: the least vector of the hull of the directions away from them (Gilbert's method).
+// The direction in which a centre moves away from all places of the surface within `reach` at once: the shortest vector
+// of the convex hull of the directions away from them (Gilbert's method). It is almost 0 if there is no such direction.
 Vector uphill(const Surface& surface, const Point& center, double reach, std::vector<Index>& near) {
   surface.triangles_near({center, reach}, near);
   std::vector<Vector> away;

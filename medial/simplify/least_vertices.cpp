@@ -7,11 +7,11 @@
 namespace orchard::detail {
 namespace {
 
-// Out of m.
+// The numbers of pairs and triples of m things.
 std::int64_t pairs(std::int64_t m) { return m * (m - 1) / 2; }
 std::int64_t triples(std::int64_t m) { return m * (m - 1) * (m - 2) / 6; }
 
-// The most of a kind that there are no more than `count` of.
+// The largest m with number(m) <= count.
 template <class Number>
 std::int64_t most_within(std::int64_t count, const Number& number) {
   std::int64_t m = 0;
@@ -19,18 +19,19 @@ std::int64_t most_within(std::int64_t count, const Number& number) {
   return m;
 }
 
-// The least number of edges that so many triangles have (Kruskal and Katona): those of a full set of corners, and of
-// what is left over.
+// The least number of edges that so many triangles have (Kruskal and Katona): all triangles of as many corners as
+// possible are taken, and the triangles left over share one more corner.
 std::int64_t edges_of(std::int64_t triangles) {
   if (triangles == 0) return 0;
   const std::int64_t corners = most_within(triangles, triples);
-  const std::int64_t at_next = triangles - triples(corners);  // triangles that one more corner has with edges of these
+  const std::int64_t at_next =
+      triangles - triples(corners);  // triangles that one more corner forms with edges between these
   if (at_next == 0) return pairs(corners);
   const std::int64_t ends = most_within(at_next, pairs);
   return pairs(corners) + ends + (at_next > pairs(ends) ? 1 : 0);
 }
 
-// One for each component.
+// Divides a mesh into its components.
 std::vector<MedialMesh> components_of(const MedialMesh& mesh) {
   DisjointSets joined(mesh.size());
   for (const auto& [a, b] : mesh.edges) joined.unite(a, b);
@@ -56,7 +57,8 @@ std::vector<MedialMesh> components_of(const MedialMesh& mesh) {
 
 }  // namespace
 
-// With one vertex set apart, cavities are triangles among the others, and loops edges beside those of these triangles.
+// One vertex is joined to all others. Among the others there is one triangle for each cavity, and beside the edges of
+// these triangles one edge for each loop.
 Index least_vertices(std::int64_t loops, std::int64_t cavities) {
   const std::int64_t edges = loops + edges_of(cavities);
   std::int64_t others = 0;

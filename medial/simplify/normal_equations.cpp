@@ -6,8 +6,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxSteps = 60;    // of conjugate gradients: the rest is left to the next step of the fit
-constexpr double kSmall = 1e-4;  // of the first residual
+constexpr int kMaxSteps = 60;    // of conjugate gradients: what remains is left to the next step of the fit
+constexpr double kSmall = 1e-4;  // of the first residual: smaller ones end the steps
 
 }  // namespace
 

@@ -7,10 +7,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kMaxCollapses = 8;  // what takes more of them loses a whole sheet for one vertex
+constexpr std::size_t kMaxCollapses = 8;  // with more of them, a whole sheet would be lost for one vertex
 
-// A neighbour of both ends without a triangle between the three, or none: the edges to it would become one, though
-// they need not be homotopic.
+// Returns a common neighbour of both ends that forms no triangle with them, or kNone. A contraction would merge the two
+// edges to it, although these need not be homotopic.
 Index obstruction(const ContractibleMesh& mesh, Index a, Index b) {
   std::vector<Index> common, filled;
   std::set_intersection(mesh.neighbors(a).begin(), mesh.neighbors(a).end(), mesh.neighbors(b).begin(),
@@ -21,7 +21,8 @@ Index obstruction(const ContractibleMesh& mesh, Index a, Index b) {
   return found == common.end() ? kNone : *found;
 }
 
-// Takes the triangles at the edge from a to w, and the edge; false, with what was taken appended, if it cannot.
+// Removes the triangles at the edge from a to w, and the edge. Returns false if that is impossible. Appends the removed
+// cells in both cases.
 bool take_edge(ContractibleMesh& mesh, Index a, Index w, std::pair<Index, Index> kept, std::vector<Collapse>& taken) {
   std::vector<Index> thirds;
   while (taken.size() < kMaxCollapses) {

@@ -7,17 +7,18 @@
 
 namespace orchard::detail {
 
-// An elementary collapse: the edge that was taken away, and the third corner of its triangle.
+// An elementary collapse: the edge that was removed, and the third corner of its triangle.
 struct Collapse {
   Index a, b, c;
 };
 
-// Collapses that free an edge which the link condition holds: most often a triangle of two sheets' borders stands in
-// its way, such as a narrow fin's. Takes them on the mesh, and returns them in order; nothing, the mesh as it was, if
-// there are none, or more than a few. Precondition: a and b are adjacent. Deterministic.
+// Applies collapses to a mesh such that the link condition allows to contract the edge ab, and returns them in order.
+// Most often, the obstacle is a triangle with two border edges, such as that of a narrow fin. Returns nullopt and
+// leaves the mesh unchanged if no collapses help, or if more than a few were necessary. Precondition: a and b are
+// adjacent. The result is deterministic.
 std::optional<std::vector<Collapse>> open_link(ContractibleMesh& mesh, Index a, Index b);
 
-// The mesh as it was before these collapses, if nothing else was done since.
+// Restores the mesh as it was before these collapses. Precondition: nothing else has changed it since.
 void undo(ContractibleMesh& mesh, std::span<const Collapse> collapses);
 
 }  // namespace orchard::detail

@@ -5,19 +5,21 @@
 
 namespace orchard::detail {
 
-// As small distances count in the costs of contractions: hardly at all beside the largest.
+// Returns the fourth power, with which distances count in the costs of contractions: small ones hardly count beside the
+// largest.
 inline double fourth(double value) {
   const double square = value * value;
   return square * square;
 }
 
-// What contractions of edges add to what protrudes.
+// The increase of protrusions by contractions of edges.
 class ProtrusionCost {
  public:
-  // What protrudes no farther than `negligible` counts as nothing.
+  // Protrusions of at most `negligible` do not count.
   ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh, const LookOptions& look, double negligible);
 
-  // The sum of the fourth powers around an edge, how much larger it gets by contracting it to this ball.
+  // Returns the increase of the sum of the fourth powers of protrusions around an edge if it is contracted to this
+  // ball.
   double added(Index a, Index b, const Ball4& ball);
 
  private:

@@ -10,17 +10,17 @@
 
 namespace orchard::detail {
 
-inline constexpr double kLookSpacing = 0.04;      // bounding radii, of balls of edges that are looked at
-inline constexpr double kThick = 8.0;             // of the samples' spacing: radii of balls that samples see enough of
-inline constexpr double kNegligible = 0.1;        // of the largest distance: what protrudes no more counts as nothing
-inline constexpr double kProtrusionWeight = 4.0;  // of a ball that protrudes, in samples
+inline constexpr double kLookSpacing = 0.04;      // the spacing of balls that are tested on edges, in bounding radii
+inline constexpr double kThick = 8.0;             // samples suffice for balls with larger radii, in sample spacings
+inline constexpr double kNegligible = 0.1;        // smaller protrusions are ignored, in largest distances
+inline constexpr double kProtrusionWeight = 4.0;  // the weight of a ball that protrudes, in samples
 
-// A ball of a medial mesh that reaches out of the solid: what it takes of which corners, how far it reaches (mesh
-// units), and the way there. Where a sheet ends with radius 0, or next to none, no place of the surface need be inside
-// of what reaches out, so it has to be looked for from the balls.
+// A ball of a medial mesh that protrudes from the solid: its weights on the corners of its cell, how far it protrudes
+// (in mesh units), and the direction. Where a sheet ends with a radius of almost 0, no sample of the surface need lie
+// in the protruding part, so protrusions have to be searched from the balls.
 struct Protrusion {
-  std::array<Index, 3> corners{};   // smaller cells repeat the first
-  std::array<double, 3> weights{};  // of corners that are repeated: 0
+  std::array<Index, 3> corners{};   // edges and vertices repeat the first one
+  std::array<double, 3> weights{};  // 0 for repeated corners
   double value = 0;
   Vector outward = Vector::Zero();
 
@@ -29,46 +29,47 @@ struct Protrusion {
   }
 };
 
-// Where to look at balls; mesh units.
+// Which balls are tested. Lengths are in mesh units.
 struct LookOptions {
-  double spacing = std::numeric_limits<double>::infinity();     // of balls inside edges, at most; three at most
-  double max_radius = std::numeric_limits<double>::infinity();  // of balls inside cells; larger ones are left out
-  bool cells = true;  // inside edges and triangles, too, not at vertices alone
+  double spacing = std::numeric_limits<double>::infinity();     // the largest spacing of balls inside an edge
+  double max_radius = std::numeric_limits<double>::infinity();  // larger balls inside cells are not tested
+  bool cells = true;  // whether balls inside edges and triangles are tested, too
 
-  // As much as samples of the surface need beside them, each of which stands for so much of its area: what protrudes of
-  // balls much thicker than the samples are apart has some of them inside.
+  // The tests that are necessary in addition to samples of the surface, each of which stands for `share` of its area.
+  // Balls with radii far above the spacing of the samples need no test, because a protruding part contains samples.
   LookOptions(const Surface& surface, double share)
       : spacing(kLookSpacing * surface.bounding_radius()),
         max_radius(kThick * std::sqrt(surface.report().area * share)) {}
   LookOptions() = default;
 };
 
-// Balls to look at: those of the vertices, at even steps inside edges, and in the middles of triangles. Values are not
-// known.
+// Returns the balls to test: those of the vertices, balls at even steps inside edges, and those at the middles of
+// triangles. Their values are not set.
 std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, const LookOptions& options);
 
-// The same for all cells at one of two vertices, or both.
+// Returns the same for the cells at either of two vertices.
 std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, const LookOptions& options);
 
-// A ball inside the solid, with nothing of the surface in it: what it holds needs no test of being inside. That is true
-// whatever becomes of the medial mesh, so it is worth keeping from one look at a place to the next.
+// A ball inside the solid that contains no part of the surface. Whatever lies in it is inside the solid without a test.
+// This does not depend on the medial mesh, so the ball is kept from one test at a place to the next.
 struct InsideBall {
   Point center = Point::Zero();
-  double radius = 0;  // 0: none is known
+  double radius = 0;  // 0 if no such ball is known
 
   bool holds(const Point& place) const { return (place - center).norm() < kSure * radius; }
   bool holds(const Sphere& ball) const { return (ball.center - center).norm() + ball.radius < kSure * radius; }
 
  private:
-  static constexpr double kSure = 1 - 1e-9;  // rounding
+  static constexpr double kSure = 1 - 1e-9;  // the margin for rounding
 };
 
-// How far a ball reaches out of the solid, and the way there; 0 if that is no more than `negligible`. `known` becomes a
-// ball around the centre unless it holds all that counts already, so that nothing has to be looked for while the ball
+// Returns how far a ball protrudes from the solid, or 0 if that is at most `negligible`, and stores the direction. If
+// `known` does not contain the ball, it becomes a ball around its centre, so that no query is necessary while the ball
 // moves by less than `negligible`.
 double protrusion_of(const Surface& surface, const Ball4& ball, double negligible, InsideBall& known, Vector& outward);
 
-// Those of `places` that protrude by more than `negligible`; known: one for each place. Parallel.
+// Returns those of `places` that protrude by more than `negligible`. `known` has an element for each place. The work is
+// parallel.
 std::vector<Protrusion> find_protrusions(const Surface& surface, const ContractibleMesh& mesh,
                                          const std::vector<Protrusion>& places, double negligible,
                                          std::span<InsideBall> known);

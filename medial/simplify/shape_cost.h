@@ -3,14 +3,14 @@
 
 namespace orchard::detail {
 
-// How much worse a medial mesh is made by contractions of edges: the shape of its triangles, and its sheets.
+// By how much contractions of edges make the triangles and sheets of a medial mesh worse.
 class ShapeCost {
  public:
   explicit ShapeCost(const ContractibleMesh& mesh);
 
-  // The sum of 1 - quality over the triangles, how much larger it gets by contracting an edge to this ball, as a share
-  // of the triangles that there were at the beginning. Where both ends lie on borders, seams or curves and the edge
-  // does not, the contraction pinches a sheet: that counts as much as some triangles without area.
+  // By how much the sum of (1 - quality) over the triangles grows if the edge is contracted to this ball, divided by
+  // the number of triangles at the beginning. If both ends lie on borders, seams or curves but the edge does not, the
+  // contraction pinches a sheet, which counts as much as kPinch triangles without area.
   double added(Index a, Index b, const Ball4& ball) const;
 
  private:
@@ -20,7 +20,7 @@ class ShapeCost {
   bool is_on_structure(Index vertex) const;
 
   const ContractibleMesh& mesh_;
-  double share_ = 0;  // of one triangle in all at the beginning
+  double share_ = 0;  // share of one triangle among those at the beginning
 };
 
 }  // namespace orchard::detail

@@ -8,7 +8,7 @@
 
 namespace orchard::detail {
 
-// The weighted squared distances to planes: x A x - 2 b x + c.
+// A sum of weighted squared distances of a ball from planes that it should touch: x A x - 2 b x + c.
 struct Quadric {
   Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
   Ball4 b = Ball4::Zero();
@@ -20,7 +20,7 @@ struct Quadric {
     c += other.c;
     return *this;
   }
-  // Of balls that touch the plane with this outward normal that `on` touches.
+  // Adds the plane with this outward normal that the ball `on` touches.
   void add_plane(const Vector& normal, const Ball4& on, double weight) {
     Ball4 row;
     row << normal, 1;
@@ -33,7 +33,7 @@ struct Quadric {
   double weight() const { return a(3, 3); }  // of all planes, whose rows end in 1
 };
 
-// Any unit vector at right angles to one.
+// A unit vector at right angles to `unit`.
 inline Vector across(const Vector& unit) {
   Vector other = Vector::Zero();
   Index axis = 0;
@@ -44,8 +44,8 @@ inline Vector across(const Vector& unit) {
   return unit.cross(other).normalized();
 }
 
-// The cone around two balls. A plane that touches both along `out`, a unit vector at right angles to `unit`, has the
-// normal `normal(out)`.
+// The cone that touches two balls. `out` is a unit vector at right angles to `unit`: the plane that touches both balls
+// on that side has the normal `normal(out)`.
 struct Cone {
   Ball4 a, b;
   Vector unit = Vector::Zero();  // from a to b

@@ -21,13 +21,13 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kPull = 1e-4;    // of the trace: towards the middle of the edge, where planes leave a way open
-constexpr double kSpread = 1e-6;  // weight of an edge's length, so that short ones go first among equals
+constexpr double kPull = 1e-4;    // of the trace: weight of the middle of the edge, for directions without a plane
+constexpr double kSpread = 1e-6;  // weight of the length of an edge, so that shorter ones come first among equals
 constexpr double kBorder = 1.0;   // weight of the square over a border edge
-constexpr double kAsWhole = 2.0;  // of how far the whole mesh is off: as well as nothing was contracted
+constexpr double kAsWhole = 2.0;  // a result within this many errors of the whole mesh is as good as the whole
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr std::size_t kGuards = 4;  // of so many samples one stands guard, which tells as much of slabs
-constexpr double kFarthest = 2.0;   // edge lengths from its middle that a new ball may be
+constexpr std::size_t kGuards = 4;  // one of so many samples is a guard, which suffices for slabs
+constexpr double kFarthest = 2.0;   // the largest distance of a new ball from the middle of its edge, in edge lengths
 
 class Contraction {
  public:
@@ -83,7 +83,7 @@ class Contraction {
     }
   }
 
-  // Both planes that touch all three balls.
+  // Adds both planes that touch all three balls.
   void add_slab(const std::array<Index, 3>& cell) {
     const Ball4 a = local(cell[0]), b = local(cell[1]), c = local(cell[2]);
     const Vector u = (b - a).head<3>(), v = (c - a).head<3>(), normal = u.cross(v);
@@ -100,7 +100,7 @@ class Contraction {
     }
   }
 
-  // The plane that touches both balls and is at right angles to a sheet on one side of them.
+  // Adds the plane that touches both balls and is perpendicular to the sheet on one side of them.
   void add_border(Index p, Index q, Index inner) {
     const Cone cone(local(p), local(q));
     if (!(cone.length > 0)) return;
@@ -111,7 +111,7 @@ class Contraction {
     for (const Index v : {p, q}) quadrics_[v].add_plane(normal, cone.a, kBorder * cone.length * cone.length / 2);
   }
 
-  // Four planes around the cone, and one at each end that is free.
+  // Adds four planes around a cone, and one at each free end.
   void add_cone(Index p, Index q) {
     const Cone cone(local(p), local(q));
     if (!(cone.length > 0)) return;
@@ -127,14 +127,14 @@ class Contraction {
     if (mesh_.neighbors(q).size() == 1) quadrics_[q].add_plane(cone.unit, cone.b, square);
   }
 
-  // Of what an edge becomes, from the planes of both ends in the mean.
+  // Returns the mean distance of the contracted ball of an edge from the planes of both ends.
   double distance_of(Index p, Index q) const {
     Quadric sum = quadrics_[p];
     sum += quadrics_[q];
     return sum.weight() > 0 ? std::sqrt(sum.at(best(p, q).first) / sum.weight()) : 0;
   }
 
-  // The best ball for both ends of an edge, and its cost.
+  // Returns the best ball for both ends of an edge, and its cost.
   std::pair<Ball4, double> best(Index p, Index q) const {
     Quadric sum = quadrics_[p];
     sum += quadrics_[q];
@@ -164,7 +164,7 @@ class Contraction {
     return {found, cost + kSpread * length * length * length * length};
   }
 
-  // What was too far, with a higher limit. False: no more.
+  // Offers the waiting edges again, with a higher limit. Returns false if there are none.
   bool offer_again(Index target) {
     if (waiting_.empty() || mesh_.living() <= target) return false;
     waiting_.clear();
@@ -195,9 +195,9 @@ class Contraction {
     quadrics_[a] += quadrics_[b];
     mesh_.contract(a, b, ball);
     feet_.contract(a, b, seen);
-    stamp_[a] += stamp_[b] + 1;  // above what any edge at a was offered with
+    stamp_[a] += stamp_[b] + 1;  // more than the stamp of any offer of an edge at a
     for (const Index other : mesh_.neighbors(a)) offer(a, other);
-    // What the link condition stood against may be free now.
+    // Edges that the link condition prevented may be free now.
     for (const Index other : mesh_.neighbors(a)) {
       for (const Index next : mesh_.neighbors(other)) {
         if (next > other && mesh_.adjacent(a, next)) offer(other, next);
@@ -205,8 +205,8 @@ class Contraction {
     }
   }
 
-  // The best ball if it is within the limit; else an end, where that is as good: along a straight border or seam both
-  // ends cost nothing, but from one of them the sheet folds over.
+  // Returns the best ball if it is within the limit, otherwise an end of the edge if it costs as little. Along a
+  // straight border or seam both ends cost nothing, but with one of them the sheet may fold over.
   std::optional<Ball4> ball_within_limit(Index a, Index b, std::span<const Index> samples) {
     const Ball4 ball = best(a, b).first + origin_;
     if (!too_far(a, b, ball, samples)) return ball;
@@ -220,7 +220,8 @@ class Contraction {
     return std::nullopt;
   }
 
-  // Whether the ball would protrude beyond the limit, or one of these samples be beyond it, and farther off than it is.
+  // Returns whether the ball would protrude beyond the limit, or whether one of these samples would be beyond the limit
+  // and farther off than now.
   bool too_far(Index a, Index b, const Ball4& ball, std::span<const Index> samples) {
     if (limit_ == kNoLimit) return false;
     if (protrudes(ball)) return true;
@@ -256,14 +257,14 @@ class Contraction {
   FeetByVertex feet_;
   const double free_distance_;
   double limit_;
-  const double min_length_;                    // of edges in whose middle is looked
-  std::unordered_set<std::uint64_t> waiting_;  // edges, by their ends, for a higher limit
+  const double min_length_;                    // shorter edges are not tested in the middle
+  std::unordered_set<std::uint64_t> waiting_;  // edges, by their ends, that wait for a higher limit
   std::vector<Quadric> quadrics_;
   std::vector<Index> stamp_;  // grows with each change of a vertex
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 
-// Samples that stand guard for all.
+// Returns the samples that are guards.
 std::vector<FitSample> thinned(std::span<const FitSample> samples) {
   std::vector<FitSample> result;
   for (std::size_t i = 0; i < samples.size(); i += kGuards) result.push_back(samples[i]);
@@ -280,7 +281,7 @@ void contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span
   const double enough = std::max(kAsWhole * feet.max, free_distance);
   Contraction(surface, mesh, guards, feet, free_distance, min_limit).run(target, target);
   if (mesh.living() <= free_target) return;
-  // Without a guard sheets may fold over on the way, and unfold when their corners alone are left; or they do not.
+  // Without guards, sheets may fold over and unfold again when only their corners are left, or may remain folded.
   ContractibleMesh free_mesh = mesh;
   Assignment free_feet = feet;
   Contraction(surface, free_mesh, guards, free_feet, free_distance, kNoLimit).run(mesh.living(), free_target);

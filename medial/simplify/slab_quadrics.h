@@ -5,19 +5,19 @@
 
 namespace orchard::detail {
 
-// Contracts edges, the cheapest first, until no more than `target` vertices are left or no edge may be contracted; and
-// on to `free_target` where what an edge becomes is within `free_distance` (mesh units) of its planes in the mean, as
-// everywhere on the axis of a solid with flat faces until its seams and corners alone are left.
+// Contracts edges, the cheapest first, until at most `target` vertices are left or no edge may be contracted. It
+// continues down to `free_target` with edges whose new ball is within `free_distance` (mesh units) of its planes in the
+// mean. On the axis of a solid with flat faces, this holds everywhere until only seams and corners are left.
 //
 // The cost is a quadric in centre and radius (Li et al. 2015): the squared distances of the ball to the planes that
-// touch the slabs and cones around its vertices. A border of a sheet is a place where the envelope ends, which these
-// planes do not see; so each border edge adds the plane that touches it from beyond the sheet: a ball that moves in
-// from a border whose sheet ends at radius 0 pays what the solid loses there. O(n log n).
+// touch the slabs and cones around its vertices. These planes do not show that the envelope ends at the border of a
+// sheet. So each border edge adds a plane that touches it from beyond the sheet. A ball that moves inwards from a
+// border whose sheet ends at radius 0 then pays for the loss of the solid there. O(n log n).
 //
-// A mean over planes hides a small one beside large sheets, so every fourth sample of the surface stands guard: a
-// contraction that takes one of them farther off than a limit, or whose ball protrudes farther, waits until no other is
-// left; then the limit, `min_limit` (mesh units) at first, is doubled. Below `target` they stand guard only if what is
-// left without one is off.
+// A mean over planes hides small sheets beside large ones. So every fourth sample of the surface is a guard. A
+// contraction that moves the envelope farther from a guard than a limit, or whose ball protrudes farther than that,
+// waits until no other contraction is left. Then the limit, which is `min_limit` (mesh units) at first, is doubled.
+// Below `target` there are guards only if the result without guards is inaccurate.
 void contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Index target,
                        Index free_target, double free_distance, double min_limit);
 

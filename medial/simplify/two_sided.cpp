@@ -11,8 +11,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kOfError = 0.02;  // of an error asked for: as near to it as what is less need be told from it
-constexpr double kBallAccuracy = 1e-5, kHollowAccuracy = 1e-4;  // diagonals: to which maxima are searched
+constexpr double kOfError = 0.02;  // of the requested error: how precisely values below it are searched
+constexpr double kBallAccuracy = 1e-5, kHollowAccuracy = 1e-4;  // accuracies of the maxima, in diagonals
 
 Spread spread_among(std::span<const SurfaceReach> reaches, double SurfaceReach::*value) {
   std::vector<double> values;
@@ -21,7 +21,7 @@ Spread spread_among(std::span<const SurfaceReach> reaches, double SurfaceReach::
   return spread_of(values);
 }
 
-// No less than `known`.
+// Returns the largest protrusion of the balls, but at least `known`.
 double max_protrusion_at(const Surface& surface, const QualityBalls& balls, double known) {
   for (const Sphere& ball : balls.all) {
     const BallDepth depth = depth_of(surface, ball);
@@ -30,8 +30,8 @@ double max_protrusion_at(const Surface& surface, const QualityBalls& balls, doub
   return known;
 }
 
-// What is searched for. Where an error is asked for, less does not matter: that it is less is soon proved, by how much
-// takes long.
+// The values from which on maxima are searched. If an error was requested, smaller values are not searched: proving
+// that a maximum is below the error is fast, but computing by how much takes long.
 class Searched {
  public:
   Searched(const SimplifyOptions& options, double diagonal)
@@ -63,7 +63,7 @@ void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span
   Spread beyond = spread_among(reaches, &SurfaceReach::beyond);
   beyond.max = max_protrusion_at(surface, quality_balls(mesh, QualityOptions{}.cells), beyond.max);
   double max = std::max({to.max, from.max, beyond.max, open.upper});
-  // Searches take longest; only what is more than all that is known is searched for.
+  // The searches take most of the time, so they look only for values above those that are known.
   const std::vector<Dent> dents =
       dents_seen_from(balls_beyond(ContractibleMesh(mesh), inscribed, max), surface, reconstruction, max);
   if (!dents.empty()) max = dents.front().depth;

@@ -60,8 +60,8 @@ class BroadPhase:
 
     def update(self, bodies: Anything, positions: Anything, *, radii: Anything, velocities: Anything = None,
                accelerations: Anything = 0, keeps_bounds: bool = False) -> None:
-        """Where bodies are now, and how they move on. keeps_bounds: they have stayed within the bounds that they had,
-        which saves time; what was not promised then is missed."""
+        """Sets where bodies are now, and how they move. keeps_bounds: the bodies have stayed within their earlier bounds,
+        which saves time; overlaps are missed if they have not."""
         self._world.update(indices("bodies", bodies, 0), self._rows(positions, velocities, radii, accelerations),
                            bool(keeps_bounds))
 

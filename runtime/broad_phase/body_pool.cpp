@@ -77,7 +77,7 @@ void BodyPool::remove(BodyIndex body) noexcept {
   }
   leave_class(importance_[body]);
   --size_;
-  forget_promise(body);
+  forget_motion_bound(body);
 }
 
 void BodyPool::move_static(BodyIndex body, const Motion& place) noexcept {

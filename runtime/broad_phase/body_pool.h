@@ -211,11 +211,11 @@ class BodyPool {
   }
   void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
   bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
-  void check_promises(MotionBoundViolationListener listener, double position_slack) {
+  void check_motion_bounds(MotionBoundViolationListener listener, double position_slack) {
     check_ = std::make_unique<MotionBoundCheck>(std::move(listener), position_slack);
   }
-  const MotionBoundCheck* promises() const noexcept { return check_.get(); }  // null: they are not checked
-  void forget_promise(BodyIndex body) noexcept {
+  const MotionBoundCheck* motion_bound_check() const noexcept { return check_.get(); }  // null: they are not checked
+  void forget_motion_bound(BodyIndex body) noexcept {
     if (check_) check_->forget(body);
   }
   void ask_all(Step step);  // for their promises

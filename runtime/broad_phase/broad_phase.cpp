@@ -41,7 +41,7 @@ BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, con
       State{detail::BodyPool(std::move(source), arrays, detail::Clock{options.start, options.time_step}), nullptr});
   max_time_ = valid ? kMaxSteps * options.time_step : -1;
   state_->method = make(state_->pool, options);
-  if (options.validate) state_->pool.check_promises(options.broken, options.position_slack);
+  if (options.validate) state_->pool.check_motion_bounds(options.broken, options.position_slack);
   note_next_step();
   seen_time_ = -std::numeric_limits<double>::infinity();
 }
@@ -72,7 +72,8 @@ void BroadPhase::note_next_step() {
   const bool any = state_->next != kNeverStep;
   next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
   wake_time_ = any ? clock.earliest(state_->next) : next_time_;
-  if (state_->pool.promises() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
+  if (state_->pool.motion_bound_check() != nullptr)
+    wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
 }
 
 void BroadPhase::validate_up_to(Step step) {
@@ -113,7 +114,7 @@ Advance BroadPhase::process_steps(double t_now, const Budget* budget, std::uint6
   };
   const detail::Clock& clock = state.pool.clock;
   std::uint64_t work = 0;
-  const bool validating = state.pool.promises() != nullptr;
+  const bool validating = state.pool.motion_bound_check() != nullptr;
   while (state.next != kNeverStep && t_now >= clock.earliest(state.next)) {
     const Step now = state.next;
     if (validating) validate_up_to(now);
@@ -168,7 +169,7 @@ bool BroadPhase::remove(BodyId body) {
 bool BroadPhase::cancel(BodyId body) {
   if (!may_change() || !contains(body)) return false;
   state_->method->changed(body.index);
-  state_->pool.forget_promise(body.index);
+  state_->pool.forget_motion_bound(body.index);
   wake_for_change();
   return true;
 }
@@ -243,8 +244,8 @@ std::size_t BroadPhase::predict_load(double time, std::span<StepsAhead> steps) c
 std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }
 std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->pool.asked(); }
 std::uint64_t BroadPhase::motion_bound_violations() const noexcept {
-  const detail::MotionBoundCheck* const promises = state_->pool.promises();
-  return promises == nullptr ? 0 : promises->broken();
+  const detail::MotionBoundCheck* const check = state_->pool.motion_bound_check();
+  return check == nullptr ? 0 : check->broken();
 }
 std::size_t BroadPhase::memory_bytes() const noexcept {
   return sizeof(State) + state_->pool.memory_bytes() + state_->method->memory_bytes();

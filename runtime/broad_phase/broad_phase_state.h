@@ -7,7 +7,7 @@ struct BroadPhase::State {
   detail::BodyPool pool;
   std::unique_ptr<detail::BroadPhaseAlgorithm> method;
   detail::Step next = detail::kNeverStep;  // the next step with anything to do
-  detail::Step validated = -1;             // up to which step all bodies have been asked for, for their promises
+  detail::Step validated = -1;             // the last step at which all bodies were asked for, to check their bounds
   bool woken = false;                      // for a change, since the last step
   bool busy = false;                       // a source, a filter or a listener may be running
 };

@@ -5,7 +5,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// A body that keeps the one keeps the other, too.
+// Whether a body that keeps the bounds of `newer` also keeps those of `older`.
 bool implies(const Motion& newer, const Motion& older) noexcept {
   const bool any = dot(older.half_space, older.half_space) > 0;
   const bool side = !any || older.half_space == newer.half_space;

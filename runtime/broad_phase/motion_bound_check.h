@@ -3,15 +3,15 @@
 
 namespace orchard::runtime::detail {
 
-// Compares each motion that is given with what was promised for the same body before: in the motion given last, and in
-// the strictest one that is still in force, as a looser one does not take that back.
+// Compares each motion that is given with the bounds given before for the same body: those of the last motion, and the
+// strictest ones that have not expired, because looser bounds do not replace stricter ones.
 class MotionBoundCheck {
  public:
   MotionBoundCheck(MotionBoundViolationListener listener, double position_slack)
       : listener_(std::move(listener)), position_slack_(position_slack) {}
 
   void given(BodyId body, const Motion& motion, double time);
-  void forget(BodyIndex body) noexcept;  // nothing is promised any more
+  void forget(BodyIndex body) noexcept;  // the body has no bounds any more
   std::uint64_t broken() const noexcept { return broken_; }
   std::size_t memory_bytes() const noexcept { return tracks_.capacity() * sizeof(Track); }
 
@@ -23,7 +23,7 @@ class MotionBoundCheck {
   };
   struct Track {
     MotionBound last, strictest;
-    bool same = true;  // the two
+    bool same = true;  // whether `last` and `strictest` are the same
   };
   bool kept(BodyId body, const MotionBound& bound, const Motion& motion, double time);
 

@@ -231,7 +231,7 @@ bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
 }
 
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  const bool many = are_many(bodies.size()) && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
+  const bool many = are_many(bodies.size()) && parts_.boxes.shares() && parts_.pool.motion_bound_check() == nullptr;
   if (!many) {
     parts_.boxes.empty(options_.executor);
     return update(now, from, bodies);

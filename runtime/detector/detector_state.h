@@ -35,7 +35,7 @@ struct Detector::State {
   bool acceptable(std::span<const BodyPart> parts) const noexcept;
   detail::Body& add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
   detail::Body* find(BodyId body) noexcept;  // to change it; null if it cannot be changed now
-  void cancel(detail::Body& body);           // its promise holds no longer
+  void cancel(detail::Body& body);           // its bounds do not hold any more
   void rely_on_origins();
   void changed(detail::Body& body) noexcept { body.moved = world.answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one

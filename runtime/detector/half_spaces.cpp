@@ -102,7 +102,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const BodyIndex body = bodies[k];
     Motion motion = motions[k];
-    motion.radius += 2 * slack;  // where it is, and where it was promised to be
+    motion.radius += 2 * slack;  // one for where it is, one for where its bounds expect it
     bounds_[body] = {clock.time(now), motion, table.relies_on_middle(body, time_step)};
     if (!is_valid(motion)) {
       set_due(body, now + 1);
@@ -129,7 +129,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
   for (const BodyIndex body : moving_) next_ = std::min(next_, due_[body]);
 }
 
-bool HalfSpaces::promise_kept(BodyIndex body, double time, const Motion& now) const noexcept {
+bool HalfSpaces::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {
   if (alive_ == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
   const MotionBound& bound = bounds_[body];
   return keeps_motion_bound(bound.motion, bound.time, time, now.position, nullptr, slack_) &&

@@ -24,7 +24,7 @@ class HalfSpaces {
     }
   }
 
-  void update_again(BodyIndex body);            // at the next step: it is new, or its promise holds no longer
+  void update_again(BodyIndex body);            // at the next step: it is new, or its bounds do not hold any more
   void update_all(std::size_t bodies);          // a half-space is new
   void forget(BodyIndex body);                  // it is gone, or does not move
   Step next() const noexcept { return next_; }  // at which any body is due
@@ -35,8 +35,8 @@ class HalfSpaces {
   // due again. `slack`: see BroadPhaseOptions::position_slack.
   void update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
                       std::span<const Motion> motions, double time_step, double slack, std::vector<BodyPair>& pairs);
-  // Whether the promise that the body's next update relies on is kept by where it is now.
-  bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
+  // Whether the body keeps the bounds that its next update relies on.
+  bool motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   // Whether that is about the body's middle: see BodyTable::relies_on_middle().
   bool relies_on_middle(BodyIndex body) const noexcept { return body < bounds_.size() && bounds_[body].by_middle; }
   std::size_t memory_bytes() const noexcept;

@@ -17,7 +17,7 @@ BodyState KeptStates::at(double time, BodyIndex body) const noexcept {
   return state;
 }
 
-// None of them turns until another state is told, which cancels what was promised.
+// No body turns until its state is changed, which cancels its bounds.
 void KeptStates::fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     states[i] = at(time, bodies[i]);

@@ -6,10 +6,11 @@
 
 namespace orchard::runtime::detail {
 
-// Of an application that leaves its bodies' states to the detector: each goes straight on from when it was told.
+// The states of bodies that the detector keeps for the application: each body moves straight from the time at which its
+// state was set.
 class KeptStates {
  public:
-  // put_cancels: what was promised of a body holds until put(), and no longer.
+  // put_cancels: the bounds of a body hold until put().
   explicit KeptStates(bool put_cancels) noexcept : put_cancels_(put_cancels) {}
   void put(BodyIndex body, double time, const BodyState& state);
   BodyState at(double time, BodyIndex body) const noexcept;

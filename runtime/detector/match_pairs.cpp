@@ -19,7 +19,7 @@ void PairMatcher::gather_half_spaces(Step step) {
   if (due_.empty()) return;
   sampler_.sample(step, due_);
   due_motions_.clear();
-  for (const BodyIndex body : due_) due_motions_.push_back(sampler_.promise_of(body, world_.clock.time(step)));
+  for (const BodyIndex body : due_) due_motions_.push_back(sampler_.given_motion(body, world_.clock.time(step)));
   world_.halves.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
                                world_.options.position_slack, pairs_.with_planes);
 }

@@ -7,7 +7,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kMaxAngle = 0.5;        // cosine: of accelerations that share a half-space, with their mean
-constexpr double kFasterHorizon = 1.25;  // a kept promise makes the next one so much longer
+constexpr double kFasterHorizon = 1.25;  // how much longer bounds hold after bounds that were kept
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void MotionMonitor::count_broken(BodyIndex body) {
 bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, const Vec3* velocity) {
   Track& t = track(body);
   learn(t, time, position, velocity);
-  if (t.bounded && time - t.kept_since >= t.horizon) {  // a whole one without a broken promise
+  if (t.bounded && time - t.kept_since >= t.horizon) {  // a whole horizon without a violation
     t.horizon = std::min(t.horizon * kFasterHorizon, options_.longest_horizon);
     t.kept_since = time;
   }

@@ -4,18 +4,18 @@
 
 namespace orchard::runtime::detail {
 
-// A sphere around all of an arm's parts is mostly empty, and what is in it may be a whole cell of a factory. So for
-// bodies of several parts among many static ones the broad phase is spared these pairs: at each step they are found by
-// the parts' own spheres. (Several horns for one body, as in 4.1.2, that are relied on for one step: joints promise
-// nothing.)
+// Finds the pairs of bodies that have several parts with static bodies. The sphere around all parts of a robot arm is
+// mostly empty and may contain all static bodies of a factory cell. So the broad phase does not look for these pairs;
+// they are found at each step by the spheres of the parts. (This is like the several horns for one body of 4.1.2, but
+// for one step only, because there are no bounds on the motion of joints.)
 class PartSearch {
  public:
   bool any() const noexcept { return !bodies_.empty(); }
   std::span<const BodyIndex> bodies() const noexcept { return bodies_; }  // in ascending order
-  // From now on, and no longer, for this body of several parts that is not static.
+  // Begins and ends the search for a body of several parts that is not static.
   void begin(BodyIndex body, const BodyTable& table);
   void end(BodyIndex body) noexcept;
-  // A static body is somewhere else, or new; it is gone.
+  // Call these when a static body was added or moved, and when it was removed.
   void static_changed(BodyIndex body, const BodyTable& table);
   void static_gone(BodyIndex body) noexcept;
 

@@ -14,7 +14,7 @@ void StateSampler::sample(Step step, double time, std::span<const BodyIndex> bod
   world_.bodies.ask(step, time, bodies, world_.options.executor);
 }
 
-Motion StateSampler::promise_of(BodyIndex index, double time) const {
+Motion StateSampler::given_motion(BodyIndex index, double time) const {
   const Motion motion = world_.bodies.motion_of(index, world_.clock.time_step);
   const Body& body = world_.bodies[index];
   const bool suggests = watches_ && body.suggest && !body.frozen && motion.radius >= 0;
@@ -26,7 +26,7 @@ void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> as
   const Clock& clock = world_.clock;
   if (!sampled_all_) sample(std::llround((time - clock.start) / clock.time_step), time, asked);
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    motions[i] = promise_of(asked[i], time);
+    motions[i] = given_motion(asked[i], time);
     if (!watches_) continue;
     Body& body = world_.bodies[asked[i]];
     body.told_radius = motions[i].radius;
@@ -84,7 +84,7 @@ void StateSampler::watch(Step step) {
   sample(step, everyone_);
   for (const BodyIndex i : everyone_) {
     Body& body = world_.bodies[i];
-    if (!is_valid(bodies.motion_of(i, world_.clock.time_step))) {  // it is refused, and its promise holds no longer
+    if (!is_valid(bodies.motion_of(i, world_.clock.time_step))) {  // it is refused, and its bounds do not hold any more
       if (body.told_radius >= 0) cancel(body);
     } else if (!keeps_motion_bound(i, step)) {
       broken_.push_back(i);
@@ -93,7 +93,7 @@ void StateSampler::watch(Step step) {
   }
 }
 
-// Of what the promise was about, whatever this state promises.
+// Compares with the bounds of the last motion that was given, about the same point (origin or middle) as they were.
 bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
   const Body& body = world_.bodies[index];
   const double time = world_.clock.time(step);
@@ -108,13 +108,13 @@ bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
   return false;
 }
 
-// Besides the monitor's promise: what half-spaces rely on, the size, and the speed of what is continuous.
+// Whether the bounds hold that the monitor does not check: those of half-spaces, the radius, and continuous_speed.
 bool StateSampler::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
   const BodyIndex index = body.id.index;
   const Clock& clock = world_.clock;
   const bool by_middle = body.has_middle() && world_.halves.relies_on_middle(index);
   const Motion of_half_spaces = world_.bodies.motion_of(index, clock.time_step, by_middle);
-  if (!world_.halves.promise_kept(index, clock.time(step), of_half_spaces)) return false;
+  if (!world_.halves.motion_bound_kept(index, clock.time(step), of_half_spaces)) return false;
   if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
   if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
   const Vec3 way = motion.position - Vec3(body.before.translation);

@@ -21,14 +21,14 @@ class StateSampler {
   // The bodies of these pairs, in ascending order; refuses those whose states are not valid.
   void sample_pairs(Step step, std::span<const BodyPair> pairs);
   // What is relied on of a body whose state has been sampled: what its state says, or what the monitor makes of it.
-  Motion promise_of(BodyIndex body, double time) const;
+  Motion given_motion(BodyIndex body, double time) const;
   // The broad phase asks for the motions of bodies.
   void answer_broad_phase(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
 
   bool watches() const noexcept { return watches_; }
-  // Before the broad phase relies on anything at this step: compares every body's state with what was promised.
+  // Before the broad phase relies on anything at this step: compares every body's state with its motion bounds.
   void watch(Step step);
-  void cancel(Body& body);  // its promise holds no longer
+  void cancel(Body& body);  // its bounds do not hold any more
   void refuse(std::span<const BodyIndex> bodies) { append_all(refused_, bodies); }
   MotionMonitor& monitor() noexcept { return monitor_; }
   const MotionMonitor& monitor() const noexcept { return monitor_; }

@@ -11,11 +11,11 @@
 
 namespace orchard::detail {
 
-// What a node answers for: surface points that it must hold.
+// The surface points that a node must hold.
 struct Portion {
   std::vector<Point> held;
-  std::vector<Index> points;    // of each: of the axis, or kNone for one that a closing added
-  std::vector<Index> vertices;  // of the axis, ascending, where they are not simply those that touch a point
+  std::vector<Index> points;    // the axis's number of each point, or kNone for one that a closing added
+  std::vector<Index> vertices;  // medial vertices, ascending; empty: all that touch one of the points
 
   std::vector<Index> axis_points() const;  // ascending
 };
@@ -25,22 +25,22 @@ struct Child {
   Portion portion;
 };
 
-// Makes the children of a node of a merged tree from the portion that the node answers for. For many threads at once.
+// Makes the children of a node of a merged tree from the node's portion. Many threads may use it at once.
 class ChildBuilder {
  public:
-  // Keeps references.
+  // Keeps references to its arguments.
   ChildBuilder(const Surface& surface, const MedialAxis& axis, const MergeOptions& options);
 
   void start_level(Index level);
-  double power() const { return power_; }  // of the looseness, in the sum over a level that is to be low
+  double power() const { return power_; }  // of the looseness, in a level's sum that is to be minimized
 
-  Portion whole() const;  // the root's
+  Portion whole() const;  // the portion of the root
   std::vector<Child> children_of(const Portion& portion, Index max) const;
   std::vector<Child> resized(const Portion& portion, const std::vector<Child>& family, Index wanted) const;
   std::vector<Child> halves(const Child& child) const;  // two, or fewer where it cannot be split
 
   double looseness(const Sphere& ball) const { return ball.radius + surface_.signed_distance(ball.center); }
-  bool tight(const Sphere& ball) const;  // enough to be left as it is
+  bool tight(const Sphere& ball) const;  // whether a ball is so tight that it need not be divided
   double cost_of(const std::vector<Child>& family) const;
 
  private:
@@ -58,7 +58,7 @@ class ChildBuilder {
   const MergeOptions& options_;
   const double margin_;
   mutable tbb::enumerable_thread_specific<PartScratch> scratch_;
-  std::vector<std::vector<Index>> vertices_of_;  // each point
+  std::vector<std::vector<Index>> vertices_of_;  // for each point, the medial vertices that touch it
   double power_ = 1;
   bool patient_ = true;  // see fit_siblings()
 };

@@ -7,7 +7,7 @@
 
 namespace orchard::detail {
 
-// What merging starts with: medial vertices, or single surface points, with the surface points that each must hold.
+// What merging starts with: medial vertices or single surface points, each with the surface points that it must hold.
 struct Parts {
   std::vector<Sphere> spheres;
   std::vector<std::vector<Index>> points;      // of each, ascending, of the axis
@@ -20,13 +20,13 @@ struct MergedParts {
   std::vector<Index> parts;  // ascending
 };
 
-// Merges parts along their adjacency, by least cost, until targets[i] groups remain, for each i in turn (dissertation
-// 6.3.1); where adjacency runs out first, the smallest group joins the one that it costs least to join. Ties go to the
-// lowest indices. Precondition: targets descend.
+// Merges adjacent groups of parts, the cheapest merge first, until targets[i] groups remain, for each i in turn
+// (dissertation 6.3.1). Where no groups are adjacent any more, the smallest group joins the one that is cheapest to
+// join. Ties go to the lowest indices. Precondition: targets descend.
 std::vector<std::vector<MergedParts>> merge_parts(const MedialAxis& axis, const Parts& parts,
                                                   std::span<const std::size_t> targets);
 
-// Draws the sphere to about the smallest that holds the points (Badoiu and Clarkson 2003).
+// Moves and shrinks the sphere towards the smallest one that holds the points (Badoiu and Clarkson 2003).
 void shrink_around(const std::vector<Point>& points, Sphere& sphere);
 
 }  // namespace orchard::detail

@@ -6,8 +6,8 @@
 namespace orchard::detail {
 namespace {
 
-// A family's looseness falls about with this power of the number of its spheres: between a half for flat parts and one
-// for long ones.
+// A family's looseness is about inversely proportional to this power of its number of spheres: the power is between 1/2
+// for flat parts and 1 for long ones.
 constexpr double kFall = 0.7;
 
 }  // namespace
@@ -19,7 +19,7 @@ std::vector<Index> balanced_counts(const std::vector<Family>& families, double p
   for (std::size_t i = 0; i < families.size(); ++i) {
     left += families[i].spheres;
     if (families[i].spheres == 0) continue;
-    // Without its full number now, a family has no use for more.
+    // A family that does not use all spheres that it has now cannot use more.
     counts[i] = families[i].spheres < branching ? families[i].spheres : 2;
     left -= counts[i];
   }

@@ -14,9 +14,9 @@
 namespace orchard {
 namespace {
 
-// A point this far outside all paths, in R, is uncovered, whatever the rounding.
+// In R: a point that is farther than this outside all paths is uncovered, whatever the rounding.
 constexpr double kBeyondDoubt = 1e-9;
-constexpr std::size_t kTogether = 4;  // triangles that are looked at by one thread
+constexpr std::size_t kTogether = 4;  // triangles that one task tests
 
 using Triangles = std::vector<std::vector<Index>>;
 
@@ -37,11 +37,11 @@ Triangles touching_paths(const SphereTree& tree, const Surface& surface) {
   return touching;
 }
 
-// Takes nodes out as long as the path rule stays certified. Only triangles that a path region of a removed leaf touches
+// Removes nodes as long as the path rule stays certified. Only triangles that touch the path region of a removed leaf
 // can become uncovered.
 class Remover {
  public:
-  // touching: as touching_paths() has it.
+  // `touching`: the result of touching_paths().
   Remover(const SphereTree& tree, const Surface& surface, Triangles touching)
       : tree_(tree), surface_(surface), forest_(path_balls(tree)), touching_(std::move(touching)) {
     leaves_below_.assign(tree.nodes.size(), 0);
@@ -53,7 +53,7 @@ class Remover {
 
   bool gone(Index node) const { return leaves_below_[node] == 0; }
 
-  // Whether the path rule is certain without the node; then it is gone.
+  // Removes the node if the path rule is certified without it. Returns whether it was removed.
   bool remove(Index node) {
     const std::vector<Index> leaves = leaves_of(node);
     if (leaves.size() == leaves_below_[0]) return false;
@@ -67,7 +67,7 @@ class Remover {
     return true;
   }
 
-  // The tree of what is left, and what touches its paths.
+  // The tree of the nodes that are left, and the triangles that touch its paths.
   SphereTree rest(Triangles& touching) {
     SphereTree rest;
     touching.clear();
@@ -104,7 +104,8 @@ class Remover {
     return leaves;
   }
 
-  // Most leaves hold the surface nearest to their centre alone: that tells of them without a proof.
+  // A quick test: most leaves are the only ones that hold the place of the surface nearest to their centre, so they
+  // cannot be removed.
   bool surely_uncovered(const std::vector<Index>& leaves) const {
     const double beyond_doubt = kBeyondDoubt * surface_.bounding_radius();
     return std::any_of(leaves.begin(), leaves.end(), [&](Index leaf) {
@@ -138,12 +139,12 @@ class Remover {
   const SphereTree& tree_;
   const Surface& surface_;
   PathForest forest_;
-  std::vector<Index> leaves_below_;  // that are still there
+  std::vector<Index> leaves_below_;  // those that are not removed
   Triangles touching_;
   tbb::enumerable_thread_specific<NearBalls> near_;
 };
 
-// The nodes of a level that are still there, loosest first.
+// The nodes of a level that are not removed, the loosest first.
 std::vector<Index> loosest_first(const SphereTree& tree, const Surface& surface, Index level, const Remover& remover) {
   std::vector<Index> nodes;
   for (Index i = 0; i < tree.nodes.size(); ++i)
@@ -158,8 +159,8 @@ std::vector<Index> loosest_first(const SphereTree& tree, const Surface& surface,
   return nodes;
 }
 
-// What the dissertation's two criteria find on one level; a node that both find rests on its aunts, which are there to
-// stay when their nieces' turn comes.
+// The redundant nodes of one level by the dissertation's two criteria. If both find a node, the nodes that cover it are
+// its parent's siblings, because these are not removed any more when its level is treated.
 std::vector<RedundantNode> redundant_on(const SphereTree& tree, const Surface& surface, Index level,
                                         RedundancyReport& report) {
   const auto by_siblings = redundant_nodes(tree, surface, level, Coverers::siblings);

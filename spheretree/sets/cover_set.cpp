@@ -18,23 +18,24 @@
 namespace orchard::detail {
 namespace {
 
-// How a set is judged: few samples, the same for all sets that are compared.
+// The measurement of sets that are compared: few samples, the same for all sets.
 constexpr std::uint64_t kJudgingRays = 8000;
 constexpr Index kJudgingSamples = 4000;
 
-// Sets of few spheres depend on where their search begins and on what it looks at, and have the time for several.
+// One of several searches for a set of few spheres. The results depend on the start and the objective, and a search for
+// few spheres is fast.
 struct Search {
   Objective objective;
   Effort effort;
-  std::uint64_t seed = 0;  // beside that of the options
+  std::uint64_t seed = 0;  // in addition to that of the options
 };
 
 constexpr Index kFew = 32;  // spheres
-// Points of the surface: more are of no more use.
+// Numbers of surface points; more points do not improve the sets.
 constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;  // with low effort
 constexpr Index kSomeSamples = 2400, kSomeSamplesPerBall = 120;
 
-// Several short searches for different ends find better sets of few spheres than a long one, and take less time.
+// Several short searches with different objectives find better sets of few spheres than one long search, in less time.
 std::vector<Search> searches_for(Index spheres, Effort effort) {
   if (effort == Effort::low || (effort == Effort::standard && spheres > kFew)) return {{Objective::balanced, effort}};
   constexpr Objective kAll[] = {Objective::balanced, Objective::volume, Objective::mean, Objective::maximum};
@@ -66,7 +67,7 @@ bool is_covered(const Surface& surface, const std::vector<Sphere>& balls) {
   return surface_coverage(surface, path_balls(balls, origin), origin).complete();
 }
 
-// The spheres of one search, which hold the surface by themselves, without the tree's root.
+// Returns the spheres of one search. They cover the surface without the root of the tree.
 std::vector<Sphere> searched(const Surface& surface, const FramedSurface& framed, const SurfaceSampling& sampling,
                              const WeightField& weights, const TightenOptions& options, const Progress& progress) {
   TightenBuild build =
@@ -80,8 +81,9 @@ std::vector<Sphere> searched(const Surface& surface, const FramedSurface& framed
   return balls;
 }
 
-// The largest distance outside, squared, times the mean one times the volume: neither is bought with much of another,
-// and the largest, which varies most between searches, least of all.
+// Returns the value by which sets are compared: the square of the largest distance outside, times the mean distance,
+// times the volume outside. The product prevents that one of them is reduced at a high cost of the others. The largest
+// distance, which differs most between searches, has the highest weight.
 double looseness(const Surface& surface, const WeightField& weights, const std::vector<Sphere>& balls) {
   double max = 0;
   for (const Sphere& ball : balls)

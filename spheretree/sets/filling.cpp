@@ -14,23 +14,25 @@
 namespace orchard::detail {
 namespace {
 
-// What a radius is smaller than the distance to the surface by, per unit of coordinate: more than what is rounded.
+// Radii are smaller than the distance to the surface by this much per unit of coordinate, which is more than rounding
+// errors.
 constexpr double kRounding = 0x1p-44;
-constexpr std::uint64_t kStage = 6600;  // of the random numbers
+constexpr std::uint64_t kStage = 6600;  // the stream of the random numbers
 constexpr Index kLeastCandidates = 2000, kCandidatesPerBall = 4;
 constexpr std::size_t kLeastPoints = 40'000, kPointsPerBall = 150;
-// How far beyond the box there are points, of its longest side: balls that stick out farther are not tried.
+// A part of the box's longest side: points are spread this far beyond the box, and balls that protrude farther are not
+// tried.
 constexpr double kMargin = 0.08;
 constexpr int kSweeps = 24;                       // of all balls, each followed by an adjustment of the weight
 constexpr int kTrialsPerSweep = 12;               // for each ball
 constexpr double kFirstStep = 0.25;               // of the radius
 constexpr double kLeastStep = 0.002;              // likewise
 constexpr double kLonger = 1.6, kShorter = 0.88;  // of the step after a success and after a failure
-constexpr int kInsertions = 24;                   // candidates that are tried where a ball may be of more use
-constexpr double kWeightGain = 4;                 // of the outside weight, by the part of the volume that is too much
-constexpr int kVolumeSteps = 20;                  // of Newton's iteration: a union grows by its area
+constexpr int kInsertions = 24;                   // candidates that are tried as new places for a ball
+constexpr double kWeightGain = 4;  // growth of the outside weight's logarithm per part of the volume that is too much
+constexpr int kVolumeSteps = 20;   // of Newton's iteration; a union's volume grows by its area
 constexpr Index kAreaSamples = 20'000;
-constexpr double kVolumeTolerance = 1e-3;  // of the solid's volume, of the last adjustment of radii
+constexpr double kVolumeTolerance = 1e-3;  // of the solid's volume: ends the last adjustment of radii
 
 int sweeps_for(Effort effort) {
   return effort == Effort::low ? kSweeps / 2 : effort == Effort::high ? 4 * kSweeps : kSweeps;
@@ -72,7 +74,8 @@ class Filling {
   }
 
  private:
-  // The candidate that adds most, again and again: what each would add never rises, so most need no second look.
+  // Adds the candidate with the largest gain again and again. Gains never rise when balls are added, so most candidates
+  // need not be evaluated again.
   void seed() {
     std::vector<double> gains(candidates_.size());
     tbb::parallel_for(std::size_t{0}, candidates_.size(),
@@ -135,7 +138,7 @@ class Filling {
     points_.add(by);
   }
 
-  // The ball that is missed least goes where another one adds more.
+  // Moves the balls whose loss is least to candidates with a larger gain.
   void relocate() {
     if (candidates_.empty()) return;
     const Index moves = 1 + options_.spheres / 8;
@@ -161,7 +164,7 @@ class Filling {
     }
   }
 
-  // As much is to stick out as is left out: then the volume is the solid's.
+  // Adjusts the weight such that as much volume protrudes as is left out: then the union has the solid's volume.
   void adjust_weight() {
     const double too_much = (static_cast<double>(points_.outside_held()) - static_cast<double>(points_.inside_open())) /
                             static_cast<double>(points_.inside_count());
@@ -169,7 +172,8 @@ class Filling {
     points_.set_outside_weight(weight_);
   }
 
-  // All radii by the same length, until the union has the solid's volume: by the measure that judges it at the end.
+  // Changes all radii by the same length until the union has the solid's volume, by the measure that the result is
+  // judged by.
   void keep_volume() {
     double by = 0;
     for (int step = 0; step < kVolumeSteps; ++step) {
@@ -195,7 +199,7 @@ class Filling {
   VolumePoints points_;
   std::vector<Sphere> candidates_;  // in the solid
   std::vector<Sphere> balls_;
-  std::vector<double> steps_;  // of each ball, of its radius
+  std::vector<double> steps_;  // for each ball, as a part of its radius
   double weight_ = 1;
   int sweep_ = 0;
 };
@@ -222,7 +226,7 @@ std::vector<Sphere> inscribed_balls(const Surface& surface, Index count, std::ui
 
 void add_inner_balls(const Surface& surface, Index count, double min_radius, std::vector<Sphere>& balls) {
   if (balls.size() >= count) return;
-  constexpr double kApart[] = {1, 0.5, 0.25, 0.1, 0};  // centres, in radii
+  constexpr double kApart[] = {1, 0.5, 0.25, 0.1, 0};  // least distances of two centres, in radii
   std::vector<Sphere> candidates = inscribed_balls(surface, std::max(kLeastCandidates, kCandidatesPerBall * count), 1);
   std::erase_if(candidates, [&](const Sphere& ball) { return ball.radius < min_radius; });
   std::stable_sort(candidates.begin(), candidates.end(),

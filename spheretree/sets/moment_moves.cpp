@@ -11,13 +11,13 @@
 namespace orchard::detail {
 namespace {
 
-// Of all moves so many are looked at, evenly spread: more do not help where there are many balls.
+// At most this many balls and places, evenly spread, are tried for a move. With many balls, more do not help.
 constexpr std::size_t kMostBalls = 64, kMostPlaces = 1000;
 constexpr double kWorthIt = 0.999;  // of the excess before
 
 using Matrix = Eigen::Matrix3d;
 
-// Sums over the centres, about the wanted centre of mass.
+// Sums of first and second moments of the centres about the wanted centre of mass.
 class CenterSums {
  public:
   CenterSums(const std::vector<Point>& centers, double radius, const PackingMoments& moments)
@@ -56,7 +56,7 @@ class CenterSums {
   double count_ = 0, size_ = 0;
 };
 
-// A place with room for a ball, but for one ball at most that is in the way.
+// A place with room for a ball, if at most one ball that is in the way leaves.
 struct Room {
   Point at;
   Index in_the_way = kNone;

@@ -5,12 +5,14 @@
 
 namespace orchard::detail {
 
-// How far the moments of equal balls are from those wanted, as a multiple of what is allowed: the larger one.
+// How far the moments of equal balls are from the wanted ones, as a multiple of the allowed error: the largest of these
+// multiples.
 double moment_excess(const std::vector<Point>& centers, double radius, const PackingMoments& moments);
 
-// Moves single balls of one radius to places where they have room, each time the move that brings the moments nearest
-// to those wanted, until they are within `enough` times the errors or no move helps. `contact`: the least distance of
-// two centres, in radii. O(n k) for k places, and at most as many moves as there are balls. Returns moment_excess().
+// Moves balls of one radius, one at a time, to free places where they have room: always the move that brings the
+// moments nearest to the wanted ones, until moment_excess() is at most `enough`, no move helps, or there have been as
+// many moves as there are balls. `contact`: the least distance of two centres, in radii. O(n k) for k places. Returns
+// moment_excess().
 double move_to_moments(const std::vector<Sphere>& places, double contact, double radius, double enough,
                        const PackingMoments& moments, std::vector<Point>& centers);
 

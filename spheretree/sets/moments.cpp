@@ -12,12 +12,13 @@ constexpr int kRows = 10;
 using Row = Eigen::Matrix<double, kRows, 1>;
 using Square = Eigen::Matrix<double, kRows, kRows>;
 
-// What a missed moment costs beside a weight that is changed: so that moments are met as nearly as doubles allow.
+// The regularization of the dual problem. It is so small that the moments are met as nearly as doubles allow.
 constexpr double kMissed = 1e-10;
 constexpr int kMaxSteps = 200, kMaxHalvings = 40;
 constexpr double kConverged = 1e-13;
 
-// Of each ball per weight, about the body's centre and less the body's: the weighted sums are to be 0. Last the weight.
+// For each ball, per weight: the moments about the body's centre, minus the body's own, so that their weighted sums are
+// to be 0; the last entry is the weight itself, if the sum is to be kept.
 std::vector<Row> rows_of(std::span<const Sphere> balls, const MassProperties& body, bool keep_sum) {
   const Eigen::Matrix3d wanted = second_moment(body);
   const double size = std::sqrt(std::max(1e-300, wanted.trace()));
@@ -33,7 +34,7 @@ std::vector<Row> rows_of(std::span<const Sphere> balls, const MassProperties& bo
   return rows;
 }
 
-// The dual: weights are clamp(wanted (1 + row . x)), and x makes missed(x) = 0.
+// The dual problem. The weights are clamp(wanted (1 + row . x)), and x is sought such that missed(x) = 0.
 class Dual {
  public:
   Dual(std::vector<Row> rows, const WeightBounds& bounds) : rows_(std::move(rows)), bounds_(bounds) {
@@ -65,7 +66,7 @@ class Dual {
   double free_part(std::size_t i, const Row& x) const { return parts_[i] * (1 + rows_[i].dot(x)); }
   double part(std::size_t i, const Row& x) const { return std::clamp(free_part(i, x), low(i), high(i)); }
 
-  // Of the last row: the weights' parts add up to 1.
+  // The wanted sums: 0 for the moments, and 1 for the last entry, since the weights' parts add up to 1.
   static Row wanted() { return Row::Unit(kRows - 1); }
   bool keeps_sum() const { return rows_.front()[kRows - 1] != 0; }
 
@@ -85,7 +86,7 @@ class Dual {
     return sum;
   }
 
-  // Whose gradient is missed(): for each weight the integral of part() over row . x.
+  // The function whose gradient is missed(): for each weight, the integral of part() over row . x.
   double value(const Row& x) const {
     double sum = kMissed / 2 * x.squaredNorm();
     for (std::size_t i = 0; i < rows_.size(); ++i) {

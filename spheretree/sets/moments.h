@@ -5,23 +5,23 @@
 
 #include "orchard/spheretree/union_volume.h"
 
-// Centre of mass and second moments of a set of balls, and weights with which these are a given body's.
+// The centre of mass and the second moments of a set of balls, and weights of balls that give those of a body.
 namespace orchard::detail {
 
-// The integral of x x^T about the centre of mass, over the mass.
+// The integral of x x^T about the centre of mass, divided by the mass.
 Eigen::Matrix3d second_moment(const MassProperties& body);
 
 // Balls of the given masses as a rigid body; `volume` is the mass.
 MassProperties body_of(std::span<const Sphere> balls, std::span<const double> masses);
 
 struct WeightBounds {
-  std::vector<double> wanted, lower, upper;  // of each ball; above 0, at least 0, not below `lower`
+  std::vector<double> wanted, lower, upper;  // of each ball: wanted > 0, lower >= 0, upper >= lower
 };
 
-// Weights of the balls between the bounds, with which the centre of mass and the second moments are those of `body`,
-// and, if `keep_sum`, the sum is that of `wanted`: as near as can be to `wanted`, relative to it. Where there are none,
-// weights that come as near to the moments as can be. Newton's method on the dual, ten numbers however many balls there
-// are.
+// Returns weights of the balls within the bounds such that the centre of mass and the second moments are those of
+// `body` and, with `keep_sum`, the sum of weights is that of `wanted`. Of all such weights, those with the least
+// changes relative to `wanted`. If there are none, weights that come nearest to the moments. Uses Newton's method on
+// the dual problem, which has ten unknowns for any number of balls.
 std::vector<double> weights_with_moments(std::span<const Sphere> balls, const WeightBounds& bounds,
                                          const MassProperties& body, bool keep_sum);
 

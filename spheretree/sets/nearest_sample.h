@@ -5,13 +5,13 @@
 
 namespace orchard::detail {
 
-// Finds the nearest of some points: a tree of halves along the longest side of each box.
+// Finds the nearest of some points by a tree that halves them along the longest side of each box.
 class NearestSample {
  public:
   explicit NearestSample(std::vector<Point> points);
 
-  // Calls visit(index) for the points that are no farther from the query than the number it returned last, near ones
-  // first as far as the tree tells; `limit` is the first such number. Some that are farther may come, too.
+  // Calls visit(index) for points within a distance of the query. The distance is `limit` at first, and then whatever
+  // visit() returned last. Nearer points tend to come first.
   template <class Visit>
   void visit(const Point& query, double limit, const Visit& visit) const {
     if (!points_.empty()) descend(0, static_cast<Index>(points_.size()), query, limit, visit);
@@ -19,7 +19,7 @@ class NearestSample {
   const Point& operator[](Index i) const { return points_[i]; }
 
  private:
-  static constexpr Index kLeaf = 8;  // points that are not divided any further
+  static constexpr Index kLeaf = 8;  // as few points are not divided any more
   struct Split {
     int axis = 0;
     double at = 0;
@@ -44,7 +44,7 @@ class NearestSample {
 
   std::vector<Point> points_;
   std::vector<Index> order_;
-  std::vector<Split> splits_;  // of each range, at its middle
+  std::vector<Split> splits_;  // the split of each range is stored at its middle
 };
 
 }  // namespace orchard::detail

@@ -12,8 +12,8 @@ using Rational = boost::multiprecision::cpp_rational;
 constexpr int kHalvings = 60;
 constexpr double kRoundedDown = 1 - 0x1p-45;
 
-// Balls of radii `large` and `small` whose spheres meet: of lens and ball, times 3 / (4 pi). Weisstein, "Sphere-Sphere
-// Intersection".
+// For two balls whose spheres meet, lens() and whole() are the volumes of their intersection and of the smaller ball,
+// both times the same factor (12 distance / pi). See Weisstein, "Sphere-Sphere Intersection".
 template <class Number>
 Number lens(const Number& distance, const Number& large, const Number& small) {
   const Number sum = large + small, difference = large - small, gap = sum - distance;

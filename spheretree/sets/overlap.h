@@ -3,12 +3,13 @@
 
 namespace orchard::detail {
 
-// The least distance of the centres at which two balls overlap by no more than `share` of the smaller one.
+// Returns the smallest distance between the centres of two balls, with radii a and b, at which they overlap by at most
+// `share` of the smaller one.
 double contact_distance(double a, double b, double share);
 
-// The largest radius, at most `limit`, of a ball with its centre `distance` away from that of another ball, so that
-// they overlap by no more than `share` of the smaller one. 0 where there is none, also where only a ball that is larger
-// than some that are not allowed would do.
+// Returns the largest radius, at most `limit`, such that all balls up to this radius are allowed. A ball is allowed if
+// it overlaps another one by at most `share` of the smaller one; `distance` is the distance between their centres, and
+// `other` the radius of the other one. Returns 0 if there is no such radius.
 double allowed_radius(double distance, double other, double share, double limit);
 
 }  // namespace orchard::detail

@@ -16,16 +16,16 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kRounds = 60;      // of growing
-constexpr int kPushes = 80;      // in each, at most
-constexpr int kPairsAge = 8;     // pushes after which near pairs are looked for again
-constexpr double kNear = 1.25;   // pairs up to this many contact distances apart
-constexpr double kApart = 5e-4;  // of the radius: pushes end where nothing is nearer than that
+constexpr int kPushes = 80;      // at most, in each round
+constexpr int kPairsAge = 8;     // pushes after which the near pairs are searched again
+constexpr double kNear = 1.25;   // contact distances: pairs up to this far apart are near
+constexpr double kApart = 5e-4;  // of the radius: pushes end when balls overlap or protrude by less
 constexpr double kFirstGrowth = 0.06, kLeastGrowth = 1e-3;
-constexpr double kShrinking = 0.93, kLeastShrunk = 0.35;  // of the radius, while the moments are looked for
-constexpr double kWorthMoving = 1.02;                     // of the room before
+constexpr double kShrinking = 0.93, kLeastShrunk = 0.35;  // of the radius, in the search for the moments
+constexpr double kWorthMoving = 1.02;                     // a ball is moved if its room grows by more than this factor
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kTowards = 0.3;   // the moments, at each push
-constexpr double kWithin = 0.7;    // of the errors allowed: moments that are nearer are left alone
+constexpr double kTowards = 0.3;   // the part of the way to the wanted moments that a push takes
+constexpr double kWithin = 0.7;    // of the allowed errors: moments with smaller errors are left alone
 constexpr double kUnmoved = 1e-9;  // of the size: the least spread of centres that a map can stretch
 
 using Matrix = Eigen::Matrix3d;
@@ -48,7 +48,7 @@ class EqualBalls {
     place(places, count);
     if (centers_.empty()) return {};
     radius_ = room(centers_);
-    // First as large as can be, then with the moments, which cost some of that.
+    // First the balls grow as large as possible; then they are moved to the wanted moments, which makes them smaller.
     grow(places, false, progress);
     if (moments_ != nullptr && excess(centers_, radius_) > 1) {
       find_moments(places);
@@ -60,7 +60,7 @@ class EqualBalls {
   }
 
  private:
-  // Again and again where there is most room for one more. A solid without room for so many places has some twice; they
+  // Places one ball after another where there is most room. In a solid without room for all, some share a place; they
   // part as soon as they are pushed.
   void place(std::vector<Sphere> places, Index count) {
     while (centers_.size() < count && !places.empty()) {
@@ -74,7 +74,8 @@ class EqualBalls {
     }
   }
 
-  // The radius that each ball may have where the others have the same, and that all may have.
+  // rooms_of(): for each ball, the radius that it may have if the others have the same. room(): the radius that all may
+  // have.
   std::vector<double> rooms_of(const std::vector<Point>& centers) const {
     std::vector<double> own(centers.size());
     tbb::parallel_for(std::size_t{0}, centers.size(), [&](std::size_t i) {
@@ -110,8 +111,8 @@ class EqualBalls {
     }
   }
 
-  // The ball that keeps the others from growing goes to the place with most room, if that has more. Where the solid is
-  // thin, it could not get out by itself.
+  // Moves the ball that keeps the others from growing to the place with most room, if there is more room than where it
+  // is. In a thin solid it could not get there by being pushed. Returns whether it was moved.
   bool free_narrowest(const std::vector<Sphere>& places) {
     const std::vector<double> rooms = rooms_of(centers_);
     const auto narrowest = static_cast<std::size_t>(std::min_element(rooms.begin(), rooms.end()) - rooms.begin());
@@ -128,7 +129,7 @@ class EqualBalls {
     return true;
   }
 
-  // The smaller the balls, the more places they have room at, and the nearer they come to the moments.
+  // Tries smaller and smaller balls: these fit in more places, so they can come nearer to the wanted moments.
   void find_moments(const std::vector<Sphere>& places) {
     double least = excess(centers_, radius_);
     std::vector<Point> best = centers_;
@@ -143,7 +144,8 @@ class EqualBalls {
     radius_ = room(centers_);
   }
 
-  // Where a ball was when its depth was found: that changes by no more than the ball moves.
+  // A ball's depth, and where the ball was then. Since depth changes by no more than the ball moves, a new query is
+  // often not necessary.
   struct Asked {
     Point at;
     double depth = -kAny;
@@ -168,7 +170,8 @@ class EqualBalls {
         if ((centers[a] - centers[b]).squaredNorm() < reach * reach) pairs.emplace_back(a, b);
   }
 
-  // Each pair that is too near, half by half; returns the largest such distance.
+  // Moves the balls of each pair that is too near apart, each by half of what is missing. Returns the largest missing
+  // distance.
   double part(std::vector<Point>& centers, double radius, const std::vector<std::pair<Index, Index>>& pairs) const {
     double most = 0;
     for (const auto& [a, b] : pairs) {
@@ -183,7 +186,7 @@ class EqualBalls {
     return most;
   }
 
-  // Away from the surface, where a ball crosses it; returns the largest such distance.
+  // Moves each ball that crosses the surface inward. Returns the largest distance by which one was moved.
   double pull_in(std::vector<Point>& centers, double radius, std::vector<Asked>& asked) const {
     std::vector<double> moved(centers.size(), 0);
     tbb::parallel_for(std::size_t{0}, centers.size(), [&](std::size_t i) {
@@ -199,7 +202,8 @@ class EqualBalls {
     return *std::max_element(moved.begin(), moved.end());
   }
 
-  // The linear map between two spreads that moves least (Dowson and Landau 1982), in part.
+  // Moves the centres a part of the way by the linear map that gives them the wanted spread and moves them least
+  // (Dowson and Landau 1982).
   void approach_moments(std::vector<Point>& centers, double radius) const {
     const double n = static_cast<double>(centers.size());
     Vector mean = Vector::Zero();

@@ -11,25 +11,26 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::uint64_t kStage = 6700;  // of the random numbers
+constexpr std::uint64_t kStage = 6700;  // the stream of the random numbers
 constexpr std::size_t kLeastPlaces = 6000, kPlacesPerBall = 25;
-constexpr std::size_t kMostTried = 40;  // points of the box for each place, however thin the solid
-// Powers of 1 / 1.2207.., as of VolumePoints.
+constexpr std::size_t kMostTried = 40;  // points of the box tried for each wanted place, however thin the solid is
+// The first three powers of 1 / 1.2207.., as in VolumePoints.
 constexpr double kStepX = 0.8191725133961645, kStepY = 0.6710436067037893, kStepZ = 0.5497004779019703;
-constexpr int kFirstTrials = 24, kLaterTrials = 12;  // for each ball, where it is placed and in each sweep after
+constexpr int kFirstTrials = 24, kLaterTrials = 12;  // for each ball: when it is placed, and in each later sweep
 constexpr int kSweeps = 6;
 constexpr double kFirstStep = 0.3, kLeastStep = 1e-3, kShorter = 0.8;  // of the radius
 
 double fraction(double x) { return x - std::floor(x); }
 
-// Where overlaps are allowed, a ball that was made smaller for one may be too small beside an earlier one.
+// Whether a ball overlaps no other by more than is allowed. limit() alone does not ensure that if overlaps are allowed:
+// a ball that was made smaller because of one neighbour may then overlap an earlier one by too large a share of itself.
 bool keeps_apart(const Sphere& ball, Index own, double overlap, const std::vector<Sphere>& balls) {
   for (Index b = 0; overlap > 0 && b < balls.size(); ++b)
     if (b != own && overlap_share(ball, balls[b]) > overlap) return false;
   return true;
 }
 
-// A place where another ball is too near for any ball has a radius of 0 from then on.
+// Reduces the radius of a place such that the ball there may stay beside `ball`; to 0 if none may.
 void limit(Sphere& place, const Sphere& ball, double overlap) {
   if (!(place.radius > 0)) return;
   const double distance = (place.center - ball.center).norm();
@@ -70,7 +71,7 @@ class LargestFirst {
     return true;
   }
 
-  // Moves a ball to where it may be larger; `own`: its number, if it is in the set.
+  // Moves a ball by random steps to places where it can be larger. `own`: its number if it is in the set, else kNone.
   void climb(Sphere& ball, Index own, int trials, Random random) const {
     double step = kFirstStep;
     for (int trial = 0; trial < trials && ball.radius < cap_; ++trial) {

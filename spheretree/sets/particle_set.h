@@ -10,12 +10,12 @@ struct ParticleSet {
   ParticleFigures figures;
 };
 
-// Balls in the solid for the fit particles: as many as options.spheres, with overlaps that are allowed. Radii below
-// options.min_radius and errors above those of options.particles are there where the search found nothing better.
+// Returns options.spheres balls in the solid with allowed overlaps, for the fit `particles`. If the search finds
+// nothing better, radii may be below options.min_radius and errors above those of options.particles.
 ParticleSet particle_set(const Surface& surface, const SphereSetOptions& options, const Progress& progress);
 
-// The largest of: errors over what is allowed, and the smallest radius that is allowed over the smallest one. At most 1
-// if nothing is missed.
+// Returns the largest ratio by which a set misses its requirements: of an error to the allowed error, or of the
+// required smallest radius to the smallest radius. It is at most 1 if all requirements are met.
 double particle_excess(const ParticleSet& set, const SphereSetOptions& options, double diagonal);
 
 }  // namespace orchard::detail

@@ -6,11 +6,11 @@
 
 namespace orchard::detail {
 
-// Points spread evenly over the boundary of a union of balls, and the distance to it from inside.
+// Samples spread evenly over the boundary of a union of balls, and the distance to the boundary from inside.
 class UnionBoundary {
  public:
-  // About so many samples on all spheres together, those inside other balls included; each stands for its share of its
-  // sphere's area.
+  // `samples` is the approximate number of samples on all spheres together, including those inside other balls. Each
+  // stands for its share of the area of its sphere.
   UnionBoundary(std::span<const Sphere> balls, Index samples);
 
   struct Sample {
@@ -18,11 +18,12 @@ class UnionBoundary {
     Index ball;
     double area;
   };
-  // Those on the boundary, ball by ball.
+  // Returns the samples on the boundary, in the order of their balls.
   std::span<const Sample> samples() const { return samples_; }
   double area() const { return area_; }
-  // The distance from a point of the union to its boundary: by the nearest sample, its projection onto spheres and onto
-  // the circles where two spheres meet. Never too small, and exact as a rule.
+  // Returns the distance from a point of the union to its boundary. It is the smallest distance to a sample, to a
+  // projection onto a sphere and to a projection onto a circle where two spheres meet. It is never too small, and
+  // nearly always exact.
   double depth(const Point& point) const;
 
  private:
@@ -31,17 +32,17 @@ class UnionBoundary {
   void find_neighbors();
 
   std::span<const Sphere> balls_;
-  double slack_;  // mesh units: what is deeper in another ball is not on the boundary
+  double slack_;  // mesh units: a point deeper than this in another ball is not on the boundary
   std::vector<std::vector<Index>> neighbors_;
   std::vector<Sample> samples_;
   double area_ = 0;
   NearestSample nearest_;
 };
 
-// Point `i` of `n` spread evenly over the unit sphere.
+// Returns point `i` of `n` points that are spread evenly over the unit sphere.
 Vector on_sphere(Index i, Index n);
 
-// Random points of a surface, as many on equal areas, and how far each is from the union of the balls: 0 in it.
+// Random points of a surface with a uniform density, and the distance of each from the union of the balls, 0 inside it.
 struct SurfaceGaps {
   std::vector<Point> points;
   std::vector<double> gaps;
@@ -51,7 +52,7 @@ SurfaceGaps surface_gaps(const Surface& surface, std::span<const Sphere> balls, 
 MeanDistances mean_distances(const Surface& surface, std::span<const Sphere> balls, const SurfaceGaps& from,
                              const SphereAuditOptions& options);
 
-// `volume` as union_volume() has it.
+// Returns cuRobo's figures. `volume` is the result of union_volume().
 CuroboFigures curobo_figures(const Surface& surface, std::span<const Sphere> balls, const UnionVolume& volume,
                              const SurfaceGaps& from);
 

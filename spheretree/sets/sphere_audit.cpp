@@ -16,7 +16,8 @@
 namespace orchard {
 namespace {
 
-// Bounds on the largest gap are as near as this part of it, or of the bounding radius, whichever is larger.
+// How far apart the bounds on the largest gap may be: a part of the bounding radius or a part of the gap, whichever is
+// larger.
 constexpr DistanceTolerance kGapTolerance{1e-5, 1e-3};
 
 void require_balls(std::span<const Sphere> balls) {
@@ -48,7 +49,7 @@ bool touches(const Surface& surface, const Sphere& ball) {
   return surface.distance(ball.center) <= ball.radius || (surface.solid() && surface.inside(ball.center));
 }
 
-// The ball with the farthest point from the solid: those that cannot be it by a bound are not looked at closely.
+// Finds the ball that protrudes farthest from the solid. Only balls whose simple bound allows that are measured.
 void find_protrusion(const Surface& surface, std::span<const Sphere> balls, SphereAudit::BesideSolid& beside) {
   std::vector<double> bounds(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t b) {

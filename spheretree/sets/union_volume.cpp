@@ -16,14 +16,14 @@ namespace {
 using detail::ByRay, detail::Crossing, detail::Interval, detail::ParallelRays;
 
 constexpr int kSets = 8;  // of rays
-// The exact volume holds if the rays' agrees up to so many standard errors, or up to this part of it.
+// The exact volume is used if the rays' volume agrees with it within so many standard errors or within this part of it.
 constexpr double kAgreeingErrors = 6, kAgreeingPart = 2e-3;
-// 2^(1/2) - 1 and 3^(1/2) - 1: shifts of the sets along both axes, as far apart as can be.
+// 2^(1/2) - 1 and 3^(1/2) - 1: multiples of these shift the sets along the two axes, and keep them well apart.
 constexpr double kShiftX = 0.41421356237309515, kShiftY = 0.7320508075688772;
 
 double fraction(double x) { return x - std::floor(x); }
 
-// Integrals of 1, x and x x^T over a body, about a common origin.
+// The integrals of 1, x and x x^T over a body. All bodies have the same origin.
 struct Moments {
   double mass = 0;
   Vector first = Vector::Zero();
@@ -72,7 +72,7 @@ void join(std::span<const Interval> chords, std::vector<Interval>& parts) {
   }
 }
 
-// Where the winding number is above 0.
+// The part of a ray where the winding number is above 0.
 void find_inside(std::span<const Crossing> crossings, std::vector<Interval>& parts) {
   parts.clear();
   int winding = 0;
@@ -91,7 +91,7 @@ double common_length(std::span<const Interval> a, std::span<const Interval> b) {
   return length;
 }
 
-// Of one set of rays.
+// The results of one set of rays.
 struct SetResult {
   Moments balls, solid;
   double common = 0;

@@ -8,28 +8,29 @@
 
 namespace orchard::detail {
 
-// Points spread evenly through the box around a solid, and how many balls hold each: what a search of balls that fill a
-// volume asks after every step. A point inside the solid is worth 1 once a ball holds it, one outside costs a weight.
+// Points spread evenly through the box around a solid, and how many balls hold each. A search of balls that fill the
+// solid's volume uses them after every step. A point inside the solid adds 1 (or its own weight) once a ball holds it;
+// a point outside costs a weight.
 class VolumePoints {
  public:
-  // About `inside` points in the solid, and as many around it as its box has, enlarged by `margin` of its longest side.
-  // `weights`: what a point counts more.
+  // Spreads about `inside` points in the solid, equally dense through its box, which is enlarged by `margin` of its
+  // longest side. `weights`: how much more a point counts.
   VolumePoints(const Surface& surface, std::size_t inside, double margin, const WeightField& weights = {});
 
   std::size_t inside_count() const { return inside_count_; }
   const Box& box() const { return box_; }
-  // What a held point outside costs, all alike; until then 1.
+  // Sets what each held point outside costs; 1 if it is not called.
   void set_outside_weight(double weight);
 
   void add(const Sphere& ball) { count(ball, 1); }
   void remove(const Sphere& ball) { count(ball, -1); }
 
-  // What the worth of all held points changes by: with one ball more, one less, or one in another's place.
+  // By what the worth of all held points changes if a ball is added, removed or replaced by another.
   double gain_of(const Sphere& ball) const { return worth_in(ball, 0); }
   double loss_of(const Sphere& ball) const { return worth_in(ball, 1); }
   double gain_of_change(const Sphere& from, const Sphere& to) const;
 
-  // How many points in the solid no ball holds, and how many outside are held.
+  // The number of points in the solid that no ball holds, and of points outside that a ball holds.
   std::size_t inside_open() const { return inside_count_ - inside_held_; }
   std::size_t outside_held() const { return outside_held_; }
 

@@ -10,7 +10,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kCells = 48;  // along each side
+constexpr int kCells = 48;  // the number of cells along each side
 
 struct Meets {
   const Box& cell;

@@ -6,15 +6,15 @@
 
 namespace orchard::detail {
 
-// Where balls lie, side by side, for the search's most frequent question.
+// The places of balls, stored for vector instructions, for the most frequent query of the search.
 class BallPlaces {
  public:
   void resize(Index count);
   void set(Index ball, const FittedBall& now);
 
-  // How far a ball is from another: to its centre, less half its radius.
-  // The other balls that may be among the `count` nearest to a ball once each one's distance was multiplied by a number
-  // from `least` to `most`, both above 0; ascending. About one step for each four balls.
+  // Returns the other balls, ascending, that may be among the `count` nearest to a ball if the distance of each is
+  // multiplied by some number between `least` and `most`, both above 0. The distance of a ball is that of its centre
+  // less half its radius. Takes about one step for four balls.
   std::vector<Index> nearest(Index of, std::size_t count, double least, double most) const;
 
  private:

@@ -6,12 +6,12 @@
 namespace orchard::detail {
 namespace {
 
-// A sample that decided a radius is inside, whatever the rounding.
+// The factor on a radius with which the sample that determines the radius is inside in spite of rounding.
 constexpr double kInside = 1 + 1e-12;
-// Balls that are apart by less, as a part of their radii, count as meeting.
+// The factor on radii with which balls that touch count as meeting in spite of rounding.
 constexpr double kMeeting = 1 + 1e-9;
-constexpr std::size_t kMostApart = 16;                 // balls that are fitted side by side
-constexpr std::uint64_t kNaming = 0x9e3779b97f4a7c15;  // odd, with bits all over
+constexpr std::size_t kMostApart = 16;                 // the maximum number of balls that are fitted in parallel
+constexpr std::uint64_t kNaming = 0x9e3779b97f4a7c15;  // an odd factor with many bits, for hash values
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void LevelBalls::find_samples(LevelBall& ball) const {
   append_samples(ball, 0);
 }
 
-// Of those from `first` on.
+// Appends the samples in the ball with numbers of at least `first`.
 void LevelBalls::append_samples(LevelBall& ball, Index first) const {
   regions_.append_samples(ball.path_region, first, ball.center, ball.radius * ball.radius * kInside, ball.samples);
 }
@@ -45,7 +45,7 @@ void LevelBalls::recount() {
 }
 
 std::vector<Index> LevelBalls::held_only_by(std::span<const Index> balls) const {
-  thread_local std::vector<Index> count;  // of these balls that hold each sample; all 0 between calls
+  thread_local std::vector<Index> count;  // how many of these balls contain each sample; all 0 between calls
   count.resize(std::max<std::size_t>(count.size(), regions_.samples().size()), 0);
   for (Index b : balls)
     for (Index s : balls_[b].samples) ++count[s];

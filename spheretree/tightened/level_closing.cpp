@@ -9,13 +9,13 @@
 namespace orchard::detail {
 namespace {
 
-// Between an uncovered region's corner and its farthest point: corners themselves lie on other balls, and would be let
-// go again.
+// How far from an uncovered region's corner towards its farthest point a held point is placed. The corners themselves
+// lie on other balls, so a ball that took them would soon give them back.
 constexpr double kInward = 0.1;
 
-// Finds the balls that an uncovered region costs least. Few path regions hold its points, and only balls in these come
-// into question. The objective is convex in the looseness: a rise is at least the slope times the growth, which spares
-// most of them.
+// Finds the balls for which an uncovered region costs least. Only balls in the few path regions that hold its points
+// are candidates. The objective is convex in the looseness, so its rise is at least the slope times the growth: by this
+// bound most candidates are skipped.
 class CandidateSearch {
  public:
   CandidateSearch(const LevelBalls& balls, const LevelObjective& objective, double bounding_radius)
@@ -44,8 +44,8 @@ class CandidateSearch {
     Index ball;
   };
 
-  // Of the balls in these path regions; the first, if there are several. The last point, which is an uncovered region's
-  // farthest, says which to begin at.
+  // The cheapest ball in these path regions; of equals, the first. The search begins with the ball that the last point,
+  // which is the region's farthest, suggests.
   CoverCandidate cheapest(std::span<const Point> points, std::span<const Index> path_regions) const {
     std::vector<Candidate> candidates;
     for (Index r : path_regions)
@@ -80,11 +80,12 @@ class CandidateSearch {
   const LevelBalls& balls_;
   const LevelObjective& objective_;
   double bounding_radius_;
-  std::vector<double> slopes_;                // of each ball's cost, by its radius
-  std::vector<std::vector<Index>> balls_in_;  // each path region, ascending
+  std::vector<double> slopes_;                // derivative of each ball's cost by its radius
+  std::vector<std::vector<Index>> balls_in_;  // balls in each path region, ascending
 };
 
-// Each ball to what it has taken in and to the samples that it alone holds. Balls that are apart share no sample.
+// Fits each ball again, to what it was given and to the samples that no other ball holds. Balls that are apart share no
+// sample.
 void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, LevelBalls& balls) {
   std::vector<Index> order;
   for (Index b = 0; b < balls.size(); ++b)

@@ -7,12 +7,13 @@
 
 namespace orchard::detail {
 
-// How a level takes in what its samples missed: each uncovered region goes to the ball that it costs least, which is
-// fitted again to it and to the samples that it alone holds, and the region's farthest point becomes a sample. With
-// `hold`, points near its corners do too. An uncovered region that lies in no path region as a whole goes by its
-// farthest point alone; where not even that has a ball, it is left for the levels above to mend.
-// The closing of a merged level (merging/merge_closing.h) finds candidates by the same rule, but down a tree, and runs
-// its rounds to the end. This is one round, after which the search may go on and balls may let go of what they took in.
+// One round of closing a tightened level, that is, of covering what its samples missed. Each uncovered region is given
+// to the ball for which it costs least. This ball is fitted again to the region and to the samples that no other ball
+// holds, and the region's farthest point becomes a sample; with `hold`, so do points near the region's corners. If no
+// path region contains the whole uncovered region, only its farthest point is given to a ball; if no path region
+// contains even that, the region is left to the levels above.
+// After this round the search may continue, and balls may give points back. The closing of a merged level
+// (merging/merge_closing.h) finds candidates by the same rule, but down a tree, and runs all its rounds in one go.
 void close_regions(const Surface& surface, const LevelObjective& objective,
                    const std::vector<UncoveredRegion>& uncovered, bool hold, LevelBalls& balls);
 

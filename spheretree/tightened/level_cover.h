@@ -13,26 +13,27 @@ struct PlacedBall {
   Index path_region = kNone;
 };
 
-// A change that is being tried: some balls are gone, and others are there instead.
+// A change that is tried: some balls are replaced by others.
 struct Change {
   std::span<const Index> gone;
   std::span<const PlacedBall> added;
 };
 
-// The ends of an arc that bounds a piece of surface without a path, or a corner in such a piece twice. In each triangle
-// these arcs bulge into the piece, so its convex hull is that of such points.
+// The ends of an arc on the boundary of an uncovered piece of the surface; both are the same for a corner of a triangle
+// in such a piece. The arcs in a triangle bulge into the piece, so the convex hull of the piece is that of these
+// points.
 struct OpenArc {
   Point begin, end;
 };
 
-// Says exactly which part of the surface the path regions of a level leave uncovered, and which part they would leave
-// after a change to a few balls. Const functions may run in parallel, each with its own scratch.
+// Computes exactly which part of the surface the path regions of a level leave uncovered, at present or after a change
+// of a few balls. Const functions may run in parallel, each with a scratch of its own.
 class LevelCover {
  public:
   struct Scratch {
     NearBalls near;
     std::vector<Index> triangles;
-    std::vector<Index> open;  // of the triangles that open_arcs() looked at, those with any
+    std::vector<Index> open;  // the triangles of the last open_arcs() that have such arcs
   };
 
   // `upper`: the tree above the level, with leaves where it has leaves already; path_ends[r]: the last ball on the
@@ -44,11 +45,14 @@ class LevelCover {
   void replace(Index ball, const PlacedBall& by);
   bool in_path_region(Index path_region, const Point& point) const;
 
-  // The triangles that would not be covered without these balls, ascending. Precondition: they are with them.
+  // Finds the triangles that would not be covered without these balls, ascending. Precondition: they are covered with
+  // them.
   void triangles_resting_on(std::span<const Index> balls, Scratch& scratch, std::vector<Index>& triangles) const;
-  // Those near a ball, ascending, but for most of those that one path without that ball surely holds.
+  // Finds the triangles near a ball, ascending, without most of those that one path without this ball certainly
+  // contains.
   void triangles_near(Index ball, std::vector<Index>& triangles) const;
-  // Appends what of some triangles is uncovered inside the closed sphere after the change; or says whether nothing is.
+  // Appends the arcs around the parts of some triangles that are uncovered inside the closed sphere after the change;
+  // the second function only returns whether there are none.
   void open_arcs(std::span<const Index> triangles, const Sphere& where, const Change& change, Scratch& scratch,
                  std::vector<OpenArc>& arcs) const;
   bool covered(std::span<const Index> triangles, const Sphere& where, const Change& change, Scratch& scratch) const;
@@ -64,7 +68,7 @@ class LevelCover {
   PathForest upper_;
   std::vector<Index> path_ends_, region_at_;
   std::vector<PlacedBall> balls_;
-  std::vector<std::vector<Index>> balls_in_;  // each path region
+  std::vector<std::vector<Index>> balls_in_;  // by path region
 };
 
 }  // namespace orchard::detail

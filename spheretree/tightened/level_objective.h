@@ -7,7 +7,8 @@
 namespace orchard::detail {
 
 // A level's objective is the sum over its balls of t^power (1 + (t / cap)^cap_power) (radius / R)^size_power, where t
-// is the looseness as a multiple of `unit`. The cap keeps the largest near the others where the power is low.
+// is the looseness as a multiple of `unit`. If the power is low, the factor with `cap` keeps the loosest ball near the
+// others.
 struct LevelCost {
   double power = 4;
   double cap = 0, cap_power = 8;  // cap 0: none
@@ -17,10 +18,10 @@ struct LevelCost {
   const WeightField* weights = nullptr;  // where looseness counts more; nullptr: alike everywhere
 };
 
-// What a level's search is to keep low. It does not change once its unit is known.
+// The objective that the search of a level minimizes. It does not change once its unit is known.
 class LevelObjective {
  public:
-  // `start`: the balls that set the unit if `by` leaves that open.
+  // If by.unit is 0, the unit is the mean looseness of `start`.
   LevelObjective(const LevelCost& by, std::span<const LevelBall> start, double bounding_radius);
 
   double cost(const FittedBall& ball) const;

@@ -10,7 +10,7 @@
 namespace orchard::detail {
 namespace {
 
-// Large balls need few samples for each to be judged by.
+// A few samples for each ball are enough to judge it by.
 constexpr Index kEnoughSamplesPerBall = 64, kFewestSamples = 2000;
 constexpr int kShrinks = 12;             // of the ball that touches the surface in a sample
 constexpr double kEmpty = 1 - 1e-3;      // a ball whose centre is as far from the surface, in radii, touches it
@@ -51,7 +51,8 @@ Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling)
   samples.starts.resize(count);
   tbb::parallel_for(Index{0}, count, [&](Index p) {
     const Index from = sampled[p];
-    // Edges' points are evenly spaced, without relaxation: they are known to the last digits.
+    // Points on edges are only spaced evenly, so all their digits are reliable. Relaxation makes the last digits of
+    // other points arbitrary: these are rounded first.
     const bool exact = sampling.origins[from] == PointOrigin::edge;
     const Point& point = sampling.points[from];
     samples.points[p] = on_fine_lattice(exact ? point : surface.closest(on_coarse_lattice(point)).position);

@@ -11,10 +11,10 @@
 
 namespace orchard::detail {
 
-class [[gnu::visibility("hidden")]] LevelSearch;  // as BallFitter is
+class [[gnu::visibility("hidden")]] LevelSearch;  // hidden like BallFitter
 
-// Large-neighbourhood search for balls with a low objective. Trials run in batches, each on the balls as they were
-// before the batch, and are applied in order, so the result does not depend on threads.
+// Large-neighbourhood search for balls with a low objective. Trials run in batches: each is made from the balls as they
+// were before the batch, and they are applied in order, so the result does not depend on the number of threads.
 class LevelSearch {
  public:
   LevelSearch(const Surface& surface, const LevelObjective& objective, BallMeasure measure, std::uint64_t seed,
@@ -23,10 +23,10 @@ class LevelSearch {
           return TrialScratch(surface, measure);
         }) {}
 
-  // No sample is lost.
+  // Searches with all samples held.
   void run(LevelBalls& balls, Index trials, const Progress& progress);
-  // The balls cover the surface, and go on doing so: what a trial leaves open is closed before it is judged. `cover`
-  // holds the same balls, before and after.
+  // Searches among balls that cover the surface, which they do afterwards, too: what a trial uncovers is closed before
+  // the trial is judged. `cover` must hold the same balls, and does so afterwards.
   void run_covering(LevelBalls& balls, Index trials, LevelCover& cover);
 
  private:
@@ -39,11 +39,11 @@ class LevelSearch {
   const Surface& surface_;
   LevelObjective objective_;
   std::uint64_t seed_;
-  Index level_;                  // for the random numbers
+  Index level_;                  // selects the random numbers
   std::uint64_t trials_ = 0;     // so far
-  std::vector<Index> failures_;  // trials that began at each ball since it was last changed by one
+  std::vector<Index> failures_;  // trials in vain that began at each ball since one last changed it
   std::vector<double> costs_;    // of the balls
-  std::vector<double> wanted_;   // as propose_trial() takes it
+  std::vector<double> wanted_;   // the argument of propose_trial()
   tbb::enumerable_thread_specific<TrialScratch> scratches_;
 };
 

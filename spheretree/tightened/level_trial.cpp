@@ -23,20 +23,22 @@ constexpr double kAllAnewShare = 0.3,
 constexpr Index kFewForMoves = 8;          // balls, up to which there is no such move
 constexpr Index kFew = 128;                // balls, up to which more is put at stake at a time
 constexpr double kWorthwhile = 1e-6;       // part of the cost that must go
-// By what part balls may become less loose in the last round.
+// By what part of its looseness a ball may still get tighter in the last round: an estimate.
 constexpr double kHoped = 0.3;
 
-// Neighbours are the nearest ones after each distance was multiplied by a number from the first to the second.
+// Neighbours are chosen at random: each distance is multiplied by a random number between these two, then the nearest
+// are taken.
 constexpr double kNearer = 0.8, kFarther = 1.25;
 
-// The generator when so many more numbers were drawn. Compilers make one step of it.
+// The state of the generator after so many more draws. Compilers turn the loop into one step.
 Random after(Index draws, Random random) {
   for (Index i = 0; i < draws; ++i) random.bits();
   return random;
 }
 
-// What a trial's ball is offered: the samples that were given up, and how loose the balls so far would get by each. In
-// single precision: which of two balls gets as good as equally loose by a sample does not matter.
+// What a ball of the trial can choose from: the samples that no other ball of the level holds, each with the looseness
+// that the best ball so far would need for it. Single precision is enough: between two balls that would become equally
+// loose it does not matter which takes the sample.
 struct Offered {
   std::size_t count;
   const float *x, *y, *z;
@@ -44,7 +46,8 @@ struct Offered {
   float *min, *owner;   // the least looseness, and the ball (whole numbers, as wide as the rest)
 };
 
-// Gives the ball the samples that it gets less loose by than the balls so far; looseness as looseness_with() has it.
+// Gives the ball those samples that it can hold with less looseness than the best of the balls before it. Looseness is
+// that of looseness_with().
 inline void divide(const FittedBall& ball, Index number, const Offered& to) {
   const auto cx = static_cast<float>(ball.center.x()), cy = static_cast<float>(ball.center.y()),
              cz = static_cast<float>(ball.center.z()), distance = static_cast<float>(ball.center_distance);
@@ -87,8 +90,8 @@ class Proposal {
   }
 
  private:
-  // A ball, dear ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here,
-  // with the neighbours that must stand in for it.
+  // Chooses a ball, costly ones more often, and some of its neighbours. Sometimes also a cheap ball from anywhere that
+  // is to move here, together with neighbours that must take over its samples.
   void choose() {
     const bool as_wanted = !very_few() && random_.uniform() < kWantedShare;
     trial_.chosen.push_back(as_wanted ? pick_wanted() : pick(1 + random_.below(3), true));
@@ -106,13 +109,13 @@ class Proposal {
     return std::min(static_cast<Index>(at - wanted_.begin()), balls_.size() - 1);
   }
 
-  // One to `max`, mostly one: trials of few balls cost little and succeed most.
+  // A random number from 1 to `max`, mostly small: trials of few balls cost little and succeed most often.
   std::size_t few_neighbors(std::size_t max) {
     const std::size_t one = random_.below(max), other = random_.below(max);
     return 1 + std::min(one, other);
   }
 
-  // The loosest, or the tightest, of some balls at random.
+  // The loosest (or the tightest) of `tournament` balls that are picked at random.
   Index pick(std::uint64_t tournament, bool loose) {
     Index best = static_cast<Index>(random_.below(balls_.size()));
     for (std::uint64_t i = 1; i < tournament; ++i) {
@@ -122,7 +125,8 @@ class Proposal {
     return best;
   }
 
-  // Every other ball has a number of its own that its distance is multiplied by; few of them are looked at.
+  // Each other ball of the level has its own random factor, but only those of nearby balls are computed: the result
+  // is as if all had been drawn.
   void add_neighbors(Index of, std::size_t how_many) {
     std::vector<std::pair<double, Index>> near;
     for (Index b : balls_.places().nearest(of, how_many, kNearer, kFarther)) {
@@ -137,7 +141,7 @@ class Proposal {
   }
 
   bool few() const { return balls_.size() <= kFew; }
-  // So few that a level is caught in what is nearly best unless most of them are at stake at a time.
+  // With so few balls the search gets stuck in a local minimum unless most of them change at a time.
   bool very_few() const { return balls_.size() <= kFewForMoves; }
 
   bool is_chosen(Index ball) const {
@@ -173,7 +177,7 @@ class Proposal {
     for (int k = 0; k < restarts; ++k) restart(trial_.balls[random_.below(trial_.balls.size())], freed_);
   }
 
-  // Near one of the samples, in one of its path regions.
+  // Starts a ball over near one of the samples, in a path region that holds the sample.
   void restart(LevelBall& ball, const std::vector<Index>& samples) {
     const Index sample = samples[random_.below(samples.size())];
     Point center = samples_.starts[sample];
@@ -183,8 +187,9 @@ class Proposal {
     ball.path_region = regions[random_.below(regions.size())];
   }
 
-  // Lloyd's iteration among the trial's balls. False: a sample lies in none of their path regions, a ball is left
-  // unused, or the balls are so loose that another round would not make them worthwhile.
+  // Lloyd's iteration among the trial's balls: samples to balls, balls to samples. Returns false if a sample lies in no
+  // path region of theirs, if a ball is left without samples, or if the balls are so loose that another round would not
+  // make the trial worthwhile.
   bool share_out() {
     trial_.needs.resize(trial_.balls.size());
     gather_freed();
@@ -194,7 +199,7 @@ class Proposal {
     return std::none_of(trial_.needs.begin(), trial_.needs.end(), [](const auto& list) { return list.empty(); });
   }
 
-  // Fits each ball to what it needs, the loosest first: where a trial is to fail, it is mostly by these.
+  // Fits each ball to its samples, the loosest first: a trial that is going to fail mostly fails by these.
   bool fit_all(bool last) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
@@ -227,7 +232,7 @@ class Proposal {
     }
   }
 
-  // For each sample given up, 0 if it lies in a path region, else infinity.
+  // For each sample to be shared out: 0 if it lies in the path region, else infinity.
   const std::vector<float>& barred(Index path_region) {
     const auto known =
         std::find_if(barred_.begin(), barred_.end(), [&](const auto& b) { return b.first == path_region; });
@@ -237,7 +242,7 @@ class Proposal {
     return bars;
   }
 
-  // Has each sample go to the ball that gets least loose by it.
+  // Gives each sample to the ball that can hold it with the least looseness.
   bool divide_freed() {
     auto& [fitter, x, y, z, min, owners] = scratch_;
     std::fill(min.begin(), min.end(), kBarred);

@@ -8,28 +8,29 @@
 
 namespace orchard::detail {
 
-// One step of the large-neighbourhood search: some balls, and what to put in their place.
+// One step of the large-neighbourhood search: some balls, and their replacements.
 struct LevelTrial {
   std::vector<Index> chosen;              // balls of the level
-  std::vector<LevelBall> balls;           // in their place, as many; empty: nothing better was found
-  std::vector<std::vector<Point>> needs;  // what each of these must hold
-  Index moved = kNone;  // into `chosen`: the one that leaves its place; those after it lie near that place
-  double max_cost = 0;  // that the new balls must stay below for the trial to be worthwhile
+  std::vector<LevelBall> balls;           // their replacements, as many; empty if nothing better was found
+  std::vector<std::vector<Point>> needs;  // the points that each replacement must contain
+  Index moved = kNone;  // the ball that moves elsewhere, an index into `chosen`; those after it are near its new place
+  double max_cost = 0;  // the cost of the replacements must be below this
 };
 
-struct [[gnu::visibility("hidden")]] TrialScratch;  // as BallFitter is
+struct [[gnu::visibility("hidden")]] TrialScratch;  // like BallFitter
 
-// What trials are worked out in, kept from one to the next for the room that its lists have: one per thread.
+// The memory of trials, which is reused from one trial to the next; one per thread.
 struct TrialScratch {
   TrialScratch(const Surface& surface, BallMeasure measure) : fitter(surface, measure) {}
   BallFitter fitter;
-  std::vector<float> x, y, z;     // of the samples that were given up
-  std::vector<float> min, owner;  // how loose the trial's balls get by each at least, and which does
+  std::vector<float> x, y, z;     // the samples that the chosen balls gave up
+  std::vector<float> min, owner;  // for each sample, the smallest looseness that a ball gets by it, and this ball
 };
 
-// A few neighbouring balls give up what only they hold, some start over, and they share it out again. The trial has
-// balls if the objective falls and every sample is held; their samples are not found yet. `wanted`: how much each ball
-// is wanted as the one that a trial begins at, summed up over the balls. Only `random` decides which trial it is.
+// Proposes a trial. A few neighbouring balls give up the samples that only they contain, some of them move elsewhere,
+// and the samples are divided among them again. The trial has replacements if the objective falls and every sample is
+// contained; the lists of samples of the replacements are not filled. `wanted` has the cumulative weights with which
+// each ball is chosen as the first one of a trial. The trial depends only on the state of `random`.
 LevelTrial propose_trial(const LevelBalls& balls, const LevelObjective& objective, std::span<const double> wanted,
                          Random random, TrialScratch& scratch);
 

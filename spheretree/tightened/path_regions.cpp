@@ -7,9 +7,10 @@
 namespace orchard::detail {
 namespace {
 
-// A point this far outside a path's last ball, in radii, is not in it, whatever the rounding.
+// In radii: a point that is farther than this from the centre of a path's last ball is not in it, whatever the
+// rounding.
 constexpr double kInQuestion = 1 + 1e-9;
-// Sides of a grid's cells, in mean radii of the balls: a point is then asked about few of them.
+// The side of a grid's cells, in mean radii of the balls. It is such that few balls have to be tested for a point.
 constexpr double kCellSide = 1;
 constexpr double kMostCells = 64;  // along the grid's longest side
 
@@ -34,7 +35,7 @@ void PathRegions::append_samples(Index path_region, Index first, const Point& ce
   while (begin < all.size()) {
     const std::size_t measured = at.measure_block(begin, center, squared);
     std::size_t count = 0;
-    for (std::size_t k = 0; k < measured; ++k) {  // without a branch: what is too far is written over
+    for (std::size_t k = 0; k < measured; ++k) {  // without a branch: a sample that is too far is overwritten
       within[count] = all[begin + k];
       count += static_cast<std::size_t>(squared[k] <= squared_radius);
     }

@@ -23,49 +23,53 @@
 namespace orchard::detail {
 namespace {
 
-// A level is as coarse as its samples allow.
+// The smallest number of samples for each ball of a level.
 constexpr Index kSamplesPerBall = 8;
-// Where samples end it, a level that has not so many times the balls of the one above is left out: it would cost more
-// than all above and be hardly tighter.
+// If the number of samples limits a level, the level is left out unless it has this many times the balls of the level
+// above. It would cost more than all levels above and be hardly tighter.
 constexpr double kWorthALevel = 1.5;
-// The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
+// The search in levels that cover the surface tests every triangle in reach, so it is shortened for meshes with more
+// than this number of triangles.
 constexpr double kFewTriangles = 4000;
-constexpr int kTighteningRounds = 8;   // of closing a level, after those that search
-constexpr double kSearchShare = 0.15;  // of the trials, in each searching round
-// Levels of so few balls have hundreds of samples for each, which hide little: a part of the searching rounds will do.
+constexpr int kTighteningRounds = 8;   // rounds of closing a level after the rounds with search
+constexpr double kSearchShare = 0.15;  // the share of the trials in each round with search
+// Levels of at most this many balls have hundreds of samples for each ball, so fewer rounds with search suffice.
 constexpr Index kFewBalls = 16;
 constexpr double kShareForFewBalls = 0.25;
 
-// The starts of a first level are tried on so many samples, and with so many trials for each ball.
+// The numbers of samples and of trials with which the starts of a first level are compared.
 constexpr Index kExploringSamples = 800, kExploringPerBall = 32, kExploringTrials = 8;
-// In all starts together that are tried, and that are carried through, at most: with many balls, one start is like
-// another. Two are carried through where as many are tried.
+// The maximum number of balls in all starts that are compared, and in all that are completed. With many balls, starts
+// differ little. At least two starts are completed if two are compared.
 constexpr Index kExploredBalls = 800, kCarriedBalls = 48;
 
 constexpr double kLogOfPlaces =
     18;  // binary, of the places on the last level of a tree whose nodes all had so many children
 
-// A level of more balls than this gets no more trials than one of so many, and fewer rounds: each ball then counts the
-// less, and the levels below balls that are small against the triangles gain little by a search.
+// A level of more balls than this gets no more trials than a level of this many balls, and fewer rounds. A single ball
+// matters less there, and levels below balls that are small compared with the triangles gain little by a search.
 constexpr double kFullySearchedBalls = 1000;
-// Below this share of a full search, the rounds that only tighten are left out, too; what they let go of is open again.
+// If the search is shortened to less than this share, the rounds that only tighten are left out, too, because they
+// would uncover parts of the surface again.
 constexpr double kTighteningShare = 0.5;
-constexpr double kTightenedTwiceShare = 0.1;  // below it, a closed level is tightened once, not twice
+constexpr double kTightenedTwiceShare =
+    0.1;  // below this share, a level that covers the surface is tightened once, not twice
 
-constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
-constexpr Index kStartsForMaximum = 2;          // carried through with that objective, too, of the first level
-// Levels whose figures differ by less, in R, are as tight as each other: they are not known any better.
+constexpr std::uint64_t kComparingRays = 4000;  // for the outside volumes of candidates
+constexpr Index kStartsForMaximum = 2;          // starts of the first level that also use the objective `maximum`
+// Levels whose figures differ by less than this, in R, count as equally tight, because the figures are not more
+// precise.
 constexpr double kSameTightness = tolerance::kInaccuracy;
-// Where the balls' mean reach is so many times their mean inaccuracy, other measures may fit them better.
+// If the mean measure of the balls is more than this many times their mean inaccuracy, other measures may fit better.
 constexpr double kFarAbove = 1.25;
-// Levels that are tighter than they must be by less than this part of R are kept from growing any more.
+// Levels that satisfy the rule by less than this part of R are prevented from growing further.
 constexpr double kCloseCall = 0.002;
-// Beside a tree whose figures no level may exceed, what is looser is tried again with so much more weight on the size:
-// mostly it is the outside volume that is above.
+// If a level exceeds the figures of a given tree, it is tried again with more weight on the size, because the outside
+// volume is usually the figure that is exceeded.
 constexpr int kAttempts = 2;
 constexpr double kMoreSizePower = 0.25;
 
-// Of a full search, that a level of so many balls gets.
+// Returns the share of a full search that a level with this number of balls gets.
 double search_share(Index balls) { return std::min(1.0, kFullySearchedBalls / std::max<Index>(1, balls)); }
 
 Index trials_for(Index balls, const Work& work) {
@@ -76,12 +80,12 @@ int searching_rounds(Index balls, const Work& work) {
   return static_cast<int>((balls <= kFewBalls ? kShareForFewBalls : search_share(balls)) * work.searching_rounds);
 }
 
-// How many starts of the first level are tried on few samples.
+// Returns the number of starts of the first level that are compared on few samples.
 Index tried_starts(Index balls, const Work& work) {
   return std::clamp<Index>(kExploredBalls / std::max<Index>(1, balls), 1, work.explored);
 }
 
-// How many starts of a level are carried through.
+// Returns the number of starts of a level that are completed.
 Index carried_starts(Index level, Index balls, const Work& work) {
   if (level > std::size(work.starts)) return 1;
   const Index starts = work.starts[level - 1];
@@ -90,15 +94,17 @@ Index carried_starts(Index level, Index balls, const Work& work) {
   return std::min({starts, worthwhile, tried_starts(balls, work)});
 }
 
-// As many as it is worth. Yet the text format has room for as many below every node: it is to stay small.
+// Returns the maximum number of children of a node. More children help, but the text format has places for this number
+// below every node, so it must stay small.
 Index max_children(const TightenOptions& options) {
   if (!options.spheres.empty()) return kMaxFanOut;
   const auto roomy = static_cast<Index>(std::exp2(kLogOfPlaces / options.depth));
   return std::max(2 * options.branching, std::min(kMaxFanOut, roomy));
 }
 
-// High powers at the top: what is loose there is loose all the way down. Low ones below keep the mean low; the cap, the
-// largest ball, and the size, the volume.
+// Returns the cost of a level. Upper levels have high powers, because a loose ball there makes all balls below it
+// loose. On lower levels, a low power minimises the mean, the cap limits the loosest ball, and the power of the radius
+// limits the volume.
 LevelCost cost_for(Objective objective, Index level, Index depth) {
   switch (objective) {
     case Objective::balanced:
@@ -117,13 +123,13 @@ LevelCost cost_for(Objective objective, Index level, Index depth) {
 
 std::uint64_t seed_of(std::uint64_t seed, Index start) { return seed + 0x100000001u * start; }
 
-// Neither is bought with much of the other.
+// Returns the product of mean and maximum, so that neither is reduced at a high cost of the other.
 double mean_times_max(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()) *
          *std::max_element(values.begin(), values.end());
 }
 
-// Of balls on few samples: their volume stands for what they hold outside.
+// Returns the looseness of balls on few samples. The volume of the balls stands for the volume outside.
 double looseness(const LevelSolver& solver, const WeightField& weights) {
   std::vector<double> values;
   double volume = 0;
@@ -179,13 +185,13 @@ TightenBuild Tightener::run_beside(const Tightener& other, Index same, std::span
 
 TightenBuild Tightener::result() {
   SphereTree tree = partial_.tree();
-  // It holds the surface, however it may have grown with what is below it.
+  // The original root covers the surface even if the root has grown because of the levels below it.
   if (octree_.root().radius < tree.nodes[0].sphere.radius) tree.nodes[0].sphere = octree_.root();
   tree.branching = std::max(tree.branching, options_.branching);
   return {std::move(tree), report_};
 }
 
-// The other one's levels down to this one, as they have become with those below.
+// Restores the other tightener's levels down to this one, as they are after its lower levels were built.
 void Tightener::restore_from(const Tightener& other, Index level) {
   partial_ = other.partial_.down_to(level);
   excesses_.assign(other.excesses_.begin(), other.excesses_.begin() + level + 1);
@@ -211,7 +217,7 @@ LevelOptions Tightener::options_for(Index level, Index balls) const {
   return options;
 }
 
-// What the next level is built with; nothing if there is no next level.
+// Returns the options of the next level, or nullopt if there is no next level.
 std::optional<LevelOptions> Tightener::next_level(Index level) const {
   const auto refined = static_cast<double>(
       std::count_if(partial_.last().begin(), partial_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
@@ -246,8 +252,8 @@ bool Tightener::build_level(Index level) {
   return true;
 }
 
-// First on the levels so far. Where no cover on these keeps to what is allowed, on the levels that the other one has;
-// where none on those does either, the level is the other one's.
+// Builds a level below the present levels. If no cover satisfies the limits, it builds the level below the levels of
+// the other tightener. If that fails, too, it copies the level of the other one.
 void Tightener::build_level_beside(Index level, const Tightener& other, const AllowedLooseness& allowed) {
   if (take_cover_within(level, other.partial_, allowed)) return;
   const bool differed = differs_;
@@ -257,8 +263,8 @@ void Tightener::build_level_beside(Index level, const Tightener& other, const Al
   report_.levels.push_back(other.report_.levels[level - 1]);
 }
 
-// Covers as usual, but that balls looser than any of the usual tree's cost much more: where the usual level is tight,
-// the maximum is what most covers would break the rule by. False: none keeps to what is allowed.
+// Searches covers as usual, but balls that are looser than the loosest of the usual tree cost much more, because most
+// covers would exceed the limits by their maximum. Returns false if no cover satisfies the limits.
 bool Tightener::take_cover_within(Index level, const PartialTree& usual, const AllowedLooseness& allowed) {
   std::optional<LevelOptions> options = next_level(level);
   if (!options) return false;
@@ -295,7 +301,8 @@ void Tightener::take_tightest(std::vector<Candidate>& all) {
   take(std::move(best));
 }
 
-// Whatever is looser in a figure breaks the rule by that. The others are compared by their figures' product.
+// Sets the excess of each candidate: the amount by which it exceeds a limit. Candidates within the limits are compared
+// by the product of their figures.
 void Tightener::hold_to(const AllowedLooseness& within, std::vector<Candidate>& all) const {
   const auto& [allowed, octree] = within;
   const double radius = surface_.bounding_radius();
@@ -309,7 +316,7 @@ void Tightener::hold_to(const AllowedLooseness& within, std::vector<Candidate>& 
   }
 }
 
-// Of those that keep the rule; of none does, the one that breaks it least.
+// Returns the tightest candidate that satisfies the rule or, if there is none, the one that breaks it least.
 Tightener::Candidate& Tightener::tightest(std::vector<Candidate>& all) {
   return *std::min_element(all.begin(), all.end(), [](const Candidate& one, const Candidate& other) {
     if ((one.excess <= 0) != (other.excess <= 0)) return one.excess <= 0;
@@ -329,7 +336,8 @@ void Tightener::add_candidates(std::vector<Start> starts, std::vector<Candidate>
   }
 }
 
-// The first level is small: all of them. Of the others, until one keeps the rule.
+// Adds candidates from other starts: from all of them for the first level, which is small, and for other levels until
+// one satisfies the rule.
 void Tightener::add_other_candidates(const LevelOptions& options, std::vector<Candidate>& all) {
   std::vector<Start> starts = other_starts(options);
   if (options.level == 1) return add_candidates(std::move(starts), all);
@@ -339,7 +347,8 @@ void Tightener::add_other_candidates(const LevelOptions& options, std::vector<Ca
   }
 }
 
-// A ball that is looser than its parent gives way to a ball like that, which holds whatever it is to hold.
+// Replaces each ball that is looser than its parent by a copy of the parent, which contains the same part of the
+// surface.
 void Tightener::cap(Candidate& candidate) const {
   for (std::size_t i = 0; i < candidate.inaccuracies.size(); ++i) {
     LevelNode& node = candidate.partial.last()[i];
@@ -350,7 +359,7 @@ void Tightener::cap(Candidate& candidate) const {
   }
 }
 
-// By how much a level with this tightness is looser than it may be, as a part of R; not above 0: it is not.
+// Returns by how much a level with this tightness exceeds the rule, as a part of R; at most 0 if it satisfies the rule.
 double Tightener::excess(const LevelTightness& level, Index balls) {
   if (!goes_on_everywhere(options_.refinement)) return 0;
   const LevelTightness above = tightness(inaccuracies_), octree = octree_.bound(balls);
@@ -358,7 +367,7 @@ double Tightener::excess(const LevelTightness& level, Index balls) {
   return std::max(mean, max) / surface_.bounding_radius() - kSameTightness;
 }
 
-// The same of the levels above it, whose balls may have grown.
+// Returns the same for the levels above it, whose balls may have grown.
 double Tightener::excess_above(const Candidate& candidate) const {
   double excess = -1;
   for (std::size_t l = 0; l + 1 < candidate.partial.size(); ++l) {
@@ -371,7 +380,8 @@ double Tightener::excess_above(const Candidate& candidate) const {
   return excess;
 }
 
-// The balls' reach bounds their inaccuracy: mostly that is enough to know that the rule is kept.
+// Judges a candidate. The measure of the balls bounds their inaccuracy, which usually suffices to know that the rule
+// holds.
 void Tightener::judge(Candidate& candidate, Index balls, bool by_looseness) {
   const Level& level = candidate.partial.last();
   std::vector<double> reach(level.size());
@@ -389,7 +399,7 @@ void Tightener::judge(Candidate& candidate, Index balls, bool by_looseness) {
   }
   candidate.excess = std::max(candidate.excess, excess_above(candidate));
   if (!by_looseness && candidate.inaccuracies.empty()) return;
-  // Roughly: all starts are compared by the same numbers.
+  // An estimate is enough, because all starts are compared by the same values.
   std::vector<double> values(level.size());
   tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
     values[i] = inaccuracy(surface_, level[i].sphere, {1e-3, 1e-2}).upper;
@@ -411,8 +421,8 @@ void Tightener::take(Candidate best) {
   }
 }
 
-// From different seeds; of the first level some with another objective, too, which is now and then the better way to
-// the one that counts.
+// Returns starts from different seeds. For the first level, some use another objective, which sometimes leads to a
+// better result for the requested one.
 std::vector<Tightener::Start> Tightener::usual_starts(const LevelOptions& options) const {
   const Index count = carried_starts(options.level, options.balls, work_);
   std::vector<std::vector<LevelBall>> from(count);
@@ -432,7 +442,7 @@ std::vector<Tightener::Start> Tightener::usual_starts(const LevelOptions& option
   return starts;
 }
 
-// By both measures and for the maximum, from the octree and from seeds.
+// Returns starts with both measures and with the objective `maximum`, from the octree and from seeds.
 std::vector<Tightener::Start> Tightener::other_starts(const LevelOptions& options) const {
   PartialTree partial = partial_;
   partial.add_level();
@@ -450,7 +460,7 @@ std::vector<Tightener::Start> Tightener::other_starts(const LevelOptions& option
   return starts;
 }
 
-// The octree's own, as it is.
+// Returns the level of the octree, unchanged.
 Tightener::Candidate Tightener::octree_level(Index level) const {
   Candidate candidate{octree_.levels({root_, surface_.bounding_radius()}, level)};
   for (const LevelNode& node : candidate.partial.last())
@@ -460,7 +470,7 @@ Tightener::Candidate Tightener::octree_level(Index level) const {
   return candidate;
 }
 
-// Many starts, each searched a little on few samples; the tightest of them.
+// Returns the tightest of many starts, each of which is searched briefly on few samples.
 std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions options, Index wanted) const {
   const Index tried = tried_starts(options.balls, work_);
   if (tried <= wanted) return std::vector<std::vector<LevelBall>>(wanted);
@@ -487,8 +497,8 @@ std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions opt
   return best;
 }
 
-// Solutions of a level, one from each start, at the same time. Those of a kind are judged by the first one's unit.
-// Those that come to run on the thread that called this say how far they are, and all are stopped by that.
+// Solves a level from each start, in parallel. Starts of one kind use the unit of the first one. Those that run on the
+// calling thread report progress; if that cancels, all stop.
 std::vector<Tightener::Candidate> Tightener::candidates(std::vector<Start> starts, const Progress& progress) const {
   Candidate empty{partial_};
   empty.partial.add_level();
@@ -510,8 +520,8 @@ std::vector<Tightener::Candidate> Tightener::candidates(std::vector<Start> start
       return !progress || progress(stage, reported);
     };
   };
-  // Nothing is thrown in a task: that would cut short what the others do, who would not know.
-  std::exception_ptr failure;  // the first; the others were stopped by it
+  // Tasks do not throw, because an exception would end other tasks in the middle.
+  std::exception_ptr failure;  // the first exception, which stopped the others
   const auto solve = [&](Index start) {
     try {
       search_and_finish(solvers[start], starts[start].options, watched(start), results[start]);

@@ -12,42 +12,43 @@
 
 namespace orchard::detail {
 
-// How much work the levels get; of everything, the best of some is kept.
+// The work for each level. Several candidates are built at each step, and the best ones are kept.
 struct Work {
-  double trials;         // of the neighbourhood search, as a multiple of the standard number
-  int searching_rounds;  // of closing a level: those in which the search goes on
-  double closed_trials;  // for each ball of a level, of the search in closed levels
-  Index explored;        // starts of the first level that are tried on a few samples, if it has few balls
-  Index starts[2];       // of the first level, if it has few balls, and of the second, that are carried through
+  double trials;         // trials of the neighbourhood search, as a multiple of the standard number
+  int searching_rounds;  // rounds of closing a level during which the search continues
+  double closed_trials;  // trials in a level that covers the surface, for each of its balls
+  Index explored;        // starts of the first level that are tried on a few samples, if the level has few balls
+  Index starts[2];       // starts that are completed, of the first level if it has few balls, and of the second
 };
 
-// Builds a tree level by level, each on the balls of the one above. Of each level the best of several covers is kept,
-// and there is one rule for all of them: no level is looser, in the mean or the maximum of the inaccuracy, than the one
-// above it, nor than any level of the octree for which it has the spheres. Of those that keep to it, the one with the
-// lowest product of mean, maximum and outside volume is taken. Starts are the usual ones; where these break the rule,
-// or where the balls' reach that they are fitted by is far from the inaccuracy, those of other measures and of the
-// octree, too; and where all break it, the levels above are replaced by the octree's own, which leaves room for its
-// next one.
+// Builds a tree level by level. Each level is fitted within the balls of the level above, and the best of several
+// covers is kept. One rule holds for all of them: neither the mean nor the maximum inaccuracy of a level may exceed
+// that of the level above, or that of a level of the octree with at most as many spheres. Of the covers that satisfy
+// the rule, the one with the smallest product of mean, maximum and outside volume is taken.
+//
+// The first starts are the usual ones. If their covers break the rule, or if the measure by which balls are fitted
+// differs much from the inaccuracy, starts with other measures and from the octree are tried, too. If all covers break
+// the rule, the levels above are replaced by those of the octree, so that the next level of the octree can follow.
 class Tightener {
  public:
-  // Keeps references to all but the root. Samples as surface_samples() gives them.
+  // Keeps references to all arguments except the root. `samples` is the result of surface_samples().
   Tightener(const Surface& surface, const Samples& samples, const Sphere& root, const TightenOptions& options,
             const Work& work, const WeightField& weights, const Progress& progress);
   TightenBuild run();
-  // The same beside another one that has run on the same surface with less work: no level gets looser than allowed,
-  // which is what its tree's levels are (as looseness_by_level() has it, beside this octree). Its first levels, as many
-  // as `same`, are taken as they are.
+  // Builds a tree that is nowhere looser than that of another tightener, which has run on the same surface with less
+  // work. `allowed` is the looseness of the levels of its tree, as looseness_by_level() returns it for `octree`; no
+  // level gets looser. The first `same` levels are copied from its tree.
   TightenBuild run_beside(const Tightener& other, Index same, std::span<const LevelLooseness> allowed,
                           const SphereTree& octree);
 
  private:
-  // What a level's balls are searched from, and how; those with the same number have the same unit of cost.
+  // The initial balls of a search for a level, and its options. Starts of the same kind have the same unit of cost.
   struct Start {
     LevelOptions options;
-    std::vector<LevelBall> balls;  // none: seeded ones
+    std::vector<LevelBall> balls;  // if empty, the search begins with random balls
     int kind = 0;
   };
-  // What a level may have, and the octree that is_loosened() asks after.
+  // The looseness that a level may have, and the octree for is_loosened().
   struct AllowedLooseness {
     const LevelLooseness& level;
     const SphereTree& octree;
@@ -55,12 +56,12 @@ class Tightener {
   // A level that covers the surface.
   struct Candidate {
     PartialTree partial;
-    double looseness = 0;                    // what candidates are compared by
-    double excess = 0;                       // over what the level may have, as a part of that; <= 0: it keeps to it
-    bool is_octree = false;                  // as octree_level() makes it
-    bool measures_well = true;               // whether the balls' reach is about their inaccuracy
+    double looseness = 0;                    // the value by which candidates are compared
+    double excess = 0;                       // relative to what the rule allows; at most 0 if the rule holds
+    bool is_octree = false;                  // whether octree_level() made it
+    bool measures_well = true;               // whether the measure of the balls is near their inaccuracy
     std::vector<double> center_distances{};  // signed distances of the last level's centres
-    std::vector<double> inaccuracies{};      // of the last level's balls, in mesh units; none: not measured
+    std::vector<double> inaccuracies{};      // of the last level's balls, in mesh units; empty if not measured
     TightenReport::Level report{};
   };
   TightenBuild result();
@@ -95,13 +96,13 @@ class Tightener {
   const Work work_;
   const WeightField& weights_;
   const Progress& progress_;
-  std::vector<Index> spheres_;  // that each level may have
+  std::vector<Index> spheres_;  // the maximum number of spheres of each level
   Sphere root_;
   OctreeReference octree_;
   PartialTree partial_;
   TightenReport report_;
-  bool differs_ = false;              // whether the levels so far are others than those of the tree that this is beside
-  Index octree_levels_ = 0;           // of partial_, which are the octree's own
+  bool differs_ = false;              // whether the levels so far differ from those of the other tightener's tree
+  Index octree_levels_ = 0;           // the number of levels of partial_ that are the octree's
   std::vector<double> excesses_{-1};  // of the levels so far
   std::vector<double> inaccuracies_;  // of the last level's balls, in mesh units
 };

@@ -25,15 +25,15 @@ namespace {
 constexpr Index kSlice = 1u << 14;  // points or vertices that a thread looks at at once
 constexpr double kInsertion = 0.8;  // its part of the time; the rest is the certificate's
 
-// Sets of so many points are tried with one in so many of them first, in the order of insertion, a random sample.
+// Sets of at least kTried points are tried on a random sample first: the first one in kTriedOneIn in insertion order.
 constexpr std::size_t kTried = 1u << 12, kTriedOneIn = 8;
 
-// From this part of insertions on that lie on spheres of others, a set is a lattice or the like: exact signs would take
-// several times as long there, and what rounding does to it is mended.
+// If at least this part of the inserted points lie on spheres of others, the set is a lattice or the like. Exact signs
+// would take several times as long there, and rounding errors can be mended afterwards.
 constexpr double kLattice = 0.25;
 
-// Of how many points of a sample one vertex may have to be held against all points: many where no insertion was in
-// doubt, few where one was.
+// The certificate may have to compare one vertex (a suspect) with all points for every so many points of the sample.
+// More suspects are allowed if no insertion was in doubt (the first number).
 constexpr std::size_t kSuspectsOneIn = 1u << 7, kSuspectsOneInDoubts = 1u << 12;
 
 }  // namespace
@@ -100,10 +100,11 @@ namespace {
 
 enum class Outcome { done, flat, failed };
 
-// Room that is not used is never touched, so it costs no memory, but moving to a larger room does: at worst half of the
-// vertices may be there twice without adding to the peak. Of the points, the first 64th, eighth and half are random
-// samples of all, and tell how many vertices there will be: each time that the points become twice as many, they become
-// twice as many on surfaces, or a little more, and up to four times on curves.
+// Reserves memory for the vertices. Reserved memory that is not used costs nothing, since it is never touched; but
+// moving the vertices to a larger block does, because they are in memory twice meanwhile. Moving up to half of them
+// does not raise the peak. The first 64th, eighth and half of the points are random samples of all, from which the
+// final number of vertices is extrapolated: when the points double, the vertices double (or a little more) if the
+// points lie on surfaces, and grow up to fourfold if they lie on curves.
 class Room {
  public:
   explicit Room(Workspace& workspace) : workspace_(workspace) {}
@@ -128,7 +129,7 @@ class Room {
 
  private:
   double vertices() const { return static_cast<double>(workspace_.vertices.size()); }
-  // How many times as many vertices there are as at the last sample, of so many times fewer points.
+  // By what factor the vertices have grown since the last sample, while the points grew by the factor `times`.
   double growth(double times) const {
     return sample_ > 0 ? std::clamp(vertices() / sample_, times, times * times) : times;
   }
@@ -137,8 +138,9 @@ class Room {
   double sample_ = 0;  // vertices, or 0 if there was none
 };
 
-// The point before which those from `begin` on are inserted next. The last rounds of insertion_order(), where they are
-// large, are for many threads, each when all before it are in. The first one is at most the sample that is tried.
+// The end of the stage of insertion that starts at point `begin`. The last rounds of insertion_order(), if they are
+// large, are stages of their own, which many threads insert after all points before them. The first stage is at most
+// the sample that is tried.
 Index end_of_stage(std::size_t begin, std::size_t count, std::size_t sample) {
   std::size_t end = begin < sample ? sample : count;
   if (count >= large_set())
@@ -150,15 +152,14 @@ bool is_lattice(const InsertionCounts& counts) {
   return static_cast<double>(counts.settled) >= kLattice * static_cast<double>(counts.inserted());
 }
 
-// Whether insertions so far left doubts that signs of doubles do not settle, and others likely to come.
+// Whether the insertions so far left doubts that the signs of doubles cannot settle, so that more are likely to come.
 bool has_doubts(const Inserter& inserter) {
   return (inserter.counts().constrained > 0 || inserter.has_deferred()) && !is_lattice(inserter.counts());
 }
 
-// Whether the signs of doubles will do for a set of which a sample has been inserted. Where points crowd on planes that
-// are not along the axes, as in dense samples of flat or cylindrical faces, what rounding does to them cannot be mended
-// one by one, and to find that out at the end takes as long as exact signs from the start, which take hardly longer
-// there.
+// Whether the signs of doubles will do for a set of which a sample has been inserted. If many points lie on planes that
+// are not parallel to the axes, as in dense samples of flat or cylindrical faces, rounding errors are too many to be
+// mended one by one. Finding that out at the end takes as long as exact signs from the start, hardly slower there.
 bool doubles_will_do(Workspace& workspace, const Inserter& inserter) {
   const InsertionCounts& counts = inserter.counts();
   if (has_doubts(inserter)) return false;
@@ -169,7 +170,7 @@ bool doubles_will_do(Workspace& workspace, const Inserter& inserter) {
   return certificate.holds && certificate.suspects * one_in <= counts.inserted();
 }
 
-// All points of the workspace in order. If it fails, `at` is the point and `reason` the inserter's.
+// Inserts all points of the workspace in order. If an insertion fails, `at` is the point and `reason` is why.
 Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
                    InsertionCounts& counts, Index& at, const char*& reason) {
   workspace.clear();
@@ -217,8 +218,8 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   return Outcome::done;
 }
 
-// With exact signs from the start if the inserter asks for them, or the result has no certificate. False if the points
-// are flat.
+// Inserts all points. If that fails with the signs of doubles (in the trial of a sample, at a point or because the
+// result has no certificate), starts again with exact signs. Returns false if the points are flat.
 bool insert_with_all_means(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
                            std::span<const Index> original_of, InsertionReport& report) {
   InsertionCounts counts;
@@ -264,7 +265,7 @@ VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::st
       [&] { original_of = insertion_order(points, box); });
 
   if (points.size() - report.duplicates.size() >= 4) {
-    // The points are worked on in the order of insertion, so that neighbours in space are neighbours in memory.
+    // The points are stored in the order of insertion, so that neighbours in space are neighbours in memory.
     if (!report.duplicates.empty()) {
       std::vector<bool> left_out(points.size(), false);
       for (const auto& pair : report.duplicates) left_out[pair[0]] = true;

@@ -8,20 +8,22 @@
 
 namespace orchard::detail {
 
-// What the incremental algorithms share: leaving out coincident points, ordering, the first four points, insertion, and
-// turning the workspace into a diagram. With exact signs from the start if asked for.
+// The steps that the incremental algorithms share: coincident points are left out, the others are ordered, a diagram of
+// four points is made, the rest are inserted, and the workspace becomes a diagram. `exact`: use exact signs from the
+// start.
 VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
                            const Progress& progress, bool exact = false);
 
-// The box of the points; throws InputError, naming the point, for a coordinate that is not finite or beyond
-// Frame::kMax, or if the points are not all one and yet nearer to each other than Frame::kMin.
+// The box of the points. Throws InputError, which names the point, if a coordinate is not finite or beyond Frame::kMax;
+// also if the points are not all the same but the whole set is smaller than Frame::kMin.
 Box checked_box(std::span<const Point> points);
 
-// The lengths of a workspace whose points are those of the box, in the frame.
+// Sets the workspace's scale to that of the points in the box, in the coordinates of the frame.
 void set_scale(Workspace& workspace, const Frame& frame, const Box& box);
 
-// Moves the vertices over the free ones, out of the frame, and turns squared radii into radii. Forming points become
-// original_of them, unless that is empty.
+// Turns the workspace's vertices into those of a diagram: closes the gaps that free vertices leave, brings the
+// coordinates out of the frame, and replaces squared radii by radii. Unless `original_of` is empty, it gives the number
+// that each forming point gets.
 void finish(Workspace& workspace, const Frame& frame, std::span<const Index> original_of);
 
 void add_counts(const InsertionCounts& counts, InsertionReport& report);

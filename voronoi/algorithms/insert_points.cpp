@@ -23,7 +23,8 @@ std::vector<bool> forming(const VoronoiDiagram& diagram, std::size_t point_count
   return present;
 }
 
-// The points from first_new on without the coincident ones, in an order in which neighbours follow each other.
+// The numbers of the added points (from first_new on), without duplicates, in an order in which neighbours in space
+// follow each other.
 std::vector<Index> order_of_new(std::span<const Point> added, Index first_new,
                                 const std::vector<std::array<Index, 2>>& duplicates) {
   Box box;
@@ -43,9 +44,9 @@ struct Insertion {
   Index first_new;
 };
 
-// Inserts the points into a copy of what was there before; false if that has no certificate in the end. With exact
-// signs, what was there must be exact as well: a diagram that rounding has bent, however little, need not be one into
-// which exact signs fit.
+// Inserts the points into a copy of the diagram. Returns false if the result has no certificate. With exact signs, the
+// diagram before must have a certificate as well: exact signs can contradict a diagram that rounding has changed,
+// however little.
 bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exact, InsertionReport& report) {
   workspace.adopt(insertion.before, insertion.frame, kPerNewPoint * insertion.order.size());
   workspace.set_exact(exact);

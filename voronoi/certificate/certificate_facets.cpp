@@ -11,8 +11,9 @@ namespace orchard::detail {
 bool Certifier::are_facets_good(Index v) {
   for (unsigned i = 0; i < 4; ++i) {
     const Index u = workspace_.vertices[v].neighbors[i];
-    if (u < v && is_new(u) && !looks_at_changed_) continue;                // seen from there
-    if (workspace_.at_infinity(v) != workspace_.at_infinity(u)) continue;  // of the hull: its edges will be looked at
+    if (u < v && is_new(u) && !looks_at_changed_) continue;  // tested from there
+    if (workspace_.at_infinity(v) != workspace_.at_infinity(u))
+      continue;  // a facet of the hull: its edges are tested instead
     if (!is_facet_good(v, i, u)) return false;
   }
   return true;
@@ -22,9 +23,10 @@ bool Certifier::is_facet_good(Index v, unsigned i, Index u) {
   return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
 }
 
-// The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
-// branches would be most of the time, so all facets are listed first, without branches. Across each, doubles mostly
-// show that the sphere there does not hold the vertex's own point, which spares looking for the one across.
+// Tests the same facets, except those of the hull, of a range of vertices that are all new. Otherwise waiting for
+// memory and mispredicted branches would take most of the time, so all facets are listed first, without branches. For
+// most facets, doubles show that the sphere of the neighbour does not hold the vertex's own point; then the neighbour's
+// own point need not be looked up.
 bool Certifier::are_all_facets_good(Index begin, Index end) {
   std::size_t listed = 0, count = 0;
   std::array<Facet, std::size_t{4} * kCertificateBatch + 4> facets;
@@ -63,7 +65,7 @@ bool Certifier::are_all_facets_good(Index begin, Index end) {
   return true;
 }
 
-// What is added across four facets.
+// The intrusions added across four facets.
 std::array<double, 4> Certifier::added_across(const Facet* facets) {
   FourSteps steps;
   for (unsigned lane = 0; lane < 4; ++lane) {
@@ -82,7 +84,7 @@ std::array<double, 4> Certifier::added_across(const Facet* facets) {
   return added_by_four(steps, diameter_);
 }
 
-// What only lines through the facet of v that is opposite to its point i lose.
+// Notes an intrusion that is lost only along lines through the facet of v that is opposite to its point i.
 void Certifier::note_loss(double intrusion, Index v, unsigned i) {
   if (share_ > small_share_) {
     found_.intrusion += intrusion;
@@ -94,10 +96,10 @@ void Certifier::note_loss(double intrusion, Index v, unsigned i) {
   found_.losses.push_back({intrusion, {corner[a], corner[b], corner[c]}});
 }
 
-// Across the facet between v and its neighbour i, u.
+// Tests the facet between v and its neighbour u in slot i.
 bool Certifier::do_spheres_agree(Index v, unsigned i, Index u) {
   workspace_.settle(u);
-  if (!workspace_.exact() && is_same_sphere(v, u)) return true;  // as on grids most are: nothing is lost
+  if (!workspace_.exact() && is_same_sphere(v, u)) return true;  // nothing is lost; on grids most neighbours are such
   const Point& across = corner(u, slot_of(u, v));
   const bool own = are_own_spheres(v, u);
   if (own && are_apart(v, i, u, across)) return true;
@@ -110,7 +112,7 @@ bool Certifier::do_spheres_agree(Index v, unsigned i, Index u) {
     if (lost <= share_ && add(lost)) return true;
   }
   if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) != Sign::positive) {
-    // In terms of the vertices' own spheres there is no doubt.
+    // For exact spheres nothing is lost, so only the errors of the spheres count.
     lost = std::min(lost, own ? 0 : from_own_sphere(v) + from_own_sphere(u));
   } else if (!(lost <= kFacet * max_)) {
     return false;
@@ -119,13 +121,13 @@ bool Certifier::do_spheres_agree(Index v, unsigned i, Index u) {
   return true;
 }
 
-// Whether one of them certainly does not hold the point that the other has instead of a shared one.
+// Whether the sphere of v certainly does not hold the point that only u has, or the other way round.
 bool Certifier::are_apart(Index v, unsigned i, Index u, const Point& across) const {
   return workspace_.power(v, across) < -workspace_.power_bound(v) ||
          workspace_.power(u, corner(v, i)) < -workspace_.power_bound(u);
 }
 
-// The unit normal of a facet, and by what angle it may be off.
+// Computes the unit normal of a facet. Returns a bound on the angle of its error.
 double Certifier::normal(const Point& a, const Point& b, const Point& c, Vector& result) {
   const Vector ab = b - a, ac = c - a;
   result = ab.cross(ac);
@@ -135,16 +137,16 @@ double Certifier::normal(const Point& a, const Point& b, const Point& c, Vector&
   return blur;
 }
 
-// The power of q with respect to the sphere of v, through its first point, to some roundings of the sphere's radius
-// times the distance of points, however large the sphere is.
+// The power of q with respect to the sphere around v through its first point. The error is some roundings of (the
+// sphere's radius times the distance of points), however large the sphere is.
 double Certifier::near_power(Index v, const Point& q) const {
   const Vector from_corner = q - corner(v, 0);
   return from_corner.dot(2 * (workspace_.vertices[v].center - corner(v, 0)) - from_corner);
 }
 
-// The intrusion that may be lost from v to u, for points beyond the plane through the origin, the normal, which may
-// be off by the angle `blur`, pointing to them, if u is on that side, or, if `up` is not zero, less than `height`
-// above the plane that it is normal to.
+// A bound on the intrusion that may be lost from v to u, for points beyond the plane through `origin`. The normal,
+// whose error is at most the angle `blur`, points to these points. If `up` is not zero, it bounds the intrusion for
+// points less than `height` above the plane that it is normal to.
 double Certifier::intrusion_added(Index v, Index u, const Point& origin, const Vector& normal, double blur,
                                   const Vector& up, double height) const {
   const VoronoiVertex &from = workspace_.vertices[v], &to = workspace_.vertices[u];
@@ -158,8 +160,8 @@ double Certifier::intrusion_added(Index v, Index u, const Point& origin, const V
   return (std::max(lost, 0.0) + 2 * reach * (std::max(-along, 0.0) + sideways) + 2 * std::abs(above) * height) / radius;
 }
 
-// At the edge of the hull between the facets of v and its neighbour i: this one's third point must be below the facet
-// of v, or, by a rounding, not, but opposite to it.
+// Tests the edge of the hull between the facets of v and of its neighbour i. The neighbour's third point must be below
+// the facet of v; because of rounding it may also be slightly above, if it lies on the other side of the edge.
 bool Certifier::is_hull_convex(Index v, unsigned i) {
   const Point &b = corner(v, (i + 1) % 3), &c = corner(v, (i + 2) % 3);
   const Index u = workspace_.vertices[v].neighbors[i];
@@ -170,8 +172,9 @@ bool Certifier::is_hull_convex(Index v, unsigned i) {
   return below == Sign::uncertain || (!workspace_.exact() && is_dent_shallow(v, i, p, b, c));
 }
 
-// Where p is above the facet of v, beyond the edge from b to c: the hull's other points may be above the facet by as
-// much at the same angle. In the dent, the spheres below the two facets meet in the edge.
+// For a point p that is above the facet of v, beyond the edge from b to c: the hull has a dent at the edge. Other
+// points of the hull may then be above the facet at the same angle. In the dent, the spheres below the two facets meet
+// in the edge.
 bool Certifier::is_dent_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c) {
   Vector normal;
   if (!sharp_normal(corner(v, 0), corner(v, 1), corner(v, 2), normal)) return false;

@@ -18,7 +18,7 @@ ORCHARD_AVX2 void load_spheres(const std::array<const VoronoiVertex*, 4>& v, Fou
   squared_radius = _mm256_load_pd(v[3]->center.data());  // the radius is behind it
   transpose(center.x, center.y, center.z, squared_radius);
 }
-// As Certifier::near_power().
+// The same as Certifier::near_power(), for four vertices.
 ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center, const FourVectors& corner) {
   const FourVectors from_corner = q - corner, to_center = center - corner;
   const FourVectors rest{all_four(2) * to_center.x - from_corner.x, all_four(2) * to_center.y - from_corner.y,
@@ -26,7 +26,7 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
   return dot(from_corner, rest);
 }
 
-// As Certifier::apart_by().
+// The same as Certifier::apart_by(), for four vertices.
 ORCHARD_AVX2 __m256d apart_by(__m256d off, __m256d radius, double diameter) {
   const __m256d times = _mm256_min_pd(all_four(diameter) / (all_four(0.75) * radius), all_four(2));
   const __m256d is_near = _mm256_cmp_pd(off, radius / all_four(8), _CMP_LE_OQ);

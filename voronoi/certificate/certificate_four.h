@@ -6,36 +6,37 @@
 #include "predicates/four_tetrahedra.h"
 #include "workspace/workspace.h"
 
-// What the certificate looks at four at a time, with the same bits as one by one. Only where the machine has AVX2.
+// The certificate's tests of four facets or vertices at a time, for machines with AVX2. Results have the same bits as
+// those of the tests one by one.
 namespace orchard::detail {
 
-// Vertices that are looked at together, while the points of the next ones are fetched into the cache.
+// The number of vertices that are tested together, while the points of the next ones are fetched into the cache.
 inline constexpr Index kCertificateBatch = 64;
 
-// The angle by which the normal of a facet may be off before it is found with more digits.
+// If the error of a facet's normal may exceed this angle, the normal is computed with more digits.
 inline constexpr double kBlurred = 0x1p-44;
 
-// The facet between a vertex and its neighbour `slot`, and the point that the vertex has instead of a shared one.
+// The facet between a vertex and its neighbour `slot`, and the vertex's forming point that is not on the facet.
 struct Facet {
   Index v, u;
   unsigned slot;
   Index opposite;
 };
 
-// Four times the spheres on both sides of a facet, a corner of each, and the facet's own.
+// For four facets: the spheres on both sides, a corner of each sphere, and the corners of the facet.
 struct FourSteps {
   std::array<const VoronoiVertex*, 4> from, to;
   std::array<const Point*, 4> from_corner, to_corner, a, b, c;
 };
 
-// A bit for each of four facets across which doubles do not show that nothing is lost.
+// Tests four facets in doubles. A bit is set for each facet that this does not show to be good.
 unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets);
 
-// As Certifier::normal() and intrusion_added(), in the same order of operations, by the corners of four facets;
-// infinite where a normal calls for more digits.
+// The same as Certifier::normal() and intrusion_added(), in the same order of operations, for the corners of four
+// facets. Infinite where a normal needs more digits.
 std::array<double, 4> added_by_four(const FourSteps& steps, double diameter);
 
-// Vertices of a batch, listed without branches.
+// A list of vertices of a batch that is filled without branches.
 class BatchList {
  public:
   std::span<const Index> items() const { return {items_.data(), count_}; }
@@ -43,7 +44,7 @@ class BatchList {
     items_[count_] = v;
     count_ += condition;
   }
-  // With the place of the first. The last one again for those that the last four lack.
+  // Calls take(place of the first, four vertices). The last four are filled up by repeating the last vertex.
   template <class Take>
   void for_each_four(const Take& take) const {
     for (std::size_t first = 0; first < count_; first += 4) {
@@ -72,13 +73,14 @@ struct FourMoved : FourSeen {
   std::array<double, 4> x, y, z, squared_radius;
 };
 
-// As Certifier::from_told_sphere(), with their radii; `far` is what is told of those that share a sphere.
+// The same as Certifier::from_told_sphere(), for four vertices, and their radii. `far`: the result for vertices that
+// share a sphere.
 void told_of_four(const Workspace& workspace, const std::array<Index, 4>& v, double far, double* radius, double* apart);
 
-// As Certifier::apart_by() and Workspace::own_power_bound(), by how far the centres are off.
+// The same as Certifier::apart_by() and Workspace::own_power_bound(), from bounds on the errors of four centres.
 FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v, const FourOffCenters& off,
                        double diameter);
-// As Certifier::from_moved_sphere().
+// The same as Certifier::from_moved_sphere(), for four vertices.
 FourMoved moved_four(const Workspace& workspace, const std::array<Index, 4>& v, const FourOffCenters& off,
                      double diameter);
 

@@ -7,15 +7,15 @@
 namespace orchard::detail {
 namespace {
 
-// Vertices that one insertion may delete: what takes more is no local doubt. But where few doubts are left, in the
-// first rounds, a point may have that many by itself.
+// The most vertices that one insertion may delete: a doubt that takes more is not local. In the first rounds, if only
+// few doubts are left, more are allowed, because one point alone may form that many.
 constexpr std::size_t kMaxDeleted = 256, kMaxDeletedOfFew = 2048, kFewDoubts = 16;
 constexpr int kFirstRounds = 8;
 constexpr int kPatient = 2;   // rounds before what insertions do not mend is rebuilt
 constexpr int kHopeless = 8;  // rounds before nothing is inserted any more, and more around it is rebuilt each time
 constexpr int kStricter = 2;  // bits that a round takes off the intrusion that does no harm
 
-// How deep a point is in a sphere through the origin, both relative to it.
+// How deep a point lies in a sphere through the origin. `center` and `point` are relative to the origin.
 double intrusion_in(const Vector& center, const Vector& point) {
   return point.dot(2 * center - point) / (2 * center.norm());
 }
@@ -63,7 +63,7 @@ bool Repairer::is_formed_by(Index v, Index point) const {
   return std::find(corner.begin(), corner.end(), point) != corner.end();
 }
 
-// Its own sphere: signs by a neighbour's would not be exact.
+// Gives a vertex a sphere of its own if it shares a neighbour's, whose signs would not be exact for it.
 void Repairer::sharpen(Index v) {
   if (workspace_.at_infinity(v)) return;
   workspace_.settle(v);
@@ -72,7 +72,7 @@ void Repairer::sharpen(Index v) {
   changed_.push_back(v);
 }
 
-// Of q in the sphere of a vertex, or beyond its plane.
+// The depth of q in the sphere of a vertex, or its distance beyond the plane of a vertex at infinity.
 double Repairer::intrusion(Index v, const Point& q) {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   const Point& origin = workspace_.points[vertex.forming_points[0]];
@@ -86,7 +86,7 @@ bool Repairer::is_in_sphere(Index v, const Point& q) {
   return workspace_.sign(v, q) == Sign::positive;
 }
 
-// The point that u has instead of a shared one, if it is in the sphere of v.
+// Inserts again the forming point of u that v does not share, if it lies in the sphere of v.
 bool Repairer::insert_again(Index v, Index u) {
   const Index point = workspace_.vertices[u].forming_points[slot_of(u, v)];
   if (point == kInfinitePoint) return false;
@@ -105,8 +105,8 @@ bool Repairer::insert_again(Index v, Index u) {
   return true;
 }
 
-// Deletes all that has to go with what is deleted, and places the new vertices. False if something has to go that the
-// point is far from.
+// Deletes all vertices that must be deleted together with those that are, and places the new ones. Returns false if a
+// vertex would have to be deleted whose sphere the point lies well outside of, or if there are too many.
 bool Repairer::grow(Index point, const Point& q) {
   for (std::size_t done = 0; done < cavity_.deleted().size();) {
     for (; done < cavity_.deleted().size(); ++done) {
@@ -131,7 +131,7 @@ bool Repairer::grow(Index point, const Point& q) {
   return true;
 }
 
-// Whether the new point sees it, and the sphere of both does not hold the point beyond.
+// Whether the new point sees the facet, and the sphere through both does not hold the point beyond the facet.
 bool Repairer::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
   if (!facet.visible) return false;
   const auto& corner = workspace_.vertices[facet.inside].forming_points;
@@ -145,8 +145,8 @@ bool Repairer::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
          intrusion_in(center, points[beyond] - q) <= harmless_;
 }
 
-// Whether the hull's facet of the new point at the edge to an undeleted one, in whose plane the point is as far as does
-// harm, would lie on top of this one, upside down.
+// At an edge of the convex hull: whether the new point's facet would lie upside down on the facet beyond the edge,
+// which is not deleted. That happens only if the point lies nearly in that facet's plane.
 bool Repairer::is_folded(const Cavity::Facet& facet, const Point& q) const {
   const VoronoiVertex& outside = workspace_.vertices[facet.outside];
   const auto& corner = workspace_.vertices[facet.inside].forming_points;

@@ -8,29 +8,32 @@
 
 namespace orchard::detail {
 
-// Two neighbours whose spheres, or planes at an edge of the hull, contradict each other: the point that one has instead
-// of a shared one lies in the sphere of the other, or beyond its plane.
+// Two neighbours that contradict each other: the forming point of one that the other does not share lies in the sphere
+// of the other (or, at an edge of the convex hull, beyond its plane).
 struct Doubt {
   Index vertex, neighbor;
 };
 
-// Mends a finished diagram where its certificate is in doubt and leaves the rest alone: the point that lies in a sphere
-// next to its own is inserted again. Deleted are all vertices that it forms and, connected with these, those in whose
-// spheres it is deeper than does harm, until it sees all of the boundary, exactly, and no new sphere holds the point
-// beyond its facet. Whether all is well then is for the certificate to say.
+// Mends a finished diagram where its certificate is in doubt, and changes nothing elsewhere: the point that lies in a
+// neighbouring vertex's sphere is inserted again. This deletes all vertices that it forms and, connected with these,
+// the vertices in whose spheres it lies deeper than is harmless. More are deleted until the point sees every facet of
+// the boundary, by exact signs, and no new sphere holds the point beyond its facet. The certificate has to check the
+// result.
 class Repairer {
  public:
   explicit Repairer(Workspace& workspace) : workspace_(workspace), cavity_(workspace), patch_(workspace) {}
 
-  // The vertices that are new, those whose spheres have become their own, and those of doubts that could not be mended;
-  // some may be free again. Each round is stricter than the last, lest one insertion undo another.
+  // Mends these doubts. Returns the vertices that have to be checked again: new ones, those that got a sphere of their
+  // own, and those of doubts that remain; some may be free by then. Each round allows less intrusion than the one
+  // before, so that insertions do not undo each other forever.
   std::vector<Index> mend(std::span<const Doubt> doubts, int round);
-  // Rebuilds these vertices, which may be free, with exact signs, with so many layers around them, and others that
-  // have to go with them (see Patch). The new ones; none where that takes too many.
+  // Rebuilds these vertices (some may be free) with exact signs, together with `layers` layers of vertices around them
+  // and others that have to be replaced with them (see Patch). Returns the new vertices; none if too many would be
+  // replaced.
   std::vector<Index> patch(std::vector<Index> vertices, int layers = 0);
-  // Whether none took too many: where one did, what insertions do not mend stays in doubt.
+  // False after a patch would have replaced too many vertices: from then on patch() does nothing.
   bool may_patch() const { return may_patch_; }
-  // Facets that were looked at so far, each as often as it was: the time that mending has taken.
+  // The number of facets looked at so far, with repetitions: a measure of the time that mending has taken.
   std::size_t work() const { return work_; }
 
  private:

@@ -5,27 +5,31 @@
 #include "workspace/forming_points.h"
 #include "workspace/workspace.h"
 
-// What points do to a plane or a sphere, found by looking at each of them.
+// The point farthest beyond a plane, and the point deepest in a sphere, found by looking at the points one by one.
 namespace orchard::detail {
 
-// A point and how far it is beyond a plane or how deep in a sphere; none if there is no such point.
+// A point and its distance beyond a plane or its depth in a sphere. No point is beyond or inside if `point` is kNone
+// and `depth` is 0.
 struct Intruder {
   double depth = 0;
   Index point = kNone;
 };
 
-// How far the farthest of some points lies beyond the hull's facet of a vertex at infinity; `diameter`, that of the
-// points, and no point, where the facet is too thin to tell. O(n).
+// The point that lies farthest beyond the convex hull's facet that belongs to a vertex at infinity, among `points`.
+// Where the facet is too thin for its normal to be known, the depth is `diameter` (that of all points) and the point
+// is kNone. O(n).
 Intruder farthest_beyond(const Workspace& workspace, Index vertex, std::span<const Index> points, double diameter);
 
-// Blocks of points that follow each other in the order of insertion, in which most are neighbours in space, with a box
-// around each: a sphere that is empty, or nearly, reaches into few of them. For the points of one workspace.
+// The points of one workspace in blocks of consecutive points, with a box around each block. Points that follow each
+// other in the order of insertion are mostly neighbours in space, so a sphere with no or few points inside reaches into
+// few of the boxes.
 class PointBlocks {
  public:
   explicit PointBlocks(std::span<const Point> points);
 
-  // How deep the deepest of the points that form vertices lies in the sphere of a vertex's forming points, in terms of
-  // a sphere no larger than the points' own; `diameter`, and no point, where the vertex is too flat to tell. O(n) at
+  // The deepest point, among those that form vertices, in the sphere through a vertex's forming points. Its depth is
+  // the negative power divided by the sphere's radius or half the diameter of the points, whichever is less. Where the
+  // forming points are too flat for the centre to be known, the depth is `diameter` and the point is kNone. O(n) at
   // most, mostly less.
   Intruder deepest_within(const Workspace& workspace, Index vertex, const FormingPoints& forming,
                           double diameter) const;

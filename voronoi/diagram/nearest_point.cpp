@@ -30,7 +30,7 @@ void NearestPoint::build(Index begin, Index end) {
   for (Index i = begin; i < end; ++i) node.box.extend(node.axes * points_[i]);
   nodes_.push_back(node);
   if (end - begin <= kLeafSize) return;
-  const Vector axis = node.axes.row(2);  // of the greatest extent
+  const Vector axis = node.axes.row(2);  // the axis of greatest extent
   const Index middle = begin + (end - begin) / 2;
   std::nth_element(points_.begin() + begin, points_.begin() + middle, points_.begin() + end,
                    [&](const Point& a, const Point& b) { return axis.dot(a) < axis.dot(b); });
@@ -39,7 +39,7 @@ void NearestPoint::build(Index begin, Index end) {
   build(middle, end);
 }
 
-// A little less than computed, since rotating rounds.
+// A little less than the computed value, because of the rounding errors of the rotation.
 double NearestPoint::squared_distance_bound(Index node, const Point& q) const {
   return nodes_[node].box.squaredExteriorDistance(nodes_[node].axes * q) * (1 - 0x1p-40);
 }

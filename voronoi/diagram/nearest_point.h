@@ -6,9 +6,9 @@
 
 namespace orchard::detail {
 
-// A tree of boxes around points that finds the nearest one within a ball. Knows nothing of any diagram, so it can judge
-// one. The boxes are tight and turned along the points' principal axes: a ball that only touches the surface that the
-// points are on misses nearly all of them, where upright boxes would stick out by their width.
+// Finds the nearest point within a ball by a tree of boxes. It uses no diagram, so it can serve to check one. The boxes
+// are tight and turned along the principal axes of their points: a ball that only touches the surface on which the
+// points lie misses nearly all of these boxes, whereas it would cut many upright boxes.
 class NearestPoint {
  public:
   explicit NearestPoint(std::span<const Point> points);
@@ -16,7 +16,7 @@ class NearestPoint {
   // The squared distance from q to the nearest point, or the limit if no point is nearer than that.
   double squared_distance(const Point& q, double limit) const;
 
-  // The points within the ball go to `found`; false if these are more than `max`: then they are not all there.
+  // Stores the points within the ball in `found`. Returns false if there are more than `max`; some are then missing.
   bool within(const Point& q, double squared_radius, std::size_t max, std::vector<Point>& found) const;
 
  private:

@@ -1,5 +1,5 @@
-// Everything that happens to one cavity, from its deletion to its new vertices, works on the same arrays, so that a
-// point is inserted within the cache; hence more than 300 lines.
+// All steps of one insertion, from the deleted vertices to the new ones, work on the same arrays, which stay in the
+// cache; hence more than 300 lines in one file.
 #include "insertion/cavity.h"
 
 #include <algorithm>
@@ -51,8 +51,8 @@ void Cavity::note_boundary() {
   }
 }
 
-// With what changes on the way in variables of its own: stores of bytes may be to anywhere, as far as compilers know,
-// and to wait for a count to come back from memory for each corner is most of the time.
+// Values that change in the loop are kept in local variables. Otherwise the compiler has to assume that each store of a
+// byte may change them, and loading a count from memory again for every corner takes most of the time.
 void Cavity::note_facets() {
   if (!is_boundary_noted_) note_boundary();
   const std::size_t count = boundary_.size();
@@ -116,7 +116,7 @@ void Cavity::delete_legally(Index v) {
   for (Index point : workspace_.vertices[v].forming_points) local(point);
   const auto count = static_cast<Index>(local_points_.size());
   if (count <= edge_limit_) return note_edges(v);
-  // More points than the table was set up for: twice as many, and everything again.
+  // There are more points than the table has room for: it is set up for twice as many and filled again.
   edge_limit_ = std::max(EdgeTable::kDense, 2 * count);
   edges_.reset(edge_limit_);
   for (Index d : deleted_.items()) note_edges(d);
@@ -137,13 +137,13 @@ Sign Cavity::side_of_facet(Index v, unsigned i) const {
   const Point& first = workspace_.points[corner[a]];
   const Point& second = workspace_.points[corner[b]];
   if (corner[c] != kInfinitePoint) return volume_sign(position_, first, second, workspace_.points[corner[c]]);
-  // A new vertex at infinity cannot be turned over, but it needs a triangle.
+  // A new vertex at infinity always has the right orientation, but its points must form a triangle.
   Vector normal;
   return sharp_normal(position_, first, second, normal) ? Sign::positive : Sign::uncertain;
 }
 
 bool Cavity::place_vertices() {
-  // The last four may reach beyond the last facet.
+  // Facets are placed four at a time, so the last four may reach beyond the last facet.
   if (fresh_.size() < facets_.size() + kLanes - 1) fresh_.resize(facets_.size() + kLanes - 1);
   bool visible = true;
   worst_ = Placing::good;
@@ -164,7 +164,7 @@ bool Cavity::place_vertices() {
       facet.placing = Placing::good;
       facet.visible = true;
     }
-    // Those that are not good beyond any question.
+    // The facets whose vertices are not certainly good are placed one by one.
     for (unsigned rest = ~qualities.good & ((1u << count) - 1); rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<unsigned>(std::countr_zero(rest));
       visible &= place_vertex(first + lane, in_lanes, qualities[lane]);
@@ -179,7 +179,8 @@ inline void Cavity::note_forming_points(std::size_t f) {
   fresh_[f].forming_points[facets_[f].slot] = new_point_;
 }
 
-// Of four facets at once. Those at infinity have a point without a place, so that they are never good.
+// Places the spheres of four facets at once. Facets with the point at infinity, which has no position, never count as
+// good.
 inline void Cavity::place_spheres(std::size_t first, std::size_t end, FourQualities& qualities) {
   FourTriangles triangles;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
@@ -191,7 +192,8 @@ inline void Cavity::place_spheres(std::size_t first, std::size_t end, FourQualit
   place_four(position_, workspace_.placing_limits(undoubted_), triangles, &fresh_[first], qualities);
 }
 
-// True if the facet is visible. `placed`: what its sphere is like, if it has one already.
+// Places one new vertex. Returns whether the facet is visible from the new point. `placed`: the quality of the sphere
+// that place_spheres() has computed, if `has_sphere`.
 bool Cavity::place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed) {
   Facet& facet = facets_[f];
   VoronoiVertex& vertex = fresh_[f];
@@ -221,8 +223,8 @@ bool Cavity::link_vertices() {
   return local_points_.size() <= kManyPoints ? link_by(many_links_) : link_by_lists();
 }
 
-// Facets that meet in an edge run along it in opposite directions. Without branches on the way: all edges go into the
-// table, then each looks for its opposite.
+// Links facets that share an edge: they run along it in opposite directions. To have no branches, first all edges are
+// entered in the table, then each edge looks for the opposite one.
 template <unsigned kPoints, unsigned kStride>
 bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
   using Table = LinkTable<kPoints, kStride>;
@@ -232,7 +234,7 @@ bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
   for (unsigned f = 0; f < facets_.size(); ++f) {
     const auto& [a, b, c] = facets_[f].local;
     for (const Index edge : {b * kStride + c, c * kStride + a, a * kStride + b}) {
-      good &= (table[edge] ^ round) > Table::kFacetMask;  // no other facet has it in this direction
+      good &= (table[edge] ^ round) > Table::kFacetMask;  // true if no other facet has the edge in this direction
       table[edge] = static_cast<std::uint16_t>(round | f);
     }
   }
@@ -252,13 +254,14 @@ bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
   return good;
 }
 
-// Each edge waits at its corner of fewer facets, of which there are few for most edges of any sphere: a planar graph
-// has fewer than three edges a corner. Without hashing.
+// Links facets by lists of edges, without hashing: each edge that waits for its opposite is in the list of that of its
+// corners that has fewer facets. These lists are short for most edges, because a planar graph has fewer than three
+// edges per corner.
 bool Cavity::link_by_lists() {
   const auto count = static_cast<Index>(facets_.size());
   const Facet* const facets = facets_.data();
   VoronoiVertex* const fresh = fresh_.data();
-  // By how many facets a corner has, then by its number.
+  // Ranks corners by their number of facets, then by their own number.
   ranks_.resize(local_points_.size());
   std::iota(ranks_.begin(), ranks_.end(), std::uint64_t{0});
   std::uint64_t* const ranks = ranks_.data();
@@ -295,10 +298,10 @@ bool Cavity::link_by_lists() {
   return open == 0;
 }
 
-// Without branches: on grids nearly every point comes here.
+// The loop has no branches, because on grids nearly every insertion calls this.
 bool Cavity::is_ball() {
   bool loses_point = false;
-  const Index known_new = std::exchange(known_local(new_point_), Index{0});  // that is not lost
+  const Index known_new = std::exchange(known_local(new_point_), Index{0});  // the new point does not count as lost
   for (const Index v : deleted_.items()) {
     const auto& [a, b, c, d] = workspace_.vertices[v].forming_points;
     const bool loses_a = known_local(a) == kNone, loses_b = known_local(b) == kNone, loses_c = known_local(c) == kNone,
@@ -307,16 +310,17 @@ bool Cavity::is_ball() {
   }
   known_local(new_point_) = known_new;
   if (loses_point) return false;
-  // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
-  // would have to touch themselves in points to get there, so one piece is a sphere that does not. And where the new
-  // point sees every facet, a piece fills its view once at least, and all of them together once, for tetrahedra do not
-  // overlap: so there is one. That says nothing of facets at infinity.
+  // Each edge has two facets, and there are as many facets as one sphere through these points has. Several pieces, or a
+  // piece with a handle, can have that number only if they touch themselves in points. So if there is one piece, it is
+  // a sphere that does not touch itself. If the new point sees every facet, each piece covers its whole view at least
+  // once, and all pieces together cover it exactly once, since tetrahedra do not overlap: so there is one piece. This
+  // argument does not hold for facets at infinity.
   if (visible_ && known_local(kInfinitePoint) == kNone) return true;
   if (!are_local_points_on_boundary()) return false;
   return facets_.size() <= 64 ? is_one_small_piece() : is_one_piece();
 }
 
-// A point that was on the boundary before more was deleted may be within by now.
+// A point that was on the boundary at first may be inside the cavity after more vertices were deleted.
 bool Cavity::are_local_points_on_boundary() {
   reached_.assign(local_points_.size(), false);
   for (const Facet& facet : facets_)
@@ -324,7 +328,8 @@ bool Cavity::are_local_points_on_boundary() {
   return std::find(reached_.begin(), reached_.end(), false) == reached_.end();
 }
 
-// From one facet to its neighbours and on, each a bit; two at a time, lest each waits for the last.
+// A search from facet to neighbouring facets, with one bit for each facet. Two facets are handled at a time, so that a
+// step need not wait for the one before.
 bool Cavity::is_one_small_piece() const {
   std::array<std::uint64_t, 64> around;
   const auto bit = [](Index f) { return std::uint64_t{1} << f; };
@@ -361,14 +366,14 @@ bool Cavity::is_one_piece() {
   return count == facets_.size();
 }
 
-// All spheres through a facet cut its plane in the same circle, and their centres lie on a line. By how much the centre
-// of that through the new point is off that of the neighbour's sphere is the new point's power with respect to this one
-// over twice its height above the facet.
+// All spheres through a facet cut its plane in the same circle, and their centres lie on a line. The distance between
+// the centres of the sphere through the new point and of the neighbour's sphere is the new point's power with respect
+// to the neighbour's sphere, divided by twice the new point's height above the facet.
 bool Cavity::doubts_are_harmless() const {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
     const double power = workspace_.power(facet.outside, position_);
-    if (!(power > 0) || facet.placing == Placing::shared) continue;  // at infinity neither
+    if (!(power > 0) || facet.placing == Placing::shared) continue;  // nor do vertices at infinity matter
     if (workspace_.harmless(power, fresh_[f], facet.error_class)) continue;
     const Vector& a = from_new_[facet.local[0]].vector;
     const Vector& b = from_new_[facet.local[1]].vector;
@@ -399,8 +404,8 @@ Index Cavity::place_flat_vertices() {
       ++coplanar;
       continue;
     }
-    // With exact signs, such vertices are many, and most are soon deleted again: a place that is good enough to walk by
-    // will do until the end.
+    // With exact signs there are many such vertices, and most are soon deleted again. Until the end, a position that is
+    // good enough for walks will do.
     const bool exact = workspace_.exact();
     if (exact && facet.placing == Placing::thin) continue;
     const auto circumcenter = exact ? rough_circumcenter : sharp_circumcenter;
@@ -409,7 +414,7 @@ Index Cavity::place_flat_vertices() {
       vertex.center = position_ + relative;
     } else if (facet.placing == Placing::failed) {
       coplanar += !exact;
-      // The undeleted neighbour's place; if that is at infinity, far away in its direction.
+      // Takes the position of the neighbour that is not deleted; if that is at infinity, one far away in its direction.
       const bool bounded = outside.forming_points[3] != kInfinitePoint;
       vertex.center = bounded ? outside.center : Point(position_ + workspace_.far() * outside.center);
     }
@@ -418,7 +423,7 @@ Index Cavity::place_flat_vertices() {
   return coplanar;
 }
 
-// Where the new vertices go: the places of the deleted ones first, which are in the cache.
+// Chooses the slots of the new vertices: first those of deleted vertices, which are in the cache.
 void Cavity::choose_slots() {
   const auto reused = deleted_.items().first(std::min(deleted_.size(), facets_.size()));
   slots_.assign(reused.begin(), reused.end());
@@ -445,7 +450,8 @@ Index Cavity::replace() {
     const Facet& facet = facets_[f];
     const VoronoiVertex& vertex = fresh_[f];
     if (slots_[f] == workspace_.vertices.size()) workspace_.append();
-    // One by one into their place: to load what was just stored in parts takes long.
+    // Neighbours are written directly to their place: loading a value as a whole right after storing it in parts is
+    // slow.
     workspace_.store_but_neighbors(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
     const auto& [a, b, c, d] = vertex.neighbors;
     auto& neighbors = workspace_.vertices[slots_[f]].neighbors;
@@ -454,7 +460,7 @@ Index Cavity::replace() {
     workspace_.set_neighbor(facet.outside, facet.back, slots_[f]);
     if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }
-  deleted_.clear();  // their marks went with them
+  deleted_.clear();  // storing the new vertices has removed their marks
   return last;
 }
 

@@ -15,7 +15,7 @@
 namespace orchard::detail {
 
 #ifdef ORCHARD_FOUR_LANES
-// For each set of four items the bytes of those first that are in it.
+// For each subset of four items, the order of bytes that moves the items of the subset to the front.
 struct alignas(16) OrderOfBytes : std::array<std::uint8_t, 16> {};
 inline constexpr std::array<OrderOfBytes, 16> kFirstOfFour = [] {
   std::array<OrderOfBytes, 16> orders{};
@@ -29,11 +29,12 @@ inline constexpr std::array<OrderOfBytes, 16> kFirstOfFour = [] {
 }();
 #endif
 
-// The vertices that one new point deletes, what surrounds them, and the new vertices that replace them. As tetrahedra:
-// a cavity, its boundary facets, and the tetrahedra from the new point to these facets.
+// The vertices that one new point deletes, the boundary around them, and the new vertices that replace them. In terms
+// of tetrahedra: a cavity, its boundary facets, and the tetrahedra between the new point and these facets.
 class Cavity {
  public:
-  // A list to which items can be added without a branch: write at the end, then move the end or not.
+  // A list to which items can be added conditionally without a branch: the item is always written after the end, and
+  // the end moves if the condition holds.
   class List {
    public:
     std::span<const Index> items() const { return {room_.data(), count_}; }
@@ -46,23 +47,23 @@ class Cavity {
     void ensure_room() {
       if (count_ + 4 > room_.size()) room_.resize(2 * room_.size() + 64);
     }
-    // Where the items are, with room for so many more, and how many there are then.
+    // Returns the items, with room for `more` further ones.
     Index* room_for(std::size_t more) {
       if (count_ + more + 4 > room_.size()) room_.resize(2 * (count_ + more) + 64);
       return room_.data();
     }
     void resize(std::size_t count) { count_ = count; }
-    // Up to four times after ensure_room().
+    // May be called up to four times after ensure_room().
     void push_if(Index item, bool condition) {
       room_[count_] = item;
       count_ += condition;
     }
-    // The items outside of the list, until resize() brings their number back: only items are written then.
+    // The items and their number as local variables, for loops that only append. resize() then stores the number.
     struct Open {
       Index* items;
       std::size_t count;
 #ifdef ORCHARD_FOUR_LANES
-      // Those of four items that have a bit set, where there is room for four.
+      // Appends those of four items whose bit is set. Precondition: there is room for four items.
       ORCHARD_AVX2 void push_four(__m128i four, unsigned bits) {
         const auto* const order = reinterpret_cast<const __m128i*>(kFirstOfFour[bits].data());
         _mm_storeu_si128(reinterpret_cast<__m128i*>(items + count), _mm_shuffle_epi8(four, _mm_load_si128(order)));
@@ -70,7 +71,7 @@ class Cavity {
       }
 #endif
     };
-    // The first so many items that were written, and room for so many.
+    // Returns the first `count` items, with room for `room` items in all.
     Open open(std::size_t count, std::size_t room) {
       if (room > room_.size()) room_.resize(room);
       return {room_.data(), count};
@@ -81,13 +82,14 @@ class Cavity {
     std::size_t count_ = 0;
   };
 
-  // A boundary facet. It makes a new vertex: the deleted one's forming points but for the new one at `slot`.
+  // A boundary facet. It gives a new vertex, whose forming points are those of the deleted vertex, except that the new
+  // point replaces the one at `slot`.
   struct Facet {
-    Index inside, outside;       // the deleted vertex and the undeleted one across
-    std::array<Index, 3> local;  // its corners, into the local points, in the order of kOthers[slot]
-    std::uint8_t slot, back;     // the inside's neighbour `slot` is the outside, whose neighbour `back` is the inside
+    Index inside, outside;       // the deleted vertex, and the kept vertex across the facet
+    std::array<Index, 3> local;  // its corners, as indices into the local points, in the order of kOthers[slot]
+    std::uint8_t slot, back;     // neighbour `slot` of `inside` is `outside`, and neighbour `back` of that is `inside`
     std::uint8_t error_class;    // of the new vertex
-    bool visible;                // from the new point
+    bool visible;                // whether the new point sees the facet from its inner side
     Placing placing;
   };
   // kOthers[i]: the other corners, so that (i, others) is an even permutation. The infinite corner 3 comes last.
@@ -95,19 +97,19 @@ class Cavity {
 
   explicit Cavity(Workspace& workspace) : workspace_(workspace) {}
 
-  // Where vertices may be replaced from now on. Only delete_nearer(), widen() and what follows them heed it; no marks
-  // may be left.
+  // Sets the region in which vertices may be replaced from now on. Only delete_nearer(), widen() and the functions that
+  // follow them respect it. Precondition: no vertex has a mark.
   void enter(const Region& territory) { territory_ = territory; }
-  // Whether the search came to a vertex that is not to be touched: the point cannot be inserted from here then.
+  // Whether the search reached a vertex outside the region. The point cannot be inserted in this region then.
   bool left_territory() const { return left_territory_; }
-  // What it would have deleted then.
+  // The vertex outside the region that would have to be deleted.
   Index blocker() const { return blocker_; }
-  // Whether there are free vertices for all that replace() makes.
+  // Whether there are enough free vertices for the new ones of replace().
   bool has_room() const {
     return territory_.whole() || facets_.size() <= deleted_.size() + territory_.free_vertices->size();
   }
 
-  // Starts over for a new point: nothing deleted, all marks removed.
+  // Begins the insertion of a new point: no vertex is deleted, and all marks are removed.
   void begin(Index new_point);
   // Removes all marks.
   void end();
@@ -115,13 +117,13 @@ class Cavity {
   std::span<const Index> deleted() const { return deleted_.items(); }
   const std::vector<Facet>& facets() const { return facets_; }
 
-  // Deletes all vertices, connected with the first, whose sign is certainly positive. True if no sign was in doubt and
-  // the territory was not left.
+  // Deletes all vertices that are connected to `start` and whose sign is certainly positive. Returns whether no sign
+  // was uncertain and the search stayed in the region.
   bool delete_nearer(Index start);
-  // The same whatever the territory, as long as the new point sees all of the boundary: false where it was found on the
-  // way that it does not, and nothing but end() is to be called then. `certain`: whether no sign was in doubt.
+  // Does the same without regard to the region. Returns false, and must be followed by end(), if the new point turns
+  // out not to see all of the boundary. Sets `certain` to whether no sign was uncertain.
   bool delete_nearer_in_sight(Index start, bool& certain);
-  // Deletes a vertex whatever may come of it.
+  // Deletes a vertex without any check.
   void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
     deleted_.push(v);
@@ -132,53 +134,55 @@ class Cavity {
     if (workspace_.mark(v) == Mark::unseen) seen_.push(v);
     workspace_.set_mark(v, mark);
   }
-  // Deletes the vertices in doubt behind boundary facets that the new point does not see, after place_vertices found
-  // some. In exact arithmetic these are nearer to the new point: the boundary of all that are is seen all around. False
-  // if there is none in doubt.
+  // Deletes the uncertain vertices behind boundary facets that the new point does not see; call it if place_vertices()
+  // found such facets. In exact arithmetic these vertices are nearer to the new point, because a point sees the whole
+  // boundary of the vertices that are nearer to it. Returns false if no such vertex is uncertain.
   bool widen();
-  // Notes the boundary facets, once all deletions are made.
+  // Records the boundary facets. Call it after all deletions.
   void note_facets();
 
-  // The constrained search's view: whether deleting one more vertex keeps Inagaki et al.'s constraints; and deleting
-  // it.
+  // For the constrained search: return whether deleting one more vertex keeps the constraints of Inagaki et al., and
+  // delete it.
   bool legal(Index v) const;
   void delete_legally(Index v);
 
-  // On which side of the facet between v and its neighbour i the new point is: positive on v's, where the facet can be
-  // part of the boundary.
+  // Returns the side of the facet between v and its neighbour i on which the new point lies. It is positive on the side
+  // of v; only then can the facet be part of the boundary.
   Sign side_of_facet(Index v, unsigned i) const;
 
-  // Places the new vertices. True if every facet is visible from the new point: all new vertices oriented positively.
+  // Places the new vertices. Returns whether the new point sees every facet, so that all new vertices are oriented
+  // positively.
   bool place_vertices();
-  // The worst of their placings.
+  // Returns the worst placing of the new vertices.
   Placing worst_placing() const { return worst_; }
-  // Joins the new vertices with each other; false unless the boundary is closed, with two facets on each edge and the
-  // number of facets that a sphere has.
+  // Makes the new vertices neighbours of each other. Returns false unless the boundary is closed, with two facets at
+  // each edge and the number of facets of a sphere.
   bool link_vertices();
-  // Whether the boundary is one piece and no point but the new one lies within. After place_vertices and link_vertices.
+  // Returns whether the boundary is connected and no point except the new one lies inside. Call it after
+  // place_vertices() and link_vertices().
   bool is_ball();
-  // Whether no new vertex is moved, farther than does harm, by the new point's being in the sphere of an undeleted
-  // neighbour. That a doubtful vertex was kept is magnified where the new point is low above the facet. After
-  // place_vertices.
+  // Returns whether keeping uncertain vertices is harmless. If the new point lies in the sphere of a kept vertex, the
+  // new vertex beside it is wrong by the depth of the point, magnified where the new point is low above the facet
+  // between the two. Call it after place_vertices().
   bool doubts_are_harmless() const;
-  // Positions of the vertices that were not placed. The number of those with coplanar forming points, whose position is
-  // an approximation.
+  // Computes positions for the vertices that were not placed. Returns the number of those with coplanar forming points,
+  // whose position is an approximation.
   Index place_flat_vertices();
-  // Replaces the deleted vertices by the new ones and removes all marks. The last new vertex that has a position.
+  // Replaces the deleted vertices by the new ones and removes all marks. Returns the last new vertex with a position.
   Index replace();
   // The new vertices, after replace().
   std::span<const Index> created() const { return slots_; }
 
  private:
-  // An edge of one facet that waits for the other one, in a list of those that wait at the same corner.
+  // An edge of one facet until the other facet with this edge is found; an item of a list of the edges at a corner.
   struct Link {
-    Index far, next, facet;  // the edge's other corner; the facet is kNone once the other one has come
-    std::uint8_t slot;       // of the facet's vertex: the neighbour across the edge
-    bool outward;            // whether the facet runs along the edge to its other corner
+    Index far, next, facet;  // the other corner of the edge; `facet` is kNone once the other facet is found
+    std::uint8_t slot;       // the neighbour, across the edge, of the vertex of the facet
+    bool outward;            // whether the edge runs to its other corner in the order of the facet
   };
 
-  // For each directed edge between so many local points the facet that has it, and the round in which that was written:
-  // a sphere with that many corners has twice as many facets but for four.
+  // For each directed edge between up to kPoints local points: the facet with this edge, and the round in which it was
+  // written. A triangulated sphere with n corners has 2 n - 4 facets.
   template <unsigned kPoints, unsigned kStride>
   struct LinkTable {
     static constexpr unsigned kFacetBits = std::bit_width(2 * kPoints - 1);
@@ -186,7 +190,7 @@ class Cavity {
     std::vector<std::uint16_t> entries;
     unsigned round = 0;
 
-    // The next round, in the place where it is kept.
+    // Begins the next round. Returns its number, shifted to its place in an entry.
     unsigned begin() {
       if (entries.empty() || ++round >> (16 - kFacetBits) != 0) {
         entries.assign(std::size_t{kPoints} * kStride, 0);
@@ -197,7 +201,8 @@ class Cavity {
   };
   static constexpr unsigned kFewPoints = 64, kManyPoints = 512;
 
-  // The number of a local point, a new one if it has none yet; without branches, after local_points_.ensure_room().
+  // Returns the number of a local point, which gets a new number if it has none. It has no branches; call
+  // local_points_.ensure_room() before.
   Index local(Index point) {
     Index& known = known_local(point);
     const bool fresh = known == kNone;
@@ -215,13 +220,13 @@ class Cavity {
   bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
   bool leave_territory(Index blocker);
   bool is_turned_away(Index v, unsigned i) const;
-  // Around those of the deleted vertices from the first to the end.
+  // Examine the neighbours of the deleted vertices from number `first` to number `end`.
   bool delete_nearer_around(std::size_t first, std::size_t end);
   bool delete_nearer_one_by_one(std::size_t first, std::size_t end);
   bool delete_nearer_by_four(std::size_t first, std::size_t end);
   bool is_nearer_after_all(Index u, bool& certain);
   unsigned nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain);
-  // The infinite point, being the highest number, wraps around to the first place.
+  // The infinite point has the highest number, so the sum wraps around to the first element.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
   void fetch_around(Index v) const;
@@ -239,24 +244,24 @@ class Cavity {
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;
-  bool visible_ = false;            // all facets
+  bool visible_ = false;            // whether the new point sees all facets
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
-  bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
-  bool undoubted_ = false;          // and no sign was in doubt, nor is the new point on the sphere of what is kept
+  bool is_boundary_noted_ = false;  // whether delete_nearer() recorded it, and nothing was deleted since
+  bool undoubted_ = false;          // also no sign was uncertain, and the new point is on no sphere of a kept vertex
   List local_points_;               // the points of the boundary, the one at infinity included
   std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;
-  std::vector<VoronoiVertex> fresh_;      // of each facet; neighbours are facets until replace(), itself for outside
+  std::vector<VoronoiVertex> fresh_;      // the new vertex of each facet; neighbours are facets until replace()
   std::vector<std::uint8_t> reached_;     // by facet or local point
   std::vector<LengthedVector> from_new_;  // from the new point to each local one
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
-  std::vector<std::uint64_t> ranks_;  // by local point, and the next likewise
+  std::vector<std::uint64_t> ranks_;  // by local point, as is the next one
   std::vector<Index> waiting_;
   std::vector<Link> links_;
   LinkTable<kFewPoints, kFewPoints> few_links_;
-  LinkTable<kManyPoints, kManyPoints + 16> many_links_;  // rows of a power of two would share a few lines of the cache
-  Index edge_limit_ = 0;  // local points that the edge table was set up for, in the constrained search
+  LinkTable<kManyPoints, kManyPoints + 16> many_links_;  // rows of a power of two would compete for a few cache lines
+  Index edge_limit_ = 0;  // the number of local points for which the edge table was set up, in the constrained search
 };
 
 }  // namespace orchard::detail

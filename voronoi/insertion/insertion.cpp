@@ -1,5 +1,5 @@
-// What becomes of one point after the other, from its place in the diagram to the doubts that it leaves: one thought,
-// hence more than 300 lines.
+// How points are inserted one after another: the ways to insert a point, and the order in which they are tried. They
+// refer to each other throughout, hence more than 300 lines in one file.
 #include "insertion/insertion.h"
 
 #include <algorithm>
@@ -11,16 +11,16 @@
 namespace orchard::detail {
 namespace {
 
-// How many insertions may need exact signs or the constrained search, or be deferred, before all are rebuilt with
-// exact signs.
+// At most this many insertions (a number plus one in so many of the expected points) may need exact signs, need the
+// constrained search or be deferred. If there are more, the diagram is built again with exact signs.
 constexpr std::uint64_t kMaxDoubtful = 16, kMaxDoubtfulOneIn = 4;
 
-// How many points may be deferred before any is inserted: then what was there is exact and thin, as where rounding has
-// put points off planes, and nothing will fit that is not.
+// If this many points are deferred before the first is inserted, the diagram that was there is exact and has thin
+// tetrahedra, as where rounding has moved points off planes. Insertions without exact signs will not fit into it.
 constexpr std::size_t kHopeless = 32;
 
-// From how many deferred points on, and with fewer than one in how many inserted, trying all of them once more is not
-// worth it: the time would grow with the square of their number.
+// With more than kManyDeferred deferred points, all of them are tried again only if more than one in kWorthRepeating
+// could be inserted: otherwise the time would grow with the square of their number.
 constexpr std::size_t kManyDeferred = 32, kWorthRepeating = 8;
 
 }  // namespace
@@ -39,13 +39,15 @@ bool Inserter::start(const std::array<Index, 4>& points) {
   const auto from_first = [&](unsigned i) { return workspace_.points[corner[i]] - workspace_.points[corner[0]]; };
   if (from_first(1).cross(from_first(2)).dot(from_first(3)) < 0) std::swap(corner[2], corner[3]);
 
-  // The boundary of a four-simplex: five vertices, each with all of the five points but one.
+  // The first diagram is the boundary of a four-simplex: five vertices, each formed by all but one of five points (the
+  // four given ones and infinity).
   const std::array<Index, 5> five{corner[0], corner[1], corner[2], corner[3], kInfinitePoint};
   workspace_.resize(5);
   for (Index left_out = 0; left_out < 5; ++left_out) {
     std::array<Index, 4> own{0, 1, 2, 3};
     if (left_out < 4) {
-      // Infinity in the place of a corner is on the other side of the facet: one swap mends the orientation.
+      // Infinity lies on the other side of the facet than the corner that it replaces: swapping two points restores the
+      // orientation.
       own[left_out] = 4;
       if (left_out == 3)
         std::swap(own[0], own[1]);
@@ -87,7 +89,8 @@ bool Inserter::insert_deferred(Patch* patch) {
     const bool many = before > kManyDeferred;
     if (inserted > (many ? before / kWorthRepeating : 0)) continue;
     if (many && insert_by_patch(patch)) return true;
-    // One goes in whatever it overrules, and others may fit then; of many, each is tried only once more.
+    // Inserts one point even if that overrules certain signs; others may fit after that. If there are many, each is
+    // tried only once more.
     for (std::size_t left = many ? deferred_.size() : 1; left > 0; --left) {
       const Index point = deferred_.back();
       if (!(many && insert_now(point)) && !insert_anyhow(point)) return insert_by_patch(patch);
@@ -97,7 +100,7 @@ bool Inserter::insert_deferred(Patch* patch) {
   return true;
 }
 
-// All that are deferred, together.
+// Inserts all deferred points together, by a patch.
 bool Inserter::insert_by_patch(Patch* patch) {
   if (patch == nullptr || deferred_.empty()) return deferred_.empty();
   std::vector<Index> starts;
@@ -137,7 +140,8 @@ bool Inserter::insert_now(Index point) {
   return true;
 }
 
-// By one of the searches that always find a ball, whatever signs it overrules. To be called after Cavity::begin.
+// Inserts a point by one of the searches that always delete a ball, even against certain signs. To be called after
+// Cavity::begin.
 void Inserter::insert_constrained(Index start, const Point& q) {
   if (search_ == Search::inagaki)
     search_breadth_first(climb(start, q), q);
@@ -150,10 +154,10 @@ void Inserter::insert_constrained(Index start, const Point& q) {
   finish();
 }
 
-// Without looking at values: right where every sign is certain. A vertex whose sign is in doubt counts as not nearer to
-// the new point, as if each new point were an infinitesimal bit farther away than all before it. With exact signs that
-// always gives a ball that the new point sees all around (the boundary of the union of all cells of the degenerate
-// diagram that are strictly nearer); with others it is checked.
+// Inserts a point by signs alone, without computing values: correct if every sign is certain. A vertex whose sign is
+// uncertain counts as not nearer to the new point, as if each new point were infinitesimally farther away than all
+// before it. With exact signs the deleted vertices then always form a ball whose whole boundary the new point sees: the
+// union of all cells of the degenerate diagram that are strictly nearer to it. With other signs this is checked.
 bool Inserter::insert_directly(Index start, const Point& q) {
   if (workspace_.sign(start, q) != Sign::positive) return false;
   bool certain = cavity_.delete_nearer(start);
@@ -164,7 +168,7 @@ bool Inserter::insert_directly(Index start, const Point& q) {
     certain = false;
     cavity_.note_facets();
   }
-  // A thin tetrahedron magnifies what went wrong by a rounding behind its facet.
+  // A thin tetrahedron would magnify the effect of a wrong sign behind its facet.
   if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::shared)) return false;
   if (!cavity_.has_room() || !cavity_.link_vertices()) return false;
   if (!certain && !(cavity_.is_ball() && (workspace_.exact() || cavity_.doubts_are_harmless()))) return false;
@@ -173,15 +177,15 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   return true;
 }
 
-// Where leaving the doubtful vertices alone gave no ball: exact signs settle the doubts, or else the constrained search
-// decides, as long as it overrules no sign that is certain.
+// For a point that could not be inserted by keeping the uncertain vertices. Tries exact signs, and then the constrained
+// search, which must not overrule a certain sign.
 bool Inserter::insert_with_doubts(Index point, Index start, const Point& q) {
   if (too_doubtful()) return false;
   return insert_exactly(point, q) || insert_by_value(point, start, q, false);
 }
 
-// By the constrained search if all new vertices are oriented positively. Where nothing else helps it may overrule signs
-// that seem certain; the certificate judges then.
+// Inserts a point by the constrained search, if all new vertices are oriented positively. With `may_overrule`, when
+// nothing else helps, it may overrule signs that seem certain; the certificate then has to check the result.
 bool Inserter::insert_by_value(Index point, Index start, const Point& q, bool may_overrule) {
   cavity_.begin(point);
   search_highest_first(start, q);
@@ -194,8 +198,8 @@ bool Inserter::insert_by_value(Index point, Index start, const Point& q, bool ma
   return true;
 }
 
-// Where nothing fits: only the vertex whose tetrahedron holds q, and those on whose facets it is, exactly, are deleted.
-// Oriented positively, and far from right: mend() does the rest.
+// The last resort: deletes only the vertex whose tetrahedron holds q, and those on whose facets q lies, by exact signs.
+// The new vertices are oriented positively, but most are not Voronoi vertices: mend() corrects that.
 bool Inserter::insert_sparsely(Index point, const Point& q) {
   const Index start = locate(q);
   workspace_.set_exact(true);
@@ -216,7 +220,7 @@ bool Inserter::insert_sparsely(Index point, const Point& q) {
   return true;
 }
 
-// One insertion with exact signs amid others without.
+// Inserts one point with exact signs while the workspace uses signs of doubles otherwise.
 bool Inserter::insert_exactly(Index point, const Point& q) {
   workspace_.set_exact(true);
   const Index start = locate(q);
@@ -233,7 +237,7 @@ bool Inserter::insert_exactly(Index point, const Point& q) {
   return true;
 }
 
-// Whether the search deleted no vertex that is certainly farther and left none that is certainly nearer.
+// Whether the search deleted no vertex that is certainly not nearer to the new point, and kept none that certainly is.
 bool Inserter::respects_certain_signs(const Point& q) const {
   for (const Index v : cavity_.deleted()) {
     if (workspace_.sign(v, q) == Sign::negative) return false;
@@ -243,12 +247,13 @@ bool Inserter::respects_certain_signs(const Point& q) const {
   return true;
 }
 
-// Dissertation 6.2.3: by value, keeping the five constraints, and one more here: that the new point sees all of the
-// boundary, so that every new vertex is oriented positively and has a position. It starts from the vertex whose
-// tetrahedron holds q, which is deletable by any measure.
-// There all illegal vertices return to the queue after each deletion. Here those return that neighbour the deleted
-// vertex: only they can have become legal, as what makes a vertex illegal stays but for the vertices that it touches
-// (see Cavity::legal). The same order at less cost.
+// The search of dissertation 6.2.3: it deletes vertices in the order of their values, as long as the five constraints
+// hold. Here there is one more constraint: the new point must see all of the boundary, so that every new vertex is
+// oriented positively and has a position. The search starts from the vertex whose tetrahedron holds q, which certainly
+// has to be deleted.
+// In the dissertation all illegal vertices return to the queue after each deletion. Here only the neighbours of the
+// deleted vertex do, because only these can have become legal (see Cavity::legal). The order of deletions is the same,
+// and the cost is lower.
 void Inserter::search_highest_first(Index start, const Point& q) {
   queue_.clear();
   delete_and_queue(walk_by_orientation(start, q), q);
@@ -274,7 +279,7 @@ void Inserter::delete_and_queue(Index v, const Point& q) {
     if (workspace_.mark(u) == Mark::unseen)
       cavity_.add_seen(u, workspace_.sign(u, q) == Sign::positive ? Mark::wanted : Mark::kept);
     if (workspace_.mark(u) == Mark::deleted) continue;
-    // Where q does not see the facet between, no value can be a reason to stop here.
+    // If q does not see the facet between v and u, u has to be deleted whatever its value.
     if (cavity_.side_of_facet(v, i) != Sign::positive)
       enqueue(u, std::numeric_limits<double>::infinity());
     else if (workspace_.mark(u) == Mark::wanted)
@@ -282,7 +287,8 @@ void Inserter::delete_and_queue(Index v, const Point& q) {
   }
 }
 
-// Whether q would see the new boundary facets. If not, and what hides one is in doubt itself, that is wanted as much.
+// Whether q would see the boundary facets that deleting the candidate creates. A vertex behind a facet that q would not
+// see is queued with the candidate's value if its own sign is uncertain.
 bool Inserter::sees_around(const Candidate& candidate, const Point& q) {
   bool sees = true;
   for (unsigned i = 0; i < 4; ++i) {

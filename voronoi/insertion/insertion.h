@@ -13,16 +13,16 @@ class Patch;
 
 // How the vertices that a new point deletes are found.
 enum class Search : std::uint8_t {
-  bowyer,           // all that are nearer to the new point, and failing where that is not a ball
+  bowyer,           // all vertices that are nearer to the new point; fails if these do not form a ball
   inagaki,          // breadth-first and ignoring value, under the five constraints
   highest_first,    // by value, under the five constraints
-  always_by_value,  // the same without the short cut for points whose vertices are beyond doubt, to test the search
+  always_by_value,  // the same without the shortcut for points whose signs are all certain; it tests the search
 };
 
 struct InsertionCounts {
-  std::uint64_t certified = 0;    // every sign was beyond doubt
-  std::uint64_t settled = 0;      // leaving the doubtful vertices alone gave a ball that the new point sees all around
-  std::uint64_t exact = 0;        // the same, after exact arithmetic had settled the doubts
+  std::uint64_t certified = 0;    // every sign was certain
+  std::uint64_t settled = 0;      // keeping the uncertain vertices gave a ball whose boundary the new point sees
+  std::uint64_t exact = 0;        // exact arithmetic decided the uncertain signs
   std::uint64_t constrained = 0;  // the constrained search decided
   std::uint64_t coplanar = 0;     // vertices with an approximate position
 
@@ -33,31 +33,32 @@ struct InsertionCounts {
 // Inserts points one by one into the diagram of a workspace.
 class Inserter {
  public:
-  // `expected`: about how many points it is to insert. How many of them may be in doubt hangs on that.
+  // `expected` is the approximate number of points to insert, on which the allowed number of uncertain points depends.
   Inserter(Workspace& workspace, Search search, std::size_t expected)
       : workspace_(workspace), search_(search), expected_(expected), cavity_(workspace) {}
 
-  // Makes the diagram of four points; false if they are nearly coplanar.
+  // Makes the diagram of four points. Returns false if they are nearly coplanar.
   bool start(const std::array<Index, 4>& points);
-  // Where the signs contradict each other, although the workspace does not ask for exact ones, the point is kept for
-  // insert_deferred(): its neighbours on the same plane or sphere may well settle the doubt. False, with the diagram as
-  // it was, where too many do: then the input is near to degenerate, but not so near that rounding could be the
-  // reason. To be done again with exact signs from the start. Bowyer's search returns false where its premises fail.
+  // Inserts a point. If the computed signs contradict each other (the workspace does not use exact signs), the point is
+  // kept for insert_deferred(), because its later neighbours on the same plane or sphere often resolve the
+  // contradiction. Returns false and leaves the diagram unchanged if too many points are kept: the input is then nearly
+  // degenerate, but not by rounding, and has to be inserted from the start with exact signs. Bowyer's search returns
+  // false if its premises fail.
   bool insert(Index point);
-  // To be called at the end; false, as above, if there are points that do not fit even now, or if it takes too long to
-  // find that out. With a patch, points that do not fit by themselves go in by it, for a certificate that looks at all
+  // Inserts the points that were kept; call it at the end. Returns false, as above, if points still cannot be inserted
+  // or if trying takes too long. With a patch, such points are inserted by it, and a certificate has to check all
   // vertices.
   bool insert_deferred(Patch* patch = nullptr);
-  // Between enter() and leave(): where vertices may be replaced, by several threads that have an inserter each. The
-  // walk to the first point starts from the first of `starts`, and where a walk leads nowhere, it is made again from
-  // the one nearest to the point. They must be owned, and live until then.
+  // Limits the inserter to a region until leave(), so that several threads, each with an inserter of its own, can work
+  // at the same time. The walk to the first point starts at the first of `starts`. A walk that ends without a result is
+  // repeated from the start nearest to the point. The starts must belong to the region and exist until leave().
   void enter(const Region& territory, std::span<const Index> starts);
-  // Only without doubts that take more than leaving vertices alone, and only if all that changes is owned; else false,
-  // with the diagram as it was.
+  // Inserts a point if keeping the uncertain vertices is enough and if all changed vertices belong to the region.
+  // Otherwise returns false and leaves the diagram unchanged.
   bool insert_within(Index point);
-  // Removes all marks, lest other inserters meet them.
+  // Leaves the region and removes all marks, which other inserters must not find.
   void leave();
-  // To be called when others have been at work.
+  // Call it after other inserters have changed the diagram.
   void start_anywhere();
   const InsertionCounts& counts() const { return counts_; }
   bool has_deferred() const { return !deferred_.empty(); }
@@ -68,7 +69,7 @@ class Inserter {
   struct Candidate {
     double value;
     Index vertex;
-    bool operator<(const Candidate& other) const {  // the queue releases the greatest
+    bool operator<(const Candidate& other) const {  // the queue returns the largest one
       return value != other.value ? value < other.value : vertex > other.vertex;
     }
   };
@@ -83,7 +84,7 @@ class Inserter {
   Index locate(const Point& q) const;
   Index nearest_start(const Point& q) const;
   bool is_blocked(const Point& q) const;
-  bool note_blocker(Index v);  // false
+  bool note_blocker(Index v);  // returns false
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
   Index step_by_orientation(Index v, const Point& q) const;
@@ -111,14 +112,14 @@ class Inserter {
   InsertionCounts counts_;
   const char* failure_ = "";
   std::span<const Index> starts_;
-  // Vertices not owned that kept points from being inserted of late: they are as they were, and often in the way of the
-  // next point as well, which saves the walk to it and the search.
+  // Vertices outside the region that recently prevented insertions. They do not change, and often prevent the next
+  // insertion as well; testing them first saves the walk and the search.
   std::array<Index, 4> blockers_{};
   std::size_t next_blocker_ = 0;
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
   std::vector<Index> deferred_;
-  mutable std::size_t searched_ = 0;  // vertices, by highest_of_all()
+  mutable std::size_t searched_ = 0;  // the number of vertices that highest_of_all() has examined
 };
 
 }  // namespace orchard::detail

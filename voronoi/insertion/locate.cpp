@@ -5,27 +5,29 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kNearby = 64;  // vertices in doubt that are searched before all others are
+constexpr std::size_t kNearby = 64;  // vertices with uncertain signs that are searched before all vertices are
 
-// How many vertices may be searched, in terms of all that there are and beside that: rarely is one found that way, and
-// to rebuild everything with exact signs takes less time then.
+// The most vertices that searches of all vertices may look at together: so many times their number, plus a constant.
+// Such a search rarely succeeds; if more are necessary, building the diagram again with exact signs takes less time.
 constexpr std::size_t kMaxSearches = 8, kMaxSearched = 1u << 20;
 
-// Steps of a walk that may have been led astray by what it must not read: a few times the way through a million points.
+// The most steps of a walk in a region. Vertices that it must not read can lead it astray. The number is a few times
+// that of a walk through a million points.
 constexpr std::size_t kPatience = 1024;
 
 }  // namespace
 
-// A vertex that is nearer to q than to its forming points, or as near to that as can be found. Uphill by power: across
-// the facet between two vertices, the side of q has the greater one, so this is a walk straight to q. Where several
-// vertices share one sphere, the power has a plateau, and the sides of the facets are looked at instead.
+// Finds a vertex that is nearer to q than to its forming points, or one that comes as near to that as can be found. It
+// walks uphill by power: of two neighbours, the one on q's side of their common facet has the greater power, so the
+// walk goes straight to q. Where several vertices share one sphere, their powers are equal, and the side of the facet
+// on which q lies decides instead.
 Index Inserter::locate(const Point& q) const {
   const Index reached = walk(q);
   return workspace_.sign(reached, q) == Sign::positive ? reached : highest_nearby(reached, q);
 }
 
-// Breadth-first from where the walk ended, through vertices in doubt; all vertices if that finds none that is certainly
-// nearer to q, as long as that is worth while.
+// Searches breadth-first from where the walk ended, through vertices with uncertain signs. If none of them is certainly
+// nearer to q, searches all vertices, as long as that is worth while (is_lost()).
 Index Inserter::highest_nearby(Index v, const Point& q) const {
   std::vector<Index> reached{v};
   for (std::size_t i = 0; i < reached.size() && i < kNearby; ++i)
@@ -57,7 +59,7 @@ Index Inserter::walk(const Point& q) const {
         workspace_.settle(u);
         power = workspace_.power(u, q);
       }
-      // On the way, a vertex need not be settled: the walk goes uphill all the same.
+      // On the way a vertex need not be settled: an approximate power is enough to go uphill.
       const double bound = workspace_.settled(u) ? workspace_.power_bound(u) : 0;
       if (power > bound) return u;
       if (power > here + bound) {
@@ -80,9 +82,10 @@ Index Inserter::walk(const Point& q) const {
   return territory_.whole() ? highest_of_all(q) : v;
 }
 
-// The neighbour across a facet that certainly parts q from v, or kNone. Not where the walk just came from is not asked:
-// a facet that parts them cannot do so in both directions. Out of the hull only if there is no other way: q may be
-// outside by a rounding, but it is above another facet then.
+// The neighbour across a facet that certainly separates q from v, or kNone. Whether the walk just came from there need
+// not be tested: a facet cannot separate q from the vertices on both of its sides. A neighbour at infinity is chosen
+// only if q is certainly nearer to it or there is no other: q may be outside the hull by a rounding, but then another
+// facet leads on.
 Index Inserter::step_by_orientation(Index v, const Point& q) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   const std::array<Index, 4> neighbors = workspace_.neighbors_now(v);
@@ -99,7 +102,7 @@ Index Inserter::step_by_orientation(Index v, const Point& q) const {
   return outside;
 }
 
-// To the vertex whose tetrahedron holds q; at infinity if q is outside.
+// Walks to the vertex whose tetrahedron holds q, or to a vertex at infinity if q is outside the hull.
 Index Inserter::walk_by_orientation(Index v, const Point& q) const {
   if (workspace_.at_infinity(v) && workspace_.sign(v, q) != Sign::positive) v = workspace_.vertices[v].neighbors[3];
   const std::size_t patience = workspace_.vertices.size() + 64;
@@ -133,7 +136,7 @@ Index Inserter::highest_of_all(const Point& q) const {
   return best;
 }
 
-// Uphill by value.
+// Walks to neighbours with a larger value as long as there are such.
 Index Inserter::climb(Index v, const Point& q) const {
   double here = workspace_.value(v, q);
   for (Index from = kNone; from != v;) {

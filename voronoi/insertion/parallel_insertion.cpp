@@ -31,7 +31,7 @@ bool Inserter::insert_within(Index point) {
   if (is_blocked(q)) return false;
   last_ = walk(q);
   if (!territory_.owns(last_) && !(workspace_.power(last_, q) > 0)) {
-    // The end of a pocket of the territory: from elsewhere there may be a way.
+    // The walk has run into a dead end of the territory. From another start there may be a way.
     last_ = nearest_start(q);
     last_ = walk(q);
   }
@@ -75,22 +75,23 @@ namespace {
 
 std::atomic<std::size_t> large = 100000;
 
-// Parts of a large set: as many points are worth another pass, and as many in each half another cut. And the part of
-// all points that is: a pass looks at all vertices.
+// Another pass is worth its time if at least large_set() / kWorthPass points are waiting, and at least one in
+// kWorthPassOneIn of all points, since a pass looks at all vertices. Another cut of space is worth it if each half gets
+// large_set() / kWorthHalving of the waiting points.
 constexpr std::size_t kWorthPass = 24, kWorthHalving = 1, kWorthPassOneIn = 32;
 constexpr int kPasses = 4;
-constexpr double kMaxLeft = 0.75;          // of a pass's points: where more are left, cavities span the set
-constexpr double kRoomier = 1.03125;       // how much room there is, in terms of what the points should need
-constexpr std::size_t kRoom = 64;          // vertices of a region beyond that
-constexpr std::size_t kReport = 256;       // points of a region that make progress
+constexpr double kMaxLeft = 0.75;          // of a pass's points: if more are left, cavities are too large for regions
+constexpr double kRoomier = 1.03125;       // room for vertices, as a multiple of what the points are expected to need
+constexpr std::size_t kRoom = 64;          // further vertices for each region
+constexpr std::size_t kReport = 256;       // points of a region between two reports of progress
 constexpr std::size_t kStarts = 64;        // vertices of a region that a walk may start from
 constexpr std::size_t kSample = 1u << 17;  // vertices to choose the first cuts by
 constexpr Index kGrain = 1u << 14;         // vertices that a thread looks at at once
 
 class Pass {
  public:
-  // `region_of`: by vertex, as the last pass left it; empty for the first. `end`: all points before it have been
-  // inserted but for those that wait.
+  // `region_of`: the region of each vertex, as the last pass left it; empty for the first pass. `end`: all points
+  // before it are inserted, except those in `waiting`.
   Pass(Workspace& workspace, std::vector<std::uint8_t>& region_of, std::span<const Index> waiting, Index end,
        const std::function<void(std::size_t)>& report)
       : workspace_(workspace),
@@ -105,7 +106,7 @@ class Pass {
     give_room(end);
   }
 
-  // What could not be inserted, ascending.
+  // Returns the points that could not be inserted, ascending.
   std::vector<Index> run(Inserter& inserter) {
     tbb::enumerable_thread_specific<Inserter> inserters(
         [this] { return Inserter(workspace_, Search::highest_first, 0); });
@@ -126,7 +127,7 @@ class Pass {
     std::vector<Index> waiting, left;
     std::vector<Index> room;             // free vertices
     std::vector<Index> starts;           // some of its own
-    std::atomic<std::size_t> taken = 0;  // vertices that were its own when the pass began
+    std::atomic<std::size_t> taken = 0;  // number of vertices that the region owned when the pass began
   };
 
   static unsigned halvings(std::span<const Index> waiting) {
@@ -135,7 +136,8 @@ class Pass {
     return count;
   }
 
-  // Some of all, before there were regions; later those that were mixed, where points wait now.
+  // Vertices to choose the cuts by: for the first pass a sample of all; for later ones those that were mixed, because
+  // the waiting points are near these.
   std::vector<Index> vertices_near() const {
     std::vector<Index> near;
     const std::size_t step = region_of_.empty() ? workspace_.vertices.size() / kSample + 1 : 1;
@@ -163,7 +165,7 @@ class Pass {
                         for (std::size_t r = 0; r < parts_.size(); ++r) parts_[r].taken += taken[r];
                       });
   }
-  // Without branches: as good as random where regions meet.
+  // Has no branches that depend on regions: where regions meet, they could not be predicted.
   std::uint8_t region_of_vertex(Index v) const {
     const auto& corner = workspace_.vertices[v].forming_points;
     if (workspace_.is_free(v)) return Region::kMixed;
@@ -173,7 +175,7 @@ class Pass {
     const bool mixed = ((a ^ others[0]) | (a ^ others[1]) | (a ^ others[2])) != 0;
     return static_cast<std::uint8_t>(a | (mixed ? unsigned{Region::kMixed} : 0u));
   }
-  // Evenly over the numbers, of which neighbours in space mostly have neighbouring ones.
+  // Chooses starts evenly by number, since vertices with neighbouring numbers are mostly neighbours in space.
   void find_starts(std::uint8_t r) {
     const std::size_t count = region_of_.size(), step = count / (kStarts * parts_.size()) + 1;
     for (std::size_t v = 0; v < count; ++v) {
@@ -186,7 +188,8 @@ class Pass {
     }
   }
 
-  // As many vertices for each point as the others have taken, more where theirs are denser: free ones first.
+  // Reserves vertices for each region: for each waiting point as many as the inserted points have taken, and more in
+  // regions where these have taken more. Free vertices are used first.
   void give_room(Index end) {
     auto& free = workspace_.free_vertices;
     std::array<std::size_t, 256> inserted{};
@@ -195,7 +198,7 @@ class Pass {
     for (const Part& part : parts_) waiting += part.waiting.size();
     const double of_all =
         static_cast<double>(workspace_.vertices.size() - free.size()) / static_cast<double>(end - waiting);
-    // Mixed vertices belong to no region: only how the regions differ is told by what they own.
+    // Mixed vertices belong to no region, so the vertices that regions own tell only the ratios between the regions.
     std::vector<double> shares(parts_.size());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
       const auto points = static_cast<double>(parts_[r].waiting.size());

@@ -9,14 +9,14 @@
 namespace orchard::detail {
 namespace {
 
-// Vertices that a patch may have, beside one in so many of all: where more have to go, rebuilding everything takes less
-// time.
+// The most vertices of a patch: this number plus one in so many of all. If more have to be replaced, it is faster to
+// build the whole diagram again.
 constexpr std::size_t kMaxPatch = 1u << 12, kMaxPatchOneIn = 64;
 
-// Times that a patch may grow, and after how many of these by a layer more.
+// The most times that a patch may grow, and after how many of these it grows by one layer more.
 constexpr int kMaxRounds = 64, kLayerOneIn = 4;
 
-// Vertices that are enclosed by a patch, in one place.
+// The most vertices that one region enclosed by a patch may have.
 constexpr std::size_t kMaxEnclosed = 1u << 10;
 
 constexpr std::uint8_t kInside = 1, kFarOutside = 2, kReached = 3;
@@ -67,14 +67,14 @@ void Patch::add(Index v) {
   patch_.push_back(v);
 }
 
-// By so many layers around those from this one on.
+// Adds layers of vertices around the patch's vertices from number `from` on.
 void Patch::grow(std::size_t from, int layers) {
   for (; layers > 0; --layers)
     for (const std::size_t end = patch_.size(); from < end; ++from)
       for (const Index next : workspace_.vertices[patch_[from]].neighbors) add(next);
 }
 
-// What the patch encloses goes with it. Whether there is something.
+// Adds the vertices that the patch encloses. Returns whether there are any.
 bool Patch::add_enclosed() {
   const std::size_t before = patch_.size();
   for (std::size_t i = 0; i < patch_.size(); ++i)
@@ -86,7 +86,7 @@ bool Patch::add_enclosed() {
   return patch_.size() > before;
 }
 
-// Whether only a few vertices are reached from this one outside of the patch.
+// Whether only a few vertices can be reached from this one without crossing the patch.
 bool Patch::is_enclosed(Index first) {
   reached_.assign({first});
   side_[first] = kReached;
@@ -102,7 +102,7 @@ bool Patch::is_enclosed(Index first) {
   return !is_far;
 }
 
-// Those of the patch that are not in the exact diagram yet. False if all are flat.
+// Inserts the patch's points that the exact diagram does not have yet. Returns false if all of them lie in a plane.
 bool Patch::insert_points(std::span<const Index> additional) {
   const std::size_t known = points_.size();
   const auto note = [this](Index point) {
@@ -133,7 +133,7 @@ bool Patch::insert_points(std::span<const Index> additional) {
   return true;
 }
 
-// Of a vertex's facet as seen from there, the least first.
+// The corners of a vertex's facet in their order as seen from the vertex, turned such that the least number is first.
 std::array<Index, 3> Patch::corners_of(const VoronoiVertex& vertex, unsigned slot) const {
   const auto& [a, b, c] = Cavity::kOthers[slot];
   const auto& corner = vertex.forming_points;
@@ -154,9 +154,11 @@ void Patch::note_boundary() {
   std::sort(boundary_.begin(), boundary_.end(), [](const Facet& a, const Facet& b) { return a.corners < b.corners; });
 }
 
-// In the exact diagram. False, with the patch having grown, where it has not all of them.
+// Finds the facets around the patch in the exact diagram. If some are not there, adds the vertices across from them to
+// the patch and returns false.
 bool Patch::find_boundary() {
-  std::vector<Index> end_of(points_.size() + 1, 0);  // of those whose least corner is below
+  std::vector<Index> end_of(points_.size() + 1,
+                            0);  // for each point, the end of the facets whose least corner is below it
   for (const Facet& facet : boundary_) ++end_of[facet.corners[0] + 1];
   for (std::size_t i = 1; i < end_of.size(); ++i) end_of[i] += end_of[i - 1];
   for (Index v = 0; v < exact_.vertices.size(); ++v)
@@ -172,7 +174,8 @@ bool Patch::find_boundary() {
   return patch_.size() == before;
 }
 
-// With what of the exact diagram lies within the boundary. False if that lies beyond as well.
+// Collects the vertices of the exact diagram within the boundary. Returns false if they cannot be told apart from those
+// beyond it.
 bool Patch::fill() {
   filling_.clear();
   std::vector<std::uint8_t> fills(exact_.vertices.size(), 0), walls(exact_.vertices.size(), 0);
@@ -191,7 +194,7 @@ bool Patch::fill() {
   });
 }
 
-// Whether no point is lost.
+// Whether every point forms a vertex of the filling.
 bool Patch::has_all_points() const {
   std::vector<std::uint8_t> has(points_.size(), 0);
   for (const Index v : filling_)
@@ -200,8 +203,8 @@ bool Patch::has_all_points() const {
   return std::find(has.begin(), has.end(), 0) == has.end();
 }
 
-// Whether no vertex across has two facets in common with one vertex, of the patch or of the filling: two facets of the
-// hull would lie on each other, upside down.
+// Whether no vertex around the patch shares two facets with the same vertex of the patch or of the filling. If one did,
+// two facets of the hull would lie on each other, upside down.
 bool Patch::has_single_facets() const {
   std::vector<std::array<Index, 2>> before, after;
   for (const Facet& facet : boundary_) {
@@ -218,7 +221,7 @@ bool Patch::has_single_facets() const {
          std::adjacent_find(boundary_.begin(), boundary_.end(), same_corners) == boundary_.end();
 }
 
-// For the filling: the places of the patch first.
+// Chooses the slots of the filling's vertices: first those of the patch.
 void Patch::choose_slots() {
   auto& free = workspace_.free_vertices;
   slots_.assign(exact_.vertices.size(), kNone);
@@ -237,9 +240,9 @@ void Patch::choose_slots() {
   }
 }
 
-// The filling takes the place of the patch.
+// Replaces the patch by the filling.
 void Patch::splice() {
-  std::vector<std::array<Index, 2>> across;  // the vertex there, and its slot
+  std::vector<std::array<Index, 2>> across;  // the vertex across, and its slot for this facet
   for (const auto& [corners, inside, slot, exact_inside, exact_slot] : boundary_) {
     const Index outside = workspace_.vertices[inside].neighbors[slot];
     across.push_back({outside, static_cast<Index>(workspace_.slot_now(outside, inside))});

@@ -10,17 +10,19 @@
 
 namespace orchard::detail {
 
-// Rebuilds a part of a diagram where no insertion fits: by the diagram of the points of this part alone, made with
-// exact signs. What is Delaunay among all points is so among some of them, so that the facets around the patch should
-// be in that diagram, too. The vertex across from one that is not goes with the patch, and so do some around it, until
-// all are. What the exact diagram has between them takes the place of the patch then: as it is made of exact signs and
-// what surrounds it is not, whether all is well is for the certificate to say.
+// Rebuilds a part of a diagram (the patch) where no insertion fits. It makes the diagram of the points of this part
+// alone, with exact signs. A facet that is Delaunay among all points is so among some of them, so the facets around the
+// patch should be in the exact diagram, too. If one is not, the vertex across from it, and some vertices around that,
+// join the patch, until all facets around it are in the exact diagram. The vertices that the exact diagram has within
+// these facets then replace the patch. Since the surroundings were not made with exact signs, the certificate has to
+// check the result.
 class Patch {
  public:
   explicit Patch(Workspace& workspace) : workspace_(workspace) {}
 
-  // Rebuilds these vertices, so many layers around them, and others that have to go with them, so that the additional
-  // points, too, form vertices. False, with the diagram as it was, if that takes too many.
+  // Rebuilds these vertices, `layers` layers of vertices around them, and others that have to be replaced with them,
+  // such that the additional points form vertices, too. If that takes too many vertices, returns false and leaves the
+  // diagram as it was.
   bool replace(std::span<const Index> vertices, int layers, std::span<const Index> additional = {});
   // The new vertices, after replace().
   const std::vector<Index>& created() const { return created_; }

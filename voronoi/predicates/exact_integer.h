@@ -11,16 +11,16 @@
 
 namespace orchard::detail {
 
-// For determinants that lower precision cannot tell from zero: doubles as whole multiples of a power of two. Without
-// allocation, and as quick as the numbers are short: a determinant of points of a grid takes a few words only. Points
-// in a Frame have coordinates below 4 that are multiples of 2^-200, so the fifth degree fits.
+// Exact integers, for determinants whose sign lower precision cannot decide: doubles as whole multiples of a power of
+// two. They need no allocation, and short numbers are fast: a determinant of points of a grid takes only a few words.
+// Points in a Frame have coordinates below 4 that are multiples of 2^-200, so products of degree five fit.
 constexpr unsigned kExactBits = 1088;
 using ExactInteger = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<kExactBits, kExactBits, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked, void>,
     boost::multiprecision::et_off>;
 
-// A finite double as mantissa * 2^exponent.
+// A finite double in the form mantissa * 2^exponent.
 struct Binary {
   std::int64_t mantissa;
   int exponent;
@@ -35,7 +35,7 @@ struct Binary {
   }
 };
 
-// The largest exponent such that all coordinates of the points are multiples of two to it.
+// Returns the largest exponent such that all coordinates of the points are multiples of that power of two.
 inline int common_unit(std::initializer_list<const Point*> points) {
   int unit = std::numeric_limits<int>::max();
   for (const Point* point : points)
@@ -47,7 +47,7 @@ inline int common_unit(std::initializer_list<const Point*> points) {
   return unit;
 }
 
-// x over 2^unit. Precondition: a whole number of some 200 bits at most.
+// Returns x / 2^unit. Precondition: this is a whole number of at most about 200 bits.
 inline ExactInteger in_units(double x, int unit) {
   const Binary binary(x);
   if (binary.mantissa == 0) return 0;
@@ -56,10 +56,10 @@ inline ExactInteger in_units(double x, int unit) {
   return shift < 0 ? ExactInteger(binary.mantissa >> -shift) : ExactInteger(binary.mantissa) << shift;
 }
 
-// numerator / denominator * 2^unit, to a few roundings. Infinite where it is too large for a double.
+// Returns numerator / denominator * 2^unit, up to a few roundings; infinity if it is too large for a double.
 inline double quotient(const ExactInteger& numerator, const ExactInteger& denominator, int unit) {
   if (numerator == 0) return 0;
-  // The leading 64 bits of both, so that neither overflows.
+  // Uses the leading 64 bits of both, so that neither overflows.
   const auto leading = [](const ExactInteger& number, int& exponent) {
     const ExactInteger magnitude = abs(number);
     const auto top = static_cast<int>(msb(magnitude));

@@ -10,11 +10,11 @@ namespace orchard::detail {
 #ifdef ORCHARD_FOUR_LANES
 namespace {
 
-// Center and radius of a vertex, and vector and square of a point, are four doubles side by side.
+// The centre and the radius of a vertex are four adjacent doubles, and so are the vector and the square of a point.
 static_assert(offsetof(VoronoiVertex, radius) == offsetof(VoronoiVertex, center) + 3 * sizeof(double));
 static_assert(offsetof(LengthedVector, squared) == offsetof(LengthedVector, vector) + 3 * sizeof(double));
 
-// Whether all of these hold in a lane: the sign of its number.
+// Comparisons of four lanes. The sign bit of a lane is set if the comparison, or all of several, hold there.
 ORCHARD_AVX2 __m256d less(__m256d a, __m256d b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
 template <class... More>
 ORCHARD_AVX2 __m256d all(__m256d first, More... more) {
@@ -23,8 +23,8 @@ ORCHARD_AVX2 __m256d all(__m256d first, More... more) {
 }
 
 struct FourClasses {
-  __m256i number;  // of the smallest power of four that is not below
-  __m256d factor;  // that power, where it is no more than kMaxSteps
+  __m256i number;  // the exponent of the smallest power of four that is at least the value
+  __m256d factor;  // this power, if it is at most kMaxSteps
 };
 constexpr double kMaxSteps = 0x1p120;
 
@@ -57,7 +57,7 @@ const bool kFourLanes = __builtin_cpu_supports("avx2");
 
 bool can_place_four() { return kFourLanes; }
 
-// As placed_sphere(), in the same order of operations.
+// Computes the same as placed_sphere() for four triangles, with the operations in the same order.
 [[gnu::target("avx2")]] void place_four(const Point& new_point, const PlacingLimits& limits,
                                         const FourTriangles& triangles, VoronoiVertex* vertices,
                                         FourQualities& qualities) {

@@ -6,9 +6,9 @@
 
 #include "orchard/geometry/mesh.h"
 
-// The geometry of an insertion in plain doubles, every result with what is needed to judge it, and exactly where that
-// does not suffice. All points are taken relative to one of them, which keeps the error proportional to the tetrahedron
-// and not to its distance from the origin.
+// The geometry of an insertion: computed in doubles, each result with a bound on its error, and exactly where that does
+// not suffice. All points are taken relative to one of them, so that the error is proportional to the size of the
+// tetrahedron and not to its distance from the origin.
 namespace orchard::detail {
 
 // Half a unit in the last place: the relative error of one rounding.
@@ -39,38 +39,39 @@ inline Determinant volume(const Vector& a, const Vector& b, const Vector& c) {
   return {value, 8 * kRounding * magnitude};
 }
 
-// The sign of (a - q) . ((b - q) x (c - q)): uncertain if that is not farther from zero than `indifferent`. Exact for
-// 0; else a value that is as near to +-indifferent as a few dozen roundings of 2^-104 may count as uncertain.
+// The sign of (a - q) . ((b - q) x (c - q)), or Sign::uncertain if the absolute value is not above `indifferent`. Exact
+// for `indifferent` 0. Otherwise a value that is above `indifferent` by no more than a few dozen roundings of 2^-104
+// may count as uncertain, too.
 Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c, double indifferent = 0);
 
-// The same, exactly, of a point that no double may be: the middle of four points.
+// The exact sign with the middle of four points in place of q. Doubles need not represent that middle.
 Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, const Point& b, const Point& c);
 
-// Whether p and q, in one plane with a and b, lie on the same side of the line through these; exact likewise.
+// Whether p and q lie on the same side of the line through a and b, for four points in one plane. Exact.
 Sign same_side_of_line(const Point& a, const Point& b, const Point& p, const Point& q);
 
-// Whether q lies inside the sphere through four positively oriented points; exact likewise.
+// Whether q lies inside the sphere through four positively oriented points. Exact.
 Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d);
 
-// The circumcentre of q, a, b and c relative to q, to a few roundings. False if they are coplanar, or so nearly that it
-// overflows.
+// The circumcentre of q, a, b and c relative to q, accurate to a few roundings. Returns false if the points are
+// coplanar, or so nearly that the centre overflows.
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center);
-// The same to a hundredth, in a tenth of the time that it may take. False also where twice the digits of doubles do not
-// tell.
+// The same with an error of at most a hundredth, in down to a tenth of the time. Also returns false where twice the
+// digits of doubles do not suffice.
 bool rough_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center);
 
-// How far a point is, at most, from the circumcentre of q, a, b and c, as far as doubles tell: much sooner told than
-// the circumcentre is found. Less the step, it would be `rest` from there at most, but for the rounding of this
-// difference. Both are infinite where the sign of the volume is in doubt.
+// Bounds on the distance of a point from the circumcentre of q, a, b and c, in doubles: much faster than computing the
+// circumcentre. The point is at most `off` away from it. The point minus `step` would be at most `rest` away, apart
+// from the rounding of this difference. Both bounds are infinite where the sign of the volume is uncertain.
 struct OffCenter {
   double off, rest;
   Vector step;
 };
 OffCenter off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c);
-// The same with what rounds most with more digits: then nearly nothing is left after the step.
+// The same, but the terms with the largest rounding errors are computed with more digits, so that `rest` is almost 0.
 OffCenter sharply_off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c);
 
-// The unit normal of the triangle q, a, b, to a few roundings. False if they are collinear.
+// The unit normal of the triangle q, a, b, accurate to a few roundings. Returns false if the points are collinear.
 bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal);
 
 // The circumcentre of the origin, a, b and c.

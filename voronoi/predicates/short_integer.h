@@ -5,15 +5,15 @@
 
 #include "predicates/exact_integer.h"
 
-// Integers of a few machine words, for the exact signs of points whose differences have few enough digits, as those of
-// neighbours mostly have.
+// Integers of a few machine words. They give the exact signs of points whose differences have few digits, which is the
+// case for most neighbours.
 namespace orchard::detail {
 
 #ifdef __SIZEOF_INT128__
 __extension__ using TwoWords = __int128;
 __extension__ using TwoUnsignedWords = unsigned __int128;
 
-// Of so many words, in two's complement: right where the result fits.
+// An integer of kWords words in two's complement. Results are right if they fit.
 template <std::size_t kWords>
 class ShortInteger {
  public:

@@ -6,10 +6,10 @@
 
 namespace orchard::detail {
 
-// Four points far apart: each the farthest from what those before it span.
+// Four points far apart: each is the farthest from the point, line or plane through those before it.
 std::array<Index, 4> spanning_points(std::span<const Point> points);
 
-// Of what the points of a Frame span, exactly: 3 if they are found not to lie in a plane.
+// The exact dimension of what the points of a Frame span: 3 if they do not lie in a plane.
 int affine_dimension(std::span<const Point> points);
 
 }  // namespace orchard::detail

@@ -7,11 +7,12 @@
 
 namespace orchard::detail {
 
-// Pairs (point left out, point it coincides with): a point is left out if an earlier point that stays lies within the
-// distance. Ascending by the first. Expected O(n) by a hash grid.
+// Finds coincident points. Returns pairs (point to leave out, point that it coincides with), ascending by the first. A
+// point is left out if an earlier point that is not left out lies within the distance. Expected time O(n), by a hash
+// grid.
 std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance);
 
-// The same for the points from `first_new` on; of those before, the ones that `present` names stay without question.
+// The same for the points from `first_new` on. Of the points before, those that `present` names are never left out.
 std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance, Index first_new,
                                                     const std::vector<bool>& present);
 

@@ -6,15 +6,15 @@
 
 namespace orchard::detail {
 
-// A map from ordered pairs of small numbers to a number, emptied in O(1): a square array while the numbers are below
-// kDense, as nearly always, and hashing beyond.
+// A map from ordered pairs of small numbers to a number that can be emptied in O(1). It uses a square array as long as
+// the numbers are below kDense, which is nearly always so, and hashing beyond.
 class EdgeTable {
  public:
   static constexpr Index kDense = 64;
 
   EdgeTable() : dense_(kDense * kDense) {}
 
-  // Empties the table. Numbers below `count` may be used then.
+  // Empties the table. Afterwards numbers below `count` may be used.
   void reset(Index count) {
     if (++epoch_ == 0) {
       dense_.assign(dense_.size(), Entry{});
@@ -38,7 +38,7 @@ class EdgeTable {
     }
   }
 
-  // False, and no change, if the pair has a value already.
+  // Sets the value of a pair. If the pair has one already, changes nothing and returns false.
   bool insert(Index a, Index b, Index value) {
     if (use_dense_) {
       Entry& entry = dense_[a * kDense + b];
@@ -79,7 +79,7 @@ class EdgeTable {
   }
 
   std::uint32_t epoch_ = 1;
-  std::size_t size_ = 0;  // of the hashed pairs
+  std::size_t size_ = 0;  // number of hashed pairs
   bool use_dense_ = true;
   std::vector<Entry> dense_;
   std::vector<HashedEntry> hashed_;

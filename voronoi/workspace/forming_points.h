@@ -7,8 +7,8 @@
 
 namespace orchard::detail {
 
-// Which points form vertices. Noted by several threads at once, without branches: infinity, and what free vertices have
-// in the place of points, wrap around to the first place.
+// Records which points form vertices. Several threads may record at once. There are no branches: the number of the
+// point at infinity, which free vertices have instead of points, too, wraps around to the first element.
 class FormingPoints {
  public:
   explicit FormingPoints(std::size_t points) : forms_(points + 1, 0) {}

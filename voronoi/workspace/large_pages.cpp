@@ -25,7 +25,7 @@ double seconds_of_thread() {
 
 void write_to(char* page) { *static_cast<volatile char*>(page) = 0; }
 
-// How long writing to some pages takes that are not mapped yet.
+// The time of the first write to each of these pages, which are not mapped before.
 double seconds_to_map(char* begin, const char* end) {
   const double start = seconds_of_thread();
   for (char* page = begin; page < end; page += kPage) write_to(page);
@@ -48,7 +48,7 @@ void use_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t 
   constexpr double kTimes = static_cast<double>(kLargePage) / static_cast<double>(kTriedBytes);
   if (bytes < kTriedBytes + kPage) return;
   auto* const first = static_cast<char*>(begin);
-  // The first large page that begins behind the small ones that are tried.
+  // The first large page that leaves room before it for the small pages whose time is taken.
   void* aligned = first + kTriedBytes + kPage;
   std::size_t left = bytes - kTriedBytes - kPage;
   if (std::align(kLargePage, kLargePage, aligned, left) == nullptr) return;

@@ -7,14 +7,14 @@
 
 namespace orchard::detail {
 
-// The vertices that one thread may replace while others work elsewhere: those all of whose forming points lie in one
-// region of space. What has points in several regions is mixed: no thread replaces it, so that every thread may read
-// it, nor marks it. The regions of vertices stay as they are all the while: a vertex that takes the place of owned ones
-// is owned, too.
+// The vertices that one thread may replace while other threads work elsewhere: those whose forming points all lie in
+// one region of space. The region owns them. A vertex with points in several regions is mixed: no thread replaces or
+// marks it, so every thread may read it. The region of a vertex does not change while the threads work: a new vertex
+// that replaces owned ones is owned, too.
 //
-// Around a mixed vertex others may be replaced all the same. Across a facet all of whose points lie in one region there
-// is a vertex of this region or a mixed one, before and after, and only the thread of the region changes which: no
-// other may read it. Across other facets there are mixed vertices, which stay.
+// Neighbours of a mixed vertex may be replaced. If all points of a facet of the mixed vertex lie in one region, the
+// neighbour across it is always a vertex of this region or a mixed one, and only the thread of this region may change
+// or read which. The neighbours across its other facets are mixed and do not change.
 struct Region {
   static constexpr std::uint8_t kMixed = 255;
 
@@ -24,7 +24,7 @@ struct Region {
 
   bool whole() const { return region_of == nullptr; }
   bool owns(Index v) const { return whole() || region_of[v] == own; }
-  // A bit for each.
+  // Bit i tells whether the region owns v[i].
   unsigned owned(const std::array<Index, 4>& v) const {
     const auto bit = [&](unsigned i) { return unsigned{region_of[v[i]] == own} << i; };
     return bit(0) | bit(1) | bit(2) | bit(3);

@@ -7,7 +7,7 @@
 #include "predicates/vectors.h"
 #include "workspace/workspace.h"
 
-// What a workspace tells of four vertices at once.
+// The workspace's tests of a vertex, for four vertices at once.
 namespace orchard::detail {
 
 #ifdef ORCHARD_FOUR_LANES
@@ -15,7 +15,7 @@ ORCHARD_AVX2 __m256i Workspace::states(const std::array<Index, 4>& v) const {
   return _mm256_set_epi64x(state_[v[3]], state_[v[2]], state_[v[1]], state_[v[0]]);
 }
 
-// As in bounds_: powers of four, but for two classes.
+// The same values as bounds_: powers of four, but infinity for the two classes without a bound.
 ORCHARD_AVX2 __m256d Workspace::bounds(__m256i states) const {
   const __m256i error = _mm256_and_si256(_mm256_srli_epi64(states, 2), _mm256_set1_epi64x(63));
   const __m256i least = _mm256_set1_epi64x(std::bit_cast<std::int64_t>(bounds_[0]));

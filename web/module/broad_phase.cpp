@@ -50,7 +50,7 @@ ORCHARD_EXPORT(broad_next_time) double web_broad_next_time(orchard_broad_phase* 
 ORCHARD_EXPORT(broad_query_time) double web_broad_query_time(orchard_broad_phase* world) {
   return orchard_broad_phase_query_time(world);
 }
-// Motions asked for, promises found broken, bytes on the heap.
+// Motions asked for, violations of motion bounds, bytes on the heap.
 ORCHARD_EXPORT(broad_counts) void web_broad_counts(orchard_broad_phase* world, double* out) {
   out[0] = static_cast<double>(orchard_broad_phase_motions_asked(world));
   out[1] = static_cast<double>(orchard_broad_phase_motion_bound_violations(world));

@@ -10,7 +10,8 @@ extern "C" __attribute__((import_module("orchard"), import_name("states"))) void
 
 namespace {
 
-// A row: the pose, velocity, acceleration, drift, half-space, expiry, and the angular speed, NaN if none is promised.
+// A row: the pose, velocity, acceleration, drift, half-space, expiry, and the bound on the angular speed, NaN if there
+// is none.
 void put_state(double* to, const orchard_body_state& state) {
   to = std::copy_n(reinterpret_cast<const double*>(&state.pose), kPoseRow, to);
   to = put(to, state.velocity, 3);

@@ -49,7 +49,7 @@ export interface BroadPhaseOptions {
   /** Steps that a window lasts; by default as it chooses. */
   window?: number;
   positionSlack?: number;
-  /** For debugging: compare every motion with what was promised before. */
+  /** For debugging: compare every motion with the bounds given before. */
   validate?: boolean;
 }
 

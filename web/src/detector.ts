@@ -69,7 +69,7 @@ export class Detector extends Owned {
   remove(body: Body): boolean {
     return this.#change("detector_remove", body);
   }
-  /** What was promised of the body holds no longer. */
+  /** Cancels the motion bounds of the body. */
   cancel(body: Body): boolean {
     return this.#change("detector_cancel", body);
   }

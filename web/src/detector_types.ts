@@ -15,7 +15,7 @@ export const STATE = {
   halfSpace: 18,
   /** Until when the bounds hold; Infinity at first. */
   expiry: 21,
-  /** The body turns at most so fast, in radians a second; NaN: nothing is promised of it. */
+  /** An upper bound on the angular speed, in radians per second; NaN: there is no bound. */
   angularSpeed: 22,
 } as const;
 
@@ -55,7 +55,7 @@ export interface DetectorOptions {
   timeStep?: number;
   start?: number;
   positionSlack?: number;
-  /** Whether every moving body is compared at every step with what was promised of it; by default with a source only. */
+  /** Whether every step compares each moving body with its motion bounds; by default with a source only. */
   watch?: boolean;
   stepsToEnd?: number;
   maxUnfinished?: number;
@@ -98,7 +98,7 @@ export interface Frame {
   /** 256: the broad phase was not interrupted. */
   incompleteFrom: number;
   leftOver: number;
-  /** Bodies whose states were not valid, and those whose promises were found broken: their indices. */
+  /** The indices of bodies whose states were not valid, and of those that exceeded their motion bounds. */
   refused: number[];
   broken: number[];
   timeRefused: boolean;

@@ -117,7 +117,7 @@ export class CrowdWorld {
     to[at] = Math.cos(half);
     for (let k = 0; k < 3; ++k) to[at + 1 + k] = s * this.#axes[3 * i + k]!;
   }
-  /** From here on with another velocity: what was promised before holds no longer. */
+  /** Changes the velocity from now on, and cancels the bounds that held before. */
   #redirect(i: number, velocity: readonly number[]): void {
     this.#origins.set(this.positions.subarray(3 * i, 3 * i + 3), 3 * i);
     this.#velocities.set(velocity, 3 * i);

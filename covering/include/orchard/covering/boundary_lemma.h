@@ -35,9 +35,10 @@ struct TriangleCover {
 // Decides whether path regions cover a triangle, by the boundary lemma made sound for closed sets. The triangle is
 // covered if (i) one of its interior points lies in a path region and (ii) every circle's arc inside it lies, except
 // for finitely many points, in the interior of path regions of other balls.
-// Needed arcs are rounded outward and covering arcs inward, by a few roundings of the extent of the balls and the
-// triangle. So "covered" is a proof, and tangent balls do not cover. The triangle may be degenerate. O(n log n + k) for
-// n balls of which k pairs have boxes that meet. Source: dissertation 5.3.3, Appendix B.
+// Arcs that have to be covered are rounded outward and arcs that cover them inward, by a few roundings of the extent of
+// the balls and the triangle. So "covered" is a proof, and balls that are merely tangent to each other do not cover.
+// The triangle may be degenerate. O(n log n + k) for n balls of which k pairs have boxes that meet. Source:
+// dissertation 5.3.3, Appendix B.
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<const PathBall> balls);
 
 // Decides the same for the part of the triangle inside the closed ball `clip`; an empty part is covered. Witness and
@@ -45,11 +46,13 @@ TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, const Sphere& clip,
                                 std::span<const PathBall> balls);
 
-// Returns whether cover_of_triangle() certifies the cover. This is faster where it does not.
+// Returns whether cover_of_triangle() certifies the cover. It is faster than that function for triangles that are not
+// certified, because it stops at the first gap.
 bool triangle_covered(const std::array<Point, 3>& triangle, std::span<const PathBall> balls);
 
-// Returns how far a point is outside every path region: the least growth of all balls that would include it in one. The
-// value is at most 0 inside and infinite if there is no leaf.
+// Returns how far a point is outside every path region: the smallest length by which all balls would have to grow so
+// that a path region contains it. The value is at most 0 if a path region contains it already, and infinite if there is
+// no leaf.
 double path_distance(const Point& point, std::span<const PathBall> balls);
 
 }  // namespace orchard

@@ -7,11 +7,11 @@ namespace orchard {
 
 // A lower and an upper bound; the true value always lies between them.
 struct Bounds {
-  double lower = 0, upper = 0;  // the truth lies between, always
+  double lower = 0, upper = 0;
 };
 
-// The largest difference between two bounds: the larger of a fraction of the bounding radius and a fraction of the
-// distance itself.
+// How far two bounds may differ: by a fraction of the bounding radius or by a fraction of the distance itself,
+// whichever is larger.
 struct DistanceTolerance {
   double of_radius = tolerance::kInaccuracy;
   double of_distance = 0.01;
@@ -32,8 +32,9 @@ Bounds inaccuracy(const Surface& surface, const Sphere& sphere, const DistanceTo
 Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance = {},
                            double at_least = 0);
 
-// Decides whether that distance is at most `limit` (mesh units). If it is, upper <= limit. If not, lower > limit, and
-// `at` is a point of the ball at that distance. If neither holds, the work limit was reached.
+// Decides whether the distance of farthest_from_solid() is at most `limit` (mesh units). If it is, upper <= limit. If
+// it is not, lower > limit, and `at` is a point of the ball at least `lower` away from the solid. If neither holds, the
+// work limit was reached.
 Bounds farthest_against(const Surface& surface, const Sphere& ball, double limit, Point& at);
 
 // Returns an upper bound on the largest distance to the solid from any point of the closed ball: max(0, radius + signed

@@ -13,9 +13,9 @@ namespace orchard {
 // step. For each triangle it keeps the leaves that its certificate depends on, and each near ball's circle in the
 // triangle. A change rechecks only the triangles whose certificate depends on the changed ball and the uncovered ones
 // that it touches.
-// The result agrees with surface_coverage(), except for triangles that a ball elsewhere makes uncertain: their
-// certificate without that ball remains valid. An object must not be used by several threads at once. Source:
-// dissertation 5.3.3.
+// The result agrees with surface_coverage(), with one exception: if a changed ball makes a triangle uncertain whose
+// certificate does not depend on it, the triangle remains covered, because the certificate remains valid. An object
+// must not be used by several threads at once. Source: dissertation 5.3.3.
 class IncrementalCover {
  public:
   // Checks all triangles, or the given ones, in parallel. The object keeps a reference to `surface`.

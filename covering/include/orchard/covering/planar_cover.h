@@ -5,7 +5,7 @@
 
 #include "orchard/geometry/mesh.h"
 
-// The boundary lemma for shapes of the plane in general (dissertation, Appendix B).
+// The boundary lemma for disks and convex polygons in the plane (dissertation, Appendix B).
 namespace orchard {
 
 using PlanePoint = Eigen::Vector2d;
@@ -23,10 +23,11 @@ struct PlanarShape {
   static PlanarShape polygon(std::vector<PlanePoint> corners) { return {std::move(corners)}; }
 };
 
-// A piece of a shape's boundary inside the region. The places beyond it are not certain to be covered.
+// A piece of a shape's boundary inside the region such that the points just outside the shape are not certified to be
+// covered.
 struct PlanarGap {
-  Index shape = kNone;
-  PlanePoint begin, middle, end;
+  Index shape = kNone;            // The shape, as an index.
+  PlanePoint begin, middle, end;  // Points of the piece.
 };
 
 // The result of cover_of_polygon().
@@ -36,10 +37,10 @@ struct PlanarCover {
   std::vector<PlanarGap> gaps;              // If not covered, and if a boundary crosses the region.
 };
 
-// Decides whether shapes cover a simple polygon, given in either direction.
-// Polygons may abut. There is no gap where two edges lie on one line, which is decided exactly from their coordinates,
-// and the shapes lie on opposite sides of it. There is no gap either at a point where edges of one line, or with a
-// common corner, cross a third edge. All other tangent shapes leave a gap.
+// Decides whether shapes cover a simple polygon, whose corners are in order in either direction.
+// Polygons may abut: there is no gap between two shapes with edges on the same line, one on each side of it. Whether
+// two edges lie on the same line is decided exactly from their coordinates. There is no gap either at a point where two
+// such edges, or two edges with a common corner, cross a third edge. All other shapes that merely touch leave a gap.
 // Throws InputError if the region crosses itself, a polygon is not strictly convex, a radius is not positive or a
 // coordinate is not finite. O(n m) for n boundary pieces and the m shapes whose boxes meet each.
 PlanarCover cover_of_polygon(std::span<const PlanePoint> region, std::span<const PlanarShape> shapes);

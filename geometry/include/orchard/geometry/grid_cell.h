@@ -12,8 +12,8 @@ namespace orchard {
 // A cube of a grid, by its number along each axis.
 using GridCell = std::array<std::int64_t, 3>;
 
-// Returns the cube that contains a place. `from_origin` is the place relative to the origin of the grid. `size` is the
-// edge length of the cubes; it must be above 0 and so large that the numbers fit into 64 bits.
+// Returns the cube that contains a point. `from_origin` is the point relative to the origin of the grid. `size` is the
+// edge length of the cubes; it must be above 0 and so large that the numbers of the cubes fit into 64 bits.
 inline GridCell grid_cell(const Vector& from_origin, double size) {
   GridCell cell;
   for (int axis = 0; axis < 3; ++axis)
@@ -21,7 +21,7 @@ inline GridCell grid_cell(const Vector& from_origin, double size) {
   return cell;
 }
 
-// Returns a hash value. Cells that are near each other have very different values.
+// Returns a hash value of a cube. The values of neighbouring cubes differ in many bits.
 inline std::uint64_t hash_of(const GridCell& cell) {
   std::uint64_t hash = 0;
   for (const std::int64_t coordinate : cell) {

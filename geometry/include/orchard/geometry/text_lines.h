@@ -11,8 +11,8 @@
 namespace orchard {
 
 // A reader of lines. Blank lines, lines that start with '#', and the unread rest of a line are skipped. Every failure
-// throws InputError, which names the file and the line. A copy and the target of a move continue from the position of
-// the original, independently of it.
+// throws InputError, which names the file and the line. A copy of a reader continues at the position of the original,
+// independently of it.
 class TextLines {
  public:
   explicit TextLines(const std::filesystem::path& file);

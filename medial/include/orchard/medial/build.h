@@ -91,10 +91,10 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
 // Returns what build_medial_axis() promises of an axis that it builds from these options; nothing is promised of an
 // imported axis. `points` is the number of surface points that the axis was built from.
 // - A refined axis leaves no place of the surface open by more than L + tolerance, where L is the larger of 1.65
-//   max(border_loss, tolerance) and the detail that so few points can show (RefineOptions::reach_detail). There is no
-//   such promise if reach_rounds is 0 or if the axis is pruned.
-// - A refined axis protrudes from the solid by at most twice the tolerance. Interpolated balls are held to one
-//   tolerance at sampled places, and between these they may be off by another one.
+//   max(border_loss, tolerance) and the limit of RefineOptions::reach_detail, below which so few points show no detail.
+//   There is no such promise if reach_rounds is 0 or if the axis is pruned.
+// - A refined axis protrudes from the solid by at most twice the tolerance. Interpolated balls are within one tolerance
+//   where they are checked, and may be off by another one in between.
 // - With axis.keep_topology, the axis has the topology of the solid, whether it is refined or not.
 AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& options, Index points);
 

@@ -14,20 +14,21 @@ namespace orchard {
 
 // The parts of the surface that a Voronoi cell may meet without being gap-crossing.
 enum class GapDefinition : std::uint8_t {
-  // Those that the cell's own part of the surface joins to the cell's point. This needs no scale and suits polyhedra
-  // and scans.
+  // The part of the surface inside the cell that is connected to the cell's point. This needs no scale and suits
+  // polyhedra and scans.
   connected,
-  // Those on clusters that contain the cell's point or adjoin such a cluster (dissertation 6.2.4). It misses gaps
-  // between clusters that adjoin the same third one, and flags nearly everything on scans, where each triangle is a
-  // cluster.
+  // The clusters that contain the cell's point, and the clusters that adjoin these (dissertation 6.2.4). It misses gaps
+  // between two clusters that adjoin the same third one. On scans, where each triangle is a cluster, it finds crossings
+  // nearly everywhere.
   loose,
-  // Those on clusters that contain the cell's point.
+  // The clusters that contain the cell's point.
   strict,
 };
 
 // The options of repair_gap_crossings().
 struct GapRepairOptions {
-  // The maximum number of passes. It also ends the repair if new points alternate between the sides of a V or U.
+  // The maximum number of passes. The limit matters where new points on one side of a V or U cause crossings on the
+  // other side, again and again.
   int max_passes = 20;
   // A crossing also counts as harmless if the surface joins the crossed triangle to the triangles of both points inside
   // a ball. The ball is around the middle of the points, and its radius is this many times their distance. 0 repairs
@@ -50,9 +51,11 @@ struct GapRepairPass {
   // not tested again, and neither are their faces.
   Index cells_tested = 0, cells_crossing = 0;
   Index faces_tested = 0, faces_crossing = 0;  // Faces of all cells; a face shared by two cells counts once.
+  // The points that were added opposite the cell's point (a projection onto the crossed sheet), at the nearest place of
+  // the crossed part of the surface, and at necks; and the points that were not added because another point is there.
   Index added_by_projection = 0, added_by_snapping = 0, added_at_necks = 0, refused_as_coincident = 0;
-  // The number of boxes and points visited by the search for new points near other new points. It measures the cost of
-  // choosing places independently of the machine.
+  // The number of boxes and points that the search for near new points visits. It measures the cost of choosing places
+  // for points, independently of the machine.
   std::size_t steps_among_new_points = 0;
 };
 

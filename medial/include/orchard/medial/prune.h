@@ -24,10 +24,10 @@ struct PruneOptions {
 // n).
 MedialAxis prune(const MedialAxis& axis, const PruneOptions& options);
 
-// Returns the angle in radians at which the two points of a face or wall are seen from its middle. It is limited to the
-// angle between the surface normals at the points, and to the angle of the face's widest vertex: slivers of the point
-// set put faces next to the surface, and without the limit these would look like places between two walls. If the axis
-// has no `turns` and no `angles`, only the positions are used.
+// Returns the angle in radians at which the two points of a face or wall are seen from its middle, but at most the
+// angle between the surface normals at the points and at most the largest angle of the face's vertices. The limits
+// matter for faces close to the surface, which slivers of the point set cause: without them, such faces would seem to
+// lie between two opposite walls. If the axis has no `turns` and no `angles`, there are no limits.
 double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points);
 
 // Returns axis.angles. For an axis without them, returns for each vertex the widest angle between two forming points,

@@ -17,15 +17,17 @@ namespace orchard {
 
 // The options of medial_quality(). More samples and larger searches give tighter values and take longer.
 struct QualityOptions {
-  Index surface_samples = 100'000;  // Samples of the surface, for coverage and protrusion.
-  Index cells = 200'000;            // The maximum number of cells of each kind that are measured, evenly chosen.
-  // The maximum number of parts in which the largest dent and the largest protrusion are searched.
+  Index surface_samples = 100'000;  // The number of samples of the surface, for coverage and protrusion.
+  Index cells = 200'000;  // The maximum number of vertices, edges and triangles that are measured, evenly chosen.
+  // The maximum number of parts that each of the branch-and-bound searches for the largest dent and for the largest
+  // protrusion examines.
   Index search = 250'000;
-  Index contact_cells = 10'000;  // Vertices whose second contact is searched.
+  Index contact_cells = 10'000;  // The maximum number of vertices for which the second contact is searched.
   // The second contact of a ball is the nearest surface point that is seen from its centre at this angle or more from
   // the nearest one; in radians, 30 degrees by default.
   double contact_angle = 0.5235987755982988;
   double economy_error = 0.01;  // The error that the greedy cover of `economy` may have, over D.
+  // The maximum number of balls that the greedy cover chooses from, and the number of samples that it covers.
   Index economy_candidates = 20'000, economy_samples = 20'000;
   Index worst_places = 5;      // The number of worst places reported of each kind.
   double places_apart = 0.05;  // Places of a kind that are nearer than this, over D, count as one.
@@ -44,7 +46,7 @@ struct Economy {
   double uncovered = 0;  // The fraction of the samples that no admissible ball reaches.
 };
 
-// The pieces of a medial mesh: parts that are joined to each other by less than edges.
+// The pieces of a medial mesh: parts that are joined to each other at vertices only, or not at all.
 struct MedialPieces {
   Index sheets = 0;  // Sets of triangles joined across edges.
   // Sets of edges without triangles that are joined at vertices. A ball without edges is such a set, too.
@@ -62,8 +64,8 @@ double border_length(const MedialMesh& mesh);
 // The measure that a worst place belongs to.
 enum class WorstKind : std::uint8_t { protrusion, coverage, dent };
 
-// A place where a measure is worst. A dent is a place of the reconstruction's boundary deep inside the solid; it is
-// reported where it determines the Hausdorff distance.
+// A place where a measure is worst. A dent is a place of the reconstruction's boundary deep inside the solid; the
+// deepest one is reported if it determines the Hausdorff distance.
 struct WorstPlace {
   WorstKind kind = WorstKind::protrusion;
   double value = 0;  // The value of the measure, over D.

@@ -19,10 +19,10 @@ struct RefineOptions {
   // The error at which a cell is divided, above 0: how far a ball that is interpolated on an edge or a triangle may
   // protrude from the solid or fall short of its surface. Smaller values give more triangles.
   double tolerance = 5e-4;
-  // Sheets reach to a convex edge of the mesh if its loss without them is at least feature_loss (above 0), and if it
-  // belongs to a chain of such edges that is at least feature_length long (at least 0). The loss of an edge is its
-  // distance from the largest ball that touches both of its faces. The default feature_loss is the amount by which
-  // borders may leave the surface open.
+  // Select the convex edges of the mesh that sheets reach: those whose loss is at least feature_loss (above 0), if they
+  // form a chain with a length of at least feature_length (at least 0). The loss of an edge is its distance from the
+  // largest ball that touches both of its faces; without a sheet, the axis leaves that much of the solid open. The
+  // default feature_loss is 1.65 times the default border_loss, by which borders may leave the surface open.
   double feature_loss = 1.65e-3, feature_length = 0.2;
   // The edges that sheets reach, each as two vertices of the mesh. If this is empty, they are found by their loss.
   std::vector<std::array<Index, 2>> features = {};
@@ -32,25 +32,27 @@ struct RefineOptions {
   // The maximum number of rounds of dividing cells, at least 0. Each round halves the cells that are off by more than
   // the tolerance.
   int max_rounds = 6;
-  // The maximum number of rounds of reaching for places where the surface is left open, at least 0.
+  // The maximum number of rounds of step 4 of refine_axis(), which adds triangles where the surface is left open; at
+  // least 0.
   int reach_rounds = 9;
-  // The detail that the surface points can show, at least 0, as a multiple of the square of their spacing over the
-  // diagonal, as the depth of a chord's arc is. Places left open by less are not reached for; 0 reaches for all. With
-  // 5,000 points and the default, this is about the border loss.
+  // The limit of detail, at least 0. Step 4 ignores places that are left open by less than reach_detail s^2 / D, where
+  // s^2 is the area of the surface for each surface point and D the diagonal: points with a spacing of s cannot show
+  // finer detail, because the depth of an arc grows with the square of its chord. 0 sets no such limit. With 5,000
+  // points and the default, the limit is about border_loss.
   double reach_detail = 7;
 };
 
 // Counts of what refine_axis() did.
 struct RefineReport {
   Index vertices_before = 0, vertices = 0;
-  Index inexact = 0;           // Vertices that were not moved, since no ball with two contacts was found from there.
+  Index inexact = 0;           // Vertices that stay in place because no ball with two contacts was found near them.
   Index folded_triangles = 0;  // Triangles removed because their two points have the same contact.
   Index border_cuts = 0;       // Edges cut where the loss passes border_loss.
   Index small_pieces = 0;      // Edges and triangles of spikes and flakes that were removed.
   Index vertices_moved = 0;    // Moves of vertices by smoothing; a vertex counts each time it is moved.
   Index notches = 0;           // Triangles added to fill notches of borders and openings along sharp edges.
   Index edge_vertices = 0;     // Vertices of radius 0 on sharp edges.
-  Index reached_places = 0;    // Places of the surface that were left open by more than borders may leave open.
+  Index reached_places = 0;    // Places of the surface for which step 4 added triangles.
   Index divided = 0;           // Edges that were divided.
   Index undivided = 0;   // Edges beyond the tolerance that remain because they are too short or max_rounds is used up.
   Index degenerate = 0;  // Vertices merged with others at the same place, and flat triangles removed.
@@ -76,11 +78,12 @@ struct RefinedAxis {
 //    corners.
 // 3. The triangles are remeshed to even sizes without uncovering the surface: edges are split, collapsed and flipped,
 //    and each vertex moves along its sheet, seam, border or curve to an exact ball.
-// 4. Where the surface is left open by more than 1.65 border_loss and reach_detail, or where balls leave a dent that is
-//    a tenth deeper, triangles are added from the nearest edges and remeshed.
+// 4. Where the surface is left open by more than 1.65 max(border_loss, tolerance) and more than the limit of
+//    reach_detail, or where balls leave a dent that is a tenth deeper than that, triangles are added to the nearest
+//    edges and remeshed.
 // 5. Cells whose interpolated balls are off by more than the tolerance are divided.
-// All steps are divisions, collapses, flips, free extensions and contractions under the link condition, so the topology
-// is that of `axis`.
+// The topology is that of `axis`, because each step preserves it: cells are divided, flipped, contracted under the link
+// condition, collapsed from a free side, or added such that they could be collapsed again.
 //
 // `sampling` holds the points of `axis`. In the result, the radius of a vertex is the distance from its centre to the
 // surface, up to rounding. Throws InputError unless surface.solid(), or if an option is out of range. Takes O(n log n)

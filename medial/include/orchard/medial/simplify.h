@@ -23,7 +23,7 @@ enum class SimplifiedBalls : std::uint8_t {
 
 // The options of simplify_medial_mesh().
 struct SimplifyOptions {
-  // The maximum number of vertices. 0 asks for the fewest that `error` allows, found to a fiftieth.
+  // The maximum number of vertices. 0 asks for the smallest number that `error` allows, which is found to within 2 %.
   Index vertices = 0;
   // If `vertices` is 0: the largest two-sided distance that is allowed, over the diagonal, above 0. The result is
   // proved to keep it.

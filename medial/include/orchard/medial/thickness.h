@@ -14,35 +14,39 @@ namespace orchard {
 enum class ThicknessDefinition : std::uint8_t {
   // The diameter of the largest ball in the solid that touches the surface at the place.
   ball,
-  // The distance from the place along the inward normal to the surface.
+  // The distance from the place to the next place of the surface along the inward normal.
   ray
 };
 
 // The options of thickness_at() and local_thickness().
 struct ThicknessOptions {
   ThicknessDefinition definition = ThicknessDefinition::ball;
-  // An angle in radians, in [0, pi]. A place has a thickness if its ball also touches the surface at a place that is
-  // seen from the ball's centre at an angle of at least this from the first one, so that the two places face each
-  // other; for a ray, the normals at its ends must differ by at least this angle. Lower values also count balls in
-  // wedges, which measure the distance to an edge. The default is 120 degrees.
+  // An angle in radians, in [0, pi]. A place has a thickness if it faces another place of the surface that its ball
+  // touches: the angle between the two, seen from the centre of the ball, is at least this. For a ray, the normals at
+  // its two ends must differ by at least this angle. Lower values also accept balls in wedges, which measure the
+  // distance to an edge. The default is 120 degrees.
   double facing = 2.0943951023931953;
-  // An angle in radians, in (0, pi / 2]. A mesh that turns by less than this around a place stands for a smooth surface
-  // there. Contacts that the ball sees at less than this angle from the place do not stop its growth. A place whose
-  // ball is smaller than the ball that ends at a contact facing the place still has a thickness if the difference is at
-  // most a quarter; the allowed difference is proportional to how much the facets turn there. Where the mesh turns by
-  // more than this angle, it has edges, at which balls vanish. The default is 40 degrees. With values near 0, the balls
+  // An angle in radians, in (0, pi / 2]; the default is 40 degrees. Where adjacent triangles turn by less than this,
+  // they are taken for the facets of a smooth surface. This has two effects:
+  // - A ball does not end at contacts that are seen from its centre at less than this angle from the place, because
+  //   these are neighbouring facets.
+  // - A ball may end too early at a facet that does not face the place. The place then still has a thickness: the
+  //   diameter of the ball that ends at a contact facing the place, if the first ball is at most 25 % smaller. The
+  //   percentage is proportional to the turn between facets: 25 % at this angle.
+  // Where triangles turn by more, the mesh has an edge, at which balls shrink to points. With values near 0, the balls
   // are those of the polyhedron itself.
   double smooth = 0.6981317007977318;
-  // The approximate number of triangles after dividing edges. The result has values at the corners and middles of these
-  // triangles. Larger meshes are not coarsened.
+  // The approximate number of triangles into which local_thickness() divides the surface. The result has values at the
+  // corners and middles of these triangles. Larger meshes are not coarsened.
   Index samples = 20'000;
-  // The maximum number of parts of the search tree that are visited for one place. A search that reaches it returns the
-  // value found with its proven error. This happens if thousands of triangles are equally near to a ball, as in a fine
-  // sphere.
+  // The maximum number of nodes of the search tree that are visited for one place. A search that reaches it returns the
+  // value found so far, with its proven error. This happens if a ball almost touches thousands of triangles, as in a
+  // finely meshed sphere.
   Index work = 3'000;
 };
 
-// A place of a surface: its position, its triangle, and the part of the triangle.
+// A place of a surface: its position, its triangle, and whether it lies on a corner, an edge or the face of the
+// triangle.
 struct SurfacePlace {
   Point position = Point::Zero();
   Index triangle = 0;
@@ -55,8 +59,8 @@ struct ThicknessAt {
   double diameter = 0;  // In mesh units.
   // A proven bound: the diameter is too large by at most this. It is above 0 if options.work ended the search.
   double error = 0;
-  // The diameter, in mesh units, of the ball that ends at a contact that faces the place; NaN if it has none. It
-  // exceeds `diameter` only by what the facets cause (see ThicknessOptions::smooth).
+  // The thickness, in mesh units; NaN if the place faces no contact. It is `diameter`, or a little more where facets
+  // ended that ball too early (see ThicknessOptions::smooth).
   double thickness = 0;
   Point contact = Point::Zero();  // The other end: of `thickness` if it is defined, otherwise of `diameter`.
   double angle = 0;               // The angle between both ends in radians, as in ThicknessOptions::facing.
@@ -68,10 +72,10 @@ struct ThicknessAt {
 // On a face, the ball touches along the normal of the smooth surface that the mesh stands for, interpolated between
 // triangles that turn by less than options.smooth. At an edge or vertex, it touches along the pseudonormal; where the
 // surface is concave, it may touch along the normal of an adjacent triangle if that ball is larger. All triangles in
-// front of the place count, whichever way they face: where the surface cuts itself, a ball ends at a part inside the
-// solid.
+// front of the place count, whichever way they face. So if the surface cuts itself, a ball may end at a part of the
+// surface inside the solid.
 // The result is exact up to rounding (about 1e-12 of the diameter). Throws InputError if an option is out of range. The
-// work is parallel, with the same result on any number of threads. Takes about log n for each place.
+// work is parallel, with the same result on any number of threads. A place takes about O(log n) for n triangles.
 std::vector<ThicknessAt> thickness_at(const Surface& surface, std::span<const SurfacePlace> places,
                                       const ThicknessOptions& options = {}, const Progress& progress = {});
 

@@ -21,9 +21,9 @@ struct Topology {
 // components. Throws InputError unless surface.solid().
 Topology solid_topology(const Surface& surface);
 
-// Returns the Betti numbers of a medial mesh over the field with two elements. The function collapses as much as
-// possible and reduces the boundary matrix of the rest. Precondition: validate(mesh) passes. Takes O(n) for most axes,
-// of which collapsing leaves almost nothing.
+// Returns the Betti numbers of a medial mesh over the field with two elements. Precondition: validate(mesh) passes. The
+// function collapses cells from their free sides as far as possible, and reduces the boundary matrix of the rest. It
+// takes O(n) for most axes, because almost nothing is left after collapsing.
 Topology topology(const MedialMesh& mesh);
 
 }  // namespace orchard

@@ -14,14 +14,14 @@
 // The broad phase: which bodies' bounding spheres overlap, from bounds on their motion.
 namespace orchard::runtime {
 
-// The index of a body's values in the application's arrays. Indices are small numbers; the one that became free last is
-// reused first.
+// The number of a body, which is the index of its values in the arrays of the application. Numbers are small: that of a
+// removed body is reused, the last removed one first.
 using BodyIndex = std::uint32_t;
 inline constexpr BodyIndex kNoIndex = 0xffffffffu;
 inline constexpr BodyIndex kMaxBodies = (1u << 28) - 1;
 
-// Identifies one body uniquely: a reused index has another generation. So the id of a removed body is refused and never
-// refers to its successor.
+// Identifies one body uniquely: each time an index is reused, it has another generation. So the id of a removed body is
+// refused, and never refers to the body that has the index now.
 struct BodyId {
   BodyIndex index = kNoIndex;
   std::uint32_t generation = 0;
@@ -30,11 +30,10 @@ struct BodyId {
 inline constexpr BodyId kNoBody{};
 
 // Which pairs a body is in, in Box2D's terms. Two bodies may be a pair if each one's mask has a bit of the other's
-// category. Two bodies of the same group other than 0 are always a pair if the group is positive, and never if it is
-// negative.
+// category. Two bodies of the same group other than 0 are always a pair if the group is positive, never if negative.
 // Bullet's group and mask are `category` and `mask`; each of Jolt's layers becomes a category. If one body of the
-// application is several spheres of the broad phase, give it a negative group of its own: then its parts are no pairs
-// and keep no body awake.
+// application is several spheres of the broad phase, give these a negative group of their own: then they form no pairs
+// with each other and keep no body awake.
 struct BodyFilter {
   std::uint32_t category = 1;        // Bits: what the body is.
   std::uint32_t mask = 0xffffffffu;  // Bits: the categories that it has pairs with.
@@ -43,46 +42,45 @@ struct BodyFilter {
   friend bool operator==(const BodyFilter&, const BodyFilter&) = default;
 };
 
-// Returns whether the filters allow a pair. It assumes that neither body is static, or that no filter ignores static
-// bodies.
+// Returns whether the filters allow a pair, if neither body is static or neither filter ignores static bodies.
 constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
 }
 
-// A filter of the application: the two bodies are no pair if it returns false. It is called for bodies that may_pair()
-// allows, with a.index < b.index, whenever they are found near each other and whenever that is tested again. So it must
-// return the same value for the same bodies until another filter is set. Only advance() (of a Detector: step()) calls
-// it. The object refuses calls from within the filter: see MotionSource.
+// A filter of the application: the two bodies are never a pair if it returns false. It is called for bodies that
+// may_pair() allows, with a.index < b.index, whenever the two are found near each other. That happens repeatedly, so it
+// must return the same value for the same bodies until another filter is set. Only advance() (of a Detector: step())
+// calls it. The object refuses calls from within the filter: see MotionSource.
 using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
+// Two bodies whose bounding spheres overlap.
 struct BodyPair {
   BodyIndex a, b;                                                       // a < b
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;  // NOLINT(modernize-use-nullptr): no 0 here
 };
 
 // A callback that fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may occur
-// twice.
-// A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the body is
-// in no pair, is asked for again at the next step, and is named in Advance::refused.
-// While a source, a filter or a listener runs, the broad phase that called it refuses every change and every call of
-// advance(), and its queries have no answer: they return what they return for a body that does not exist, and
-// Advance::time_refused or BodyQueries::refused() is true. Destroying or moving the broad phase there is an error.
+// twice. A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the
+// body is in no pair, is asked for again at the next step, and is named in Advance::refused. While a source, a filter
+// or a listener runs, the broad phase that called it refuses every change and every call of advance(), and its queries
+// have no answer: they return what they return for a body that does not exist, and Advance::time_refused or
+// BodyQueries::refused() is true. Destroying or moving the broad phase there is an error.
 using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
-// Returns a source for an application that keeps all motions as values, by BodyIndex, as of the time that it passes to
-// advance(). The application calls advance() at every step then, which costs nothing while the broad phase sleeps.
-// `values` must outlive the broad phase and be longer than any index of a body that moves. Static bodies share these
-// indices, so a body that was added after them needs a value beyond theirs. A body without a value is refused: see
-// Advance::refused.
+// Returns a source that reads the motion of body i from values[i]. The application keeps these values up to date: they
+// hold at the time that it passes to advance(). It must then call advance() at every step, which costs nothing while
+// nothing can happen. `values` must outlive the broad phase and have an element for the index of each moving body.
+// Static bodies use indices, too. A body without a value is refused.
 MotionSource values_of(const std::vector<Motion>& values);
 
-// Motions as arrays of floats, by BodyIndex, as of the time of advance(). They need a third of the memory of Motion
-// values, which matters because an update of all windows reads all of them. BroadPhase::reading() reads them without a
-// callback. Position arrays need an element for each body; a body beyond the end of `x` is refused. Each other array
-// has the same length or is empty: all values are then 0, and `expiry` is never.
-// The last place of a float is an error. position_slack = float_slack() covers positions that are rounded to float when
-// they are stored here; kept_in_float() computes M and drift if the state itself is kept in floats (motion_helpers.h).
+// Motions as arrays of floats, by BodyIndex, that hold at the time passed to advance(). They need a third of the memory
+// of Motion values, which matters because an update of all windows reads all of them. BroadPhase::reading() reads them
+// without a callback. The arrays of positions need an element for each body; a body beyond the end of `x` is refused.
+// Each other array has the same length or is empty. If it is empty, all its values are 0; if `expiry` is empty, bounds
+// never expire. Rounding to float makes positions inexact. If the application keeps doubles and rounds them when it
+// stores them here, set position_slack = float_slack(). If it keeps its state in floats, use the M and drift that
+// kept_in_float() returns (motion_helpers.h).
 struct MotionArrays {
   std::span<const float> x{}, y{}, z{};     // Positions.
   std::span<const float> vx{}, vy{}, vz{};  // Velocities.
@@ -90,12 +88,13 @@ struct MotionArrays {
   std::span<const double> expiry{};
 };
 
-// A body that has not kept its bounds: `bound`, given at bound_time, does not allow `given` at `time`.
+// A motion that does not keep the bounds that were given before for the same body: the bounds of `bound`, which held
+// from bound_time on, do not allow the motion `given` at `time`.
 struct MotionBoundViolation {
   BodyId body;
   double bound_time, time;
   const Motion &bound, &given;
-  MotionBoundExcess by;
+  MotionBoundExcess by;  // By how much each bound is exceeded.
 };
 // Called by advance() and by queries of BodyQueries. It must not call the broad phase.
 using MotionBoundViolationListener = std::function<void(const MotionBoundViolation&)>;
@@ -106,66 +105,66 @@ struct BroadPhaseOptions {
   double start = 0;         // The time of step 0.
   // The maximum number of steps between two updates of a body's window; 0 lets the broad phase choose.
   std::uint32_t window = 0;
-  // The largest distance between a position that the source gives and one for which the bounds hold, a length. For
-  // positions rounded to float, use float_slack() in motion_helpers.h. It costs as much as radii that are larger by
-  // twice this value.
+  // The largest error (a length) of the positions that the source gives: their distance from exact ones that keep the
+  // bounds. Rounding to float: see float_slack() (motion_helpers.h). It costs as much as radii larger by twice this.
   double position_slack = 0;
-  // For debugging: compares each motion that the source gives with its earlier promise for the same body. Every moving
-  // body is asked for at every processed step, and at the last step that is not after the time of each advance(). So
-  // motions that are not of the time that was asked for are found, too, such as values of a frame passed as values of a
-  // step. The pairs do not change. The cost is that of asking for all bodies, and 250 bytes for each. The listener
-  // `broken` receives each broken promise once, and the new motion replaces the promise. Without a listener they are
-  // counted.
+  // For debugging: compares each motion that the source gives with the bounds that it gave before for the same body.
+  // Every moving body is asked for at every processed step, and at the last step that is not after the time of each
+  // advance(). This also finds motions that do not belong to the time that was asked for, such as values of a frame
+  // passed as values of a step. The pairs do not change. The cost is that of asking for all bodies, and 250 bytes for
+  // each. The listener `broken` receives each violation once; the bounds of the new motion then replace the violated
+  // ones. motion_bound_violations() counts them, with and without a listener.
   bool validate = false;
   MotionBoundViolationListener broken{};
   // Runs updates of all windows of many bodies as jobs. Reports are the same with any executor or none. The source is
   // then called by several jobs at once, each for its own bodies, and must not throw. Steps within a budget and
   // `validate` do not use the executor.
   Executor executor{};
-  // The number of bodies from which jobs are used; a quarter of it suffices if enough pairs are near. Reports do not
-  // depend on it. For less than some thousand bodies, waking a thread costs more than it saves, and a single thread
-  // takes a tenth longer with jobs if everything fits into its cache.
+  // The smallest number of updated bodies for which the executor is used; a quarter suffices if they have many near
+  // pairs. Reports do not depend on it. Lower values pay only from some thousand bodies on, because waking a thread
+  // takes time; and if a single thread runs all jobs and everything fits into its cache, jobs cost a tenth more.
   std::size_t min_bodies_for_jobs = 16384;
 };
 
-// The largest number of time steps between a time and 0 (348 years at a step of 0.01 seconds). Beyond it, rounding
-// would blur the steps.
+// The most time steps between a time and 0 (348 years at a step of 0.01 s). Beyond it, rounding would blur the steps.
 inline constexpr double kMaxSteps = 0x1p40;
 
 // Returns whether time_step is in 1e-20..1e20, position_slack in 0..kMaxNumber, and start finite and within kMaxSteps
 // steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
-// The number of units of work between two readings of the clock. A unit of a Budget's work is a motion that is asked
-// for (8.2). A call asks for at least one. A pair's test takes two and is not split, so a step may ask for one more
-// than the budget allows.
+// The number of units of work between two readings of the clock. A unit of Budget::work is one motion that is asked for
+// (8.2). A call asks for at least one. The test of a pair takes two units and is not split, so a step may exceed the
+// budget by one unit.
 inline constexpr std::uint64_t kWorkPerClock = 64;
+// The value of `replay` in BroadPhase::advance() for a step that was not interrupted.
 inline constexpr std::uint64_t kWholeStep = std::numeric_limits<std::uint64_t>::max();
 
+// Stands for no class of importance; classes are 0 to 255.
 inline constexpr unsigned kNoClass = 256;
 
 // The result of advance().
 struct Advance {
-  // The time of the step that the pairs belong to. Without pairs, nothing touches at any step before this time, and
-  // earlier calls are unnecessary.
+  // With pairs, the time of the step at which they overlap. Without pairs, no spheres touch at any step before this
+  // time, and calling advance() earlier is unnecessary.
   double time;
   std::span<const BodyPair> pairs;  // In ascending order; valid until the next call of any other member.
-  // If the step was interrupted, pairs with a body of this importance class or a higher one may be missing. kNoClass:
-  // no pair is missing.
+  // If the step was interrupted, pairs with a body of this importance class or above may be missing; kNoClass: none is.
   unsigned incomplete_from = kNoClass;
   std::size_t left_over = 0;  // Bodies and pairs that the budget left untested; 0: nothing is missing.
   // Bodies whose motions were not valid at a step that this call processed; they were in no pair there. In ascending
   // order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
-  bool time_refused = false;  // Nothing was done: t_now is not finite or beyond kMaxSteps, or a callback called.
-  std::uint64_t work = 0;     // Units of the last step that was processed within a budget.
+  // Nothing was done, because t_now is not finite or beyond kMaxSteps, or because a callback called advance().
+  bool time_refused = false;
+  std::uint64_t work = 0;  // The units of work of the last step, if it was processed within a budget.
 };
 
-// What the broad phase already knows of a future step (8.2: predicted load).
+// The work of a future step, as far as the broad phase already knows it (8.2: predicted load).
 struct StepsAhead {
-  std::size_t updates = 0;   // Bodies that will be updated: one motion each.
-  std::size_t meetings = 0;  // Pairs whose bounds can touch from that step on: two motions each.
-  std::size_t overlaps = 0;  // Pairs that overlapped at the last step, which may still overlap.
+  std::size_t updates = 0;   // Bodies whose windows will be updated. Each needs one motion.
+  std::size_t meetings = 0;  // Pairs whose bounds can touch from this step on. Each needs two motions.
+  std::size_t overlaps = 0;  // Pairs that overlapped at the last step and may still overlap.
 };
 
 class BroadPhase;
@@ -178,8 +177,8 @@ using MakeMethod =
 BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
 }  // namespace detail
 
-// Finds which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
-// (dissertation, chapter 4).
+// Finds the pairs of bodies whose bounding spheres overlap, and the next time at which there can be such a pair, from
+// bounds on their motion (dissertation, chapter 4).
 //
 // Time passes in steps of dt_d = options.time_step; step k is at start + k dt_d. At each step the reported pairs are
 // *exactly* those with spheres_touch() for the motions of that step, provided that the motions have kept their bounds
@@ -188,8 +187,9 @@ BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& option
 // bodies are never a pair, nor are two that the filters exclude; an excluded pair costs only the discovery, once per
 // window update, that the two are near.
 //
-// A bound that expires at a step's time still holds at this step. If most bounds expire together and advance() is
-// called when the new ones can already be given, half of the work is done at the step before the one that needs it.
+// A bound that expires at the time of a step still holds at this step. If most bounds expire together, all windows have
+// to be updated at the next step. About half of this work is done one step ahead, if the source can already give bounds
+// that hold at the next step.
 //
 // Call advance(t_now) once per frame, or more often, or at the time that it returned, with times that do not decrease:
 //     for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) ..     // see Fig. 4.23
@@ -212,21 +212,20 @@ class BroadPhase {
   ~BroadPhase();
 
   // Adds a moving body. `importance` is its class; 0 is the highest. Returns kNoBody if there are kMaxBodies bodies or
-  // no source. Changes between two calls of advance() take part from the first step after the time of the last report.
+  // no source. Changes between two calls of advance() take effect at the first step after the time of the last report.
   BodyId add(std::uint8_t importance = 0, const BodyFilter& filter = {});
   // Adds a body that does not move. Only the position and the radius of `place` count, and the body is never asked for.
   // Returns kNoBody also if the motion is not valid.
   BodyId add_static(const Motion& place, std::uint8_t importance = 0, const BodyFilter& filter = {});
   // Removes a body. This function and the following ones change nothing and return false if there is no such body.
   bool remove(BodyId body);
-  // Cancels the last bounds of the body; they are asked for again at the next step (4.4).
+  // Cancels the body's bounds, for example because it collided: the source is asked again at the next step (4.4).
   bool cancel(BodyId body);
   bool teleport(BodyId body) { return cancel(body); }  // The source gives the new place from now on.
   // Returns false also if the body is not static or the motion not valid.
   bool move_static(BodyId body, const Motion& place);
   bool set_importance(BodyId body, std::uint8_t importance);  // Takes effect from the next step.
-  // Takes effect from the next step; costs an update of the body's window.
-  bool set_filter(BodyId body, const BodyFilter& filter);
+  bool set_filter(BodyId body, const BodyFilter& filter);     // Likewise; costs an update of the body's window.
 
   BodyFilter filter_of(BodyId body) const noexcept;  // Returns BodyFilter{} if there is no such body.
   // Sets the filter of pairs; an empty function allows all pairs that may_pair() allows. It takes effect from the next
@@ -243,25 +242,26 @@ class BroadPhase {
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
-  // Does the same within a budget per step. The bodies and pairs of the more important classes come first; what is left
-  // over continues at the next step. Any budget reaches every body and pair of a class eventually, unless a more
-  // important class uses all of it. Each reported pair was tested at this step.
-  // `replay`, if not 0, repeats a step that a clock cut short: the step ends where that of another run ended, instead
-  // of at budget.time. It is the Advance::work of that run if the step was interrupted, otherwise kWholeStep.
+  // Does the same within a budget per step. The bodies and pairs of the more important classes come first; the next
+  // step continues with those that the budget left over. Any budget reaches every body and pair of a class eventually,
+  // unless a more important class uses all of it. Each reported pair was tested at this step. `replay`, if not 0,
+  // repeats a step of another run that a limit of time interrupted: the step ends after the same work instead of at
+  // budget.time. Pass the Advance::work of that run if the step was interrupted, otherwise kWholeStep.
   Advance advance(double t_now, const Budget& budget, std::uint64_t replay = 0) {
     if (!sleeps_until(t_now)) return process(t_now, &budget, replay);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
 
-  // Skips the steps before the last one that is not after t, which is then processed next; use it after a pause. Costs
-  // an update of every body's window at that step, however long the pause. Returns the number of skipped steps; returns
-  // 0 and does nothing if nothing is due in between.
+  // Skips steps after a pause: the next step to be processed is the last one that is not after t. That step updates the
+  // window of every body, however long the pause was. Returns the number of skipped steps. If nothing is due before
+  // that step, it does nothing and returns 0.
   std::uint64_t skip_to(double t);
 
-  // Predicts the load: steps[i] becomes what is due at the i-th step after `time`, up to which steps have been
-  // processed. It is an estimate: it does not contain what was cancelled since, but contains what became obsolete.
-  // Returns how many steps are known, at most 254; 0 for algorithms other than the default one. O(what is due).
+  // Predicts the load: writes to steps[i] the work of the i-th step after `time`, up to which steps have been
+  // processed. It is an estimate: bodies that were cancelled since then are missing, and obsolete events are included.
+  // Returns the number of steps that are known, at most 254; 0 for algorithms other than the default one. Its time is
+  // proportional to these events.
   std::size_t predict_load(double time, std::span<StepsAhead> steps) const noexcept;
 
   bool valid() const noexcept { return max_time_ >= 0; }    // The options are valid, and no step has thrown.
@@ -269,7 +269,7 @@ class BroadPhase {
   std::size_t size() const noexcept;                        // The number of bodies.
   std::size_t memory_bytes() const noexcept;                // On the heap.
   std::uint64_t motions_asked() const noexcept;             // Motions that the source has given so far.
-  std::uint64_t motion_bound_violations() const noexcept;   // Found by BroadPhaseOptions::validate so far.
+  std::uint64_t motion_bound_violations() const noexcept;   // Violations found by BroadPhaseOptions::validate so far.
 
  private:
   struct State;

@@ -16,7 +16,7 @@ struct QueryFilter {
   std::uint32_t mask = 0xffffffffu;
 };
 
-// A hit of a ray: it enters the body's sphere at origin + along * direction. `along` is 0 if the ray begins inside.
+// The place where a ray enters a body's sphere: origin + along * direction. `along` is 0 if the ray begins inside.
 struct BodyHit {
   BodyIndex body = kNoIndex;
   double along = 0;
@@ -28,45 +28,47 @@ struct NearBody {
   double distance = 0;  // The distance of the point from the body's sphere, 0 inside.
 };
 
-// Queries about the places of bodies. The source gives the places when it is asked for time(); positions and radii are
-// these and not bounds, and spheres are closed, in double. The queries see the present bodies, including those that
-// were added or teleported since the last report. A body with an invalid motion is not found. The boxes of the broad
-// phase select the candidates; they are correct if the motions keep their bounds and cancel() is called otherwise, as
-// for pairs.
+// Answers queries about the bounding spheres of the bodies at time(). The source is asked for the motions at this time.
+// Only their positions and radii count, not their bounds. Spheres are closed, and the tests are in double precision.
+// The queries see the present bodies, including those that were added or teleported since the last report. A body with
+// an invalid motion is not found. The boxes of the broad phase select the bodies that are asked for, so a body may be
+// missed if its motion does not keep its bounds and cancel() was not called.
 //
-// Cost, for the default algorithm: what lies in the cells that the query meets, and a motion for each body whose box it
-// meets. In addition, one motion for each body that was added or cancelled since the last step, waits for a budget, or
-// is as large as several cells. At the step before many bounds expire together, that may be half of the bodies. A query
-// that meets more cells than there are bodies, or a world of up to 192 bodies, costs a box for each body; a ray in this
-// case, and every query of another algorithm, costs a motion for each body.
+// Cost, for the default algorithm:
+// - A query reads the cells that it meets, and asks for the motion of each body whose box it meets.
+// - It also asks for each body that was added or cancelled since the last step, that waits for a budget, or that is as
+//   large as several cells. At the step before many bounds expire together, that may be half of the bodies.
+// - A query that meets more cells than there are bodies, or any query in a world of up to 192 bodies, tests the box of
+//   each body instead of the cells; a ray then asks for the motion of each body.
+// With another algorithm, every query asks for the motion of each body.
 //
-// A refused query has no answer, and refused() is true. Refused are numbers that are not finite or above kMaxNumber (a
-// ray may be infinitely long), a direction of 0, a negative radius or length, a box whose lower corner is above its
-// upper one, and all queries to a broad phase that is not valid() or from one of its callbacks.
+// A query is refused if a number is not finite or above kMaxNumber (a ray may be infinitely long), if the direction is
+// 0, if a radius or length is negative, if a lower corner of a box is above the upper one, if the broad phase is not
+// valid(), or if one of its callbacks makes the query. A refused query has no answer, and refused() is true.
 //
-// Spans and their order are valid until the next query of the object. It keeps its memory and allocates nothing once
-// warm. Any number of objects may query the same broad phase, one at a time, and not while it advances. Throws
+// A returned span is valid until the next query of the same object. The object reuses its memory, so it soon allocates
+// nothing. Any number of objects may query the same broad phase, one at a time, and not while it advances. Throws
 // std::bad_alloc and what the source throws; then nothing has changed.
 class BodyQueries {
  public:
   // `world` outlives this object and stays in its place.
   explicit BodyQueries(BroadPhase& world) noexcept : world_(&world) {}
 
-  // Returns the time of the last step that is not after the time up to which everything has been reported; before the
-  // first step, the time of that step.
+  // Returns the time to which the answers refer. Everything has been reported up to some time; this is the last step
+  // that is not after it. Before the first step, it is the time of the first step.
   double time() const noexcept;
   bool refused() const noexcept { return refused_; }  // Whether the last query was refused.
 
-  // Returns the body whose sphere the ray enters first; of several, the one with the lowest index.
+  // Returns the body whose sphere the ray enters first; if it enters several at once, the one with the lowest index.
   std::optional<BodyHit> first_hit(const Ray& ray, const QueryFilter& filter = {});
   // Returns all bodies that the ray enters, ordered by `along`, then by body.
   std::span<const BodyHit> all_hits(const Ray& ray, const QueryFilter& filter = {});
-  // Does the same for the points from p to q, both included; `along` is 1 at q. The two may be the same point.
+  // Do the same for the segment from p to q, both ends included; `along` is 1 at q. The two may be the same point.
   std::optional<BodyHit> first_on_segment(const Vec3& p, const Vec3& q, const QueryFilter& filter = {});
   std::span<const BodyHit> all_on_segment(const Vec3& p, const Vec3& q, const QueryFilter& filter = {});
 
-  // Returns the bodies, in ascending order, whose spheres have a point in common with a solid sphere or an axis-aligned
-  // box.
+  // Return the bodies, in ascending order, whose spheres have a point in common with a solid sphere or with a solid
+  // axis-aligned box.
   std::span<const BodyIndex> touching_sphere(const Vec3& center, double radius, const QueryFilter& filter = {});
   std::span<const BodyIndex> touching_box(const Vec3& lower, const Vec3& upper, const QueryFilter& filter = {});
 
@@ -77,7 +79,7 @@ class BodyQueries {
   std::size_t memory_bytes() const noexcept;  // On the heap.
 
  private:
-  struct Line;  // from a point in a direction of length 1
+  struct Line;  // A ray or a segment with a direction of length 1.
   struct FirstHit;
   struct AllHits;
   std::int64_t step() const noexcept;
@@ -96,7 +98,7 @@ class BodyQueries {
 
   BroadPhase* world_;
   bool refused_ = false;
-  std::vector<std::uint32_t> seen_;  // by body: the last query that it was looked at in
+  std::vector<std::uint32_t> seen_;  // For each body, the number of the last query that tested it.
   std::uint32_t query_ = 0;
   std::vector<BodyIndex> candidates_, asked_, found_;
   std::vector<Motion> motions_;

@@ -25,9 +25,9 @@ namespace orchard::runtime {
 
 // How a budget is spent.
 enum class Order : std::uint8_t {
-  // Straight to the triangles: the fastest way to "yes" or "no"; bounds are those of the roots.
+  // Tests the triangles at once. This is the fastest way to "yes" or "no"; the bounds are those of the roots.
   exact_first,
-  // All levels of spheres, then the triangles: bounds on the separation as good as the budget allows.
+  // Tests all levels of spheres and then the triangles. The bounds on the separation are as good as the budget allows.
   level_by_level
 };
 

@@ -4,7 +4,7 @@
 
 #include "orchard/runtime/collide.h"
 
-// Where two bodies touch and how they come apart, for the response to a contact.
+// Finds where two bodies touch and the shortest translation that separates them, for the response to a contact.
 namespace orchard::runtime {
 
 inline constexpr std::uint32_t kMaxContactPoints = 4;
@@ -13,8 +13,9 @@ inline constexpr std::uint32_t kMaxContactPoints = 4;
 struct ContactPoint {
   std::array<double, 3> place{};  // A point of both surfaces, in world coordinates.
   std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;
-  // How far b has to move along the normal until these two triangles are certainly apart, at most Manifold::depth. A
-  // negative value is minus their distance (ContactOptions::margin). In world units.
+  // How far b has to move along the normal until these two triangles are certainly apart, in world units; at most
+  // Manifold::depth. A negative value means that the triangles do not meet, and is minus their distance (see
+  // ContactOptions::margin).
   double depth = 0;
 };
 
@@ -26,41 +27,42 @@ struct Manifold {
   std::uint32_t count = 0;
   std::array<ContactPoint, kMaxContactPoints> points{};
   // A unit vector from a to b. After b has moved by `depth` along it, b does not touch a any more, rounding included;
-  // after moving by less than `depth` - `error`, it does. The direction is a local minimum of depth(direction), the
-  // best one that was found. The search covers all directions, but may miss a shorter one. For "maybe" it is a guess,
-  // from sphere to sphere.
+  // after moving by less than `depth` - `error`, it still does. Of the directions that were tried, it is the one with
+  // the smallest depth, and a local minimum. The search tries directions all around, but may miss a better one. For
+  // "maybe", the normal is a guess: the direction from one sphere to the other.
   std::array<double, 3> normal{};
   double depth = 0;
   // The error of points and depth. For "yes", it is rounding, about 1e-12 of the coordinates. For "maybe", it is the
   // radius of a ball around the point that contains the common part of two of the trees' spheres.
   double error = 0;
-  // False if no direction reached its first end in time. The depth is then that at which the extents of the bodies
-  // along the normal separate. It is sufficient, but a smaller one may be as well.
+  // False if the search was given up before it knew the exact depth of any direction. `depth` is then the one after
+  // which the extents of the bodies along the normal do not overlap. It separates the bodies, but may be larger than
+  // necessary.
   bool complete = true;
 };
 
 // The options of contacts().
 struct ContactOptions {
-  // The maximum number of directions that are tried from each initial direction; 0 computes the depth of the first
-  // normal only. More find shorter ways and take longer.
+  // The maximum number of directions that are tried from each initial direction; 0 computes only the depth of the first
+  // normal. Higher values find smaller depths and take longer.
   std::uint32_t refinements = 12;
   bool depth = true;  // False: points and a first normal only, at a fraction of the cost.
-  // Surfaces that do not meet and are at most this far apart (world units) get one point before they touch: the middle
-  // between the two nearest points, with the direction from a to b, and with minus their distance as its depth and the
-  // manifold's. The answer is still "no". Costs a distance query.
+  // The largest distance, in world units, of surfaces that get a point before they touch. The point is the middle
+  // between the two nearest points, the normal is the direction from a to b, and both depths are minus the distance.
+  // The answer is still "no". Costs a distance query.
   double margin = 0;
 };
 
-// Returns where two bodies touch. All pairs of triangles that meet give the curves in which the surfaces cut each
-// other, and the points lie on these curves. The depth along a direction is exact for the stored triangles up to
-// rounding: the shortest motion after which no triangle of one body meets any of the other, including every triangle
-// that gets in the way. If one solid is deep in the other, this is the motion after which the *surfaces* are apart,
-// which may end within the solid.
+// Returns where two bodies touch. The points lie on the curves in which the surfaces cut each other, which are found
+// from all pairs of triangles that meet. The depth along a direction is the length of the shortest motion after which
+// no triangle of one body meets any of the other, including triangles that get in the way during the motion. It is
+// exact for the stored triangles up to rounding. If one solid is deep inside the other, the motion separates the
+// *surfaces*, so the solid may still be inside afterwards.
 Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                   const ContactOptions& options = {}) noexcept;
 
-// The distance of two surfaces, or minus the manifold's depth if they meet. For shallow contacts it is continuous in
-// the poses. `normal` is the direction in which b leaves a. In world units.
+// The distance of two surfaces, or minus the manifold's depth if they meet, in world units. For shallow contacts it is
+// continuous in the poses. `normal` is the direction in which b has to move away from a.
 struct SignedDistance {
   double lower = 0, upper = 0;  // lower <= distance <= upper; equal for contacts.
   std::array<double, 3> on_a{}, on_b{}, normal{};

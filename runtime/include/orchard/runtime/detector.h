@@ -14,8 +14,8 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/tree_file.h"
 
-// The whole detector of the dissertation's Fig. 3.2 in one object: broad phase, narrow phase, and a schedule that keeps
-// to a budget.
+// The complete detector of the dissertation's Fig. 3.2: broad phase, narrow phase, and a schedule that keeps to a
+// budget.
 //
 //   Detector world({.time_step = 1.0 / 60});
 //   const ShapeId hull = world.load_shape("hull.orchard");
@@ -25,7 +25,7 @@
 //   }
 namespace orchard::runtime {
 
-// A shape of parts of bodies. Any number of bodies may share a shape. Shapes are never removed.
+// Identifies a shape of a Detector. Any number of bodies may share a shape. Shapes are never removed.
 using ShapeId = std::uint32_t;
 inline constexpr ShapeId kNoShape = 0xffffffffu;
 
@@ -40,18 +40,18 @@ constexpr bool is_half_space(const BodyId& body) noexcept {
 // Returns the number of a half-space in the order of adding, from 0. Precondition: is_half_space(body).
 constexpr std::uint32_t half_space_number(const BodyId& body) noexcept { return body.index - kFirstHalfSpace; }
 
-// A rigid part of a body. Its place in the world is the body's pose after `local`. Lengths of the shape are multiplied
-// by local.scale and by the scale of the body.
+// A rigid part of a body. `local` is its pose relative to the body: points of the shape are transformed by `local` and
+// then by the pose of the body. The lengths of the shape are multiplied by the scales of both.
 struct BodyPart {
   ShapeId shape = kNoShape;
   Pose local{};
 };
 
-// What the application knows of a body at the time of a step. The bounds are a promise about the body's origin,
-// pose.translation: see Motion in motion.h, which has the same fields. The scale must not change until the promise
-// expires. A state with a pose and a velocity and nothing else promises straight motion without end.
+// The state of a body at the time of a step, and bounds on its motion until an expiry. The bounds are about the body's
+// origin, pose.translation: see Motion in motion.h, which has the same fields. The scale must not change until the
+// bounds expire. A state with a pose and a velocity and nothing else says that the body moves straight for ever.
 // DetectorOptions::watch, which is on by default if a source gives the states, finds at every step the bodies that have
-// not kept their promise.
+// exceeded their bounds.
 struct BodyState {
   Pose pose{};
   Vec3 velocity{};
@@ -59,23 +59,23 @@ struct BodyState {
   double drift = 0;
   Vec3 half_space{};
   double expiry = std::numeric_limits<double>::infinity();
-  // An upper bound on the angular speed until the promise expires, in radians per second, at least 0. Set it for bodies
+  // An upper bound on the angular speed until the bounds expire, in radians per second, at least 0. Set it for bodies
   // whose origin is not in their middle: if there is no bound (infinity), the farthest point of such a body may soon be
   // on any side of its origin.
   double angular_speed = std::numeric_limits<double>::infinity();
 };
 
-// A callback that fills states[i] with what is known of bodies[i] at `time`, the time of a step. It must not throw.
+// A callback that fills states[i] with the state of bodies[i] at `time`, the time of a step. It must not throw.
 // step() calls it in the thread that called step().
 // While a source, a filter or a listener runs, the detector that called it refuses every change and every call of
 // step(), manifold() and predict_load(): they return what they return for a body that does not exist, and
 // Frame::time_refused is true. Destroying or moving the detector there is an error.
 using StateSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states)>;
 
-// Returns a source for an application that keeps all states as values, by BodyIndex, as of the time that it passes to
-// step(). `values` must outlive the detector and be longer than any index of a body that moves. Static bodies share
-// these indices, so a body that was added after them needs a value beyond theirs. A body without a value is in no pair:
-// see Frame::refused.
+// Returns a source that reads the state of body i from values[i]. The application keeps these values up to date: they
+// hold at the time that it passes to step(). `values` must outlive the detector and have an element for the index of
+// each moving body. Static bodies use indices, too, so a moving body that was added after them has a higher index. A
+// body without a value is in no pair: see Frame::refused.
 StateSource states_of(const std::vector<BodyState>& values);
 
 // Properties of a body.
@@ -85,10 +85,10 @@ struct BodyOptions {
   // Which pairs the body is in. The broad phase does not create other pairs, so they cost nothing. Half-spaces are
   // static.
   BodyFilter filter{};
-  // Above 0, contacts between two steps are found, too, by time_of_impact() from pose to pose of the body and of its
-  // parts: the centre of each part moves straight, and the rotation uses the smallest angle. The value promises that no
-  // origin moves faster than this relative to any body that this body may meet, in lengths per second. If the scale
-  // changes during a step, the result is `possible`.
+  // If this is above 0, contacts between two steps are found, too. time_of_impact() then assumes that between the poses
+  // of the two steps the centre of each part moves straight, and that the part turns by the smallest angle. The value
+  // is a bound, in lengths per second: the origin of this body must not move faster relative to the origin of any body
+  // that it may meet. If the scale changes during a step, the result is `possible`.
   double continuous_speed = 0;
   // The distance from the origin at scale 1 within which the body always lies, whatever its parts do. It avoids a
   // window update each time an articulated body stretches. 0 uses the reach of the present parts.
@@ -109,21 +109,21 @@ struct DetectorOptions {
   double time_step = 0.01;    // The time between steps (dt_d), above 0, usually a frame; see BroadPhaseOptions.
   double start = 0;           // The time of step 0.
   double position_slack = 0;  // The error of positions; see BroadPhaseOptions.
-  // Whether each step asks for the state of every moving body and compares it with the promise (4.4). A promise that
-  // does not hold is cancelled in time for this step, counted, and named in Frame::broken, and no contact is missed.
-  // Without it, the detector asks for a body only if something depends on it, which costs less
-  // (docs/guide/detector.md); but contacts are missed silently unless every promise is kept or cancel() is called.
-  // Without a value it is on with a state source, and off if the detector keeps the states, because set_state() cancels
-  // what it changes.
+  // Whether each step asks for the state of every moving body and compares it with the motion bounds (4.4). Bounds that
+  // do not hold are cancelled in time for this step and counted, and Frame::broken names the body; so no contact is
+  // missed. Without it, the detector asks for a body only if a result depends on it, which costs less
+  // (docs/guide/detector.md). Contacts are then missed silently if a body exceeds its bounds and cancel() is not
+  // called. Without a value, it is on with a state source, and off if the detector keeps the states, because
+  // set_state() cancels the bounds that it changes.
   std::optional<bool> watch{};
   // The number of successive steps with a certain "no" after which a contact ends, at least 1. Raise it to debounce
   // pairs that jitter at contact.
   std::uint32_t steps_to_end = 1;
-  // The maximum number of pairs of trees that may be continued at once after a first piece. Further pairs are reported
-  // as possible.
+  // The maximum number of pairs of trees whose interrupted searches are kept to be continued. Further pairs are
+  // reported as possible.
   std::size_t max_unfinished = 4096;
-  // A call of step() ends after the step with which it has at least this number of events, so that its memory does not
-  // grow with the length of a pause: see Frame::steps_left. At least 1.
+  // A call of step() ends once it has at least this number of events, at least 1. So its memory does not grow with the
+  // length of a pause: see Frame::steps_left.
   std::size_t max_events = std::size_t{1} << 18;
   // The maximum number of fronts (PairFront, 43 KB each). Pairs of large trees that stay close and are expensive to
   // search get one when they come near each other. 0 allows none.
@@ -135,22 +135,23 @@ struct DetectorOptions {
   MotionBoundListener bound_given{};
 };
 
-// The points at which a time budget ended the stages of a step.
+// Records where a time budget ended the stages of a step, so that StepOptions::replay can repeat the step. A stage that
+// was not interrupted has kWholeStep.
 struct StepCut {
-  std::uint64_t broad = kWholeStep;    // The replay of BroadPhase::advance().
-  std::uint64_t begun = kWholeStep;    // Started pairs of parts, and first searches.
-  std::uint64_t refined = kWholeStep;  // Their work, and 1 for each piece of it.
-  std::uint64_t swept = kWholeStep;    // Swept pairs.
+  std::uint64_t broad = kWholeStep;    // The broad phase: `replay` of BroadPhase::advance().
+  std::uint64_t begun = kWholeStep;    // The number of pairs of parts started and first searches made.
+  std::uint64_t refined = kWholeStep;  // The work of further searches, plus 1 for each piece of it.
+  std::uint64_t swept = kWholeStep;    // The number of pairs swept.
   friend bool operator==(const StepCut&, const StepCut&) = default;
 };
 
-// Units of Budget::work in a Detector. A unit is that of NarrowPhase. A motion that the broad phase asks for costs
-// kMotionWork, starting a pair costs kPairWork, and a pair with a simple shape costs kSimplePairWork.
-// The broad phase gets at most half of a limited budget, and sweeps get half of what it leaves. A step exceeds `work`
-// by less than kMaxOvershoot, which is one pair of leaves, apart from what each step always does: one unit of the broad
-// phase. With a budget in time, the cost of what a step always does is predicted from earlier steps and reserved; if
-// that alone takes longer, the step exceeds its budget. Only a budget in counted work gives the same answers on every
-// machine; a step that a clock cut short can be replayed.
+// Costs in units of Budget::work. A unit of work of a Detector is one of NarrowPhase. A motion that the broad phase
+// asks for costs kMotionWork, starting a pair costs kPairWork, and a pair with a simple shape costs kSimplePairWork.
+// The broad phase gets at most half of a limited budget, and sweeps get half of the rest. A step may exceed `work` by
+// less than kMaxOvershoot, the cost of one pair of leaves; it also makes one unit of progress in the broad phase under
+// any budget. With a budget in time, the work that every step needs is predicted from earlier steps and reserved; if
+// this work alone takes longer, the step exceeds its budget. Only a budget in work gives the same answers on every
+// machine; a step that a budget in time interrupted can be replayed.
 inline constexpr std::uint64_t kMotionWork = 16;
 inline constexpr std::uint64_t kPairWork = 16;
 inline constexpr std::uint64_t kSimplePairWork = 64;
@@ -158,22 +159,22 @@ inline constexpr std::uint64_t kMaxOvershoot = std::uint64_t{kLeafPairTests} * k
 
 // The options of Detector::step().
 struct StepOptions {
-  // If not null, the step ends where that of another run ended, Frame::cut, instead of at the time budget. After the
-  // same calls with the same states, the frame equals that of the other run. A replayed call answers at most one step,
-  // and requires that no executor took part.
+  // If not null, the step ends where the step of another run ended (its Frame::cut) instead of at the time budget.
+  // After the same calls with the same states, the frame equals that of the other run. A replayed call answers at most
+  // one step, and neither run may use an executor.
   const StepCut* replay = nullptr;
   // Whether only the last step up to the given time is answered; use it after a pause. Frame::skipped counts the steps
-  // before it. Contacts that happened only there are not reported, and no sweep of a continuous body crosses them.
-  // Contacts that held before and hold now continue; contacts that hold no longer end.
+  // before it. Contacts that existed only at skipped steps are not reported, and sweeps of continuous bodies do not
+  // include them. Contacts that held before and hold now continue; other contacts end.
   bool latest_only = false;
 };
 
 // What an event reports of a pair.
 enum class PairChange : std::uint8_t {
   begin,  // The first certain "yes".
-  stay,   // The pair touches since an earlier step, without a certain "no" since.
-  end,    // A certain "no" after a begin (the last of steps_to_end), or a body was removed or teleported.
-  // The pair is neither touching nor certainly apart at this step, because the budget ended or no more can be known.
+  stay,   // The pair began to touch at an earlier step and has not been certainly apart since.
+  end,    // A pair that touched is certainly apart (for steps_to_end steps), or a body was removed or teleported.
+  // Whether the pair touches at this step is not known, because the budget ended or the input does not determine it.
   possible,
 };
 
@@ -201,18 +202,18 @@ struct Frame {
   std::uint64_t steps_left = 0;
   std::uint64_t skipped = 0;          // The steps left out by StepOptions::latest_only.
   std::span<const PairEvent> events;  // Ordered by time, then by pair.
-  std::uint64_t pairs = 0;          // Pairs of bodies that may touch, whose spheres overlapped, summed over the steps.
-  std::uint64_t certain = 0;        // The number of these with a certain answer.
-  StepCut cut{};                    // Where the last step ended, for a budget in time without an executor.
-  double worst_bound = 0;           // The largest separation bound of the pairs without a certain answer.
-  std::uint64_t work = 0;           // In units of Budget::work.
-  std::uint64_t motions_asked = 0;  // Motions asked for; each costs kMotionWork.
+  std::uint64_t pairs = 0;            // The number of pairs of bodies whose spheres overlapped, summed over the steps.
+  std::uint64_t certain = 0;          // The number of these pairs that have a certain answer.
+  StepCut cut{};                      // Where the last step ended, for a budget in time without an executor.
+  double worst_bound = 0;             // The largest separation bound of the pairs without a certain answer.
+  std::uint64_t work = 0;             // In units of Budget::work.
+  std::uint64_t motions_asked = 0;    // Motions asked for; each costs kMotionWork.
   unsigned incomplete_from = kNoClass;  // Set if the broad phase was interrupted: see Advance.
-  std::size_t left_over = 0;
-  // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its
-  // promise still holds, in possible pairs.
+  std::size_t left_over = 0;            // Set if the broad phase was interrupted: see Advance.
+  // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its last
+  // bounds still hold, in possible pairs.
   std::span<const BodyIndex> refused;
-  std::span<const BodyIndex> broken;  // Bodies whose promise did not hold and was cancelled (watch).
+  std::span<const BodyIndex> broken;  // Bodies that exceeded their bounds, which were cancelled (watch).
   // Nothing was done: the time is not valid (see Advance), or step() was called from within itself.
   bool time_refused = false;
   // There was not enough memory for this step. The detector answers nothing after that; construct another one.
@@ -238,20 +239,21 @@ struct WorldPoint {
   std::uint32_t triangle = kNoTriangle;  // The triangle, if the shape is a tree.
 };
 
-// Finds which bodies touch, at every step, within a budget, and always with a bound.
+// Finds the bodies that touch at each step, within a budget. Pairs for which the budget does not suffice have bounds on
+// their distance.
 //
 // Each step answers every pair of bodies that the filters allow and whose spheres overlap, from the poses of that step:
-// yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; if many static bodies are in
-// reach of a body, the spheres that have to overlap are those of its parts. The parts of one body are never a pair, nor
-// are two static bodies. Trees stand for their surfaces, as in NarrowPhase; the simple shapes (sphere, capsule, box,
-// half-space) are solid.
+// yes, no, or maybe with bounds. Two bodies touch if and only if two of their parts do. For a body of several parts
+// that is near many static bodies, the spheres of its parts have to overlap instead of the sphere around the whole
+// body. The parts of one body are never a pair, nor are two static bodies. Trees stand for their surfaces, as in
+// NarrowPhase; the simple shapes (sphere, capsule, box, half-space) are solid.
 //
 // Refinement (7.3) is ordered by class of importance, and within a class the pairs that have waited longest for a
 // certain answer come first. All pairs start with cheap tests that decide most of them: spheres, roots, and the result
 // of the last step. In addition, a reserved share of the budget takes the other pairs straight to their triangles, one
 // after the other, in pieces; a pair that is not finished gets further pieces, each four times as large as the last.
-// Pairs without a certain answer have the bounds of their spheres or better. So under any budget every pair is
-// processed in turn.
+// Pairs without a certain answer have the bounds of their spheres or better. So every pair gets its turn, whatever the
+// budget.
 //
 // The detector is deterministic: the same calls, states and budget in work give the same frames, with any executor.
 // Without a budget, the answer of a pair does not depend on other pairs. It allocates nothing once it has held as many
@@ -262,7 +264,7 @@ class Detector {
  public:
   // Constructs a detector that keeps the states of bodies and moves them: see set_state().
   explicit Detector(const DetectorOptions& options = {});
-  // Constructs a detector that asks the application for the states of bodies when something depends on them.
+  // Constructs a detector that asks the application for the states of bodies when a result depends on them.
   explicit Detector(StateSource source, const DetectorOptions& options = {});
   Detector(Detector&&) noexcept;
   Detector& operator=(Detector&&) noexcept;
@@ -303,25 +305,25 @@ class Detector {
   // Removes a body. This function and the following ones change nothing and return false if the body does not exist or
   // an argument is not valid.
   bool remove(BodyId body);
-  // Cancels the last promise of the body.
+  // Cancels the motion bounds of the body.
   bool cancel(BodyId body);
   // Moves the body to the place that the source gives from now on. A contact ends, and no sweep leads to the new place.
   bool teleport(BodyId body);
   bool move_static(BodyId body, const Pose& pose);
   // Sets the state of a body, if the detector keeps the states. From the time of the last step on (before the first
   // step: from `start`), the body has this state and moves straight at `velocity` without turning, until the next
-  // change. Without `watch` this cancels the promise; with it, a promise is cancelled only if it does not hold. A
+  // change. Without `watch` this cancels the bounds; with it, bounds are cancelled only if they do not hold. A
   // sleeping body continues to sleep at the new place.
   bool set_state(BodyId body, const BodyState& state);
-  // Sets the velocity of a body from its present place on.
+  // Changes the velocity of a body, which continues from its present place.
   bool set_velocity(BodyId body, const Vec3& velocity);
   // Moves a part of an articulated body; may be called at any time.
   bool set_local(BodyId body, std::size_t part, const Pose& local);
   bool set_importance(BodyId body, std::uint8_t importance);
   bool set_filter(BodyId body, const BodyFilter& filter);
-  // Puts a body to sleep: it does not move until wake(). Its source is asked at the next step and not again. Pairs of
-  // sleeping and static bodies keep their answers at no cost. If the detector keeps the states, the body stops where it
-  // is and wakes at rest.
+  // Puts a body to sleep: it does not move until wake(). A source is asked for its state at the next step, and then not
+  // until it wakes. Pairs of sleeping and static bodies keep their answers at no cost. If the detector keeps the
+  // states, the body stops where it is and wakes at rest.
   bool sleep(BodyId body);
   bool wake(BodyId body);
   bool asleep(BodyId body) const noexcept;
@@ -349,19 +351,19 @@ class Detector {
   // step.
   Frame step(double time, const Budget& budget = {}, const StepOptions& options = {}) noexcept;
 
-  // Returns where the parts of an event of the last step touch, at up to four points, and how they come apart, as
-  // contacts() does for two trees. Boxes are solid: a part wholly inside one leaves it. With a half-space, the points
-  // are the outermost ones of the curve in which the surface cuts its plane (for a capsule, the lowest points of its
-  // ends), and the depth is that of the lowest point. Spheres and capsules have one point with any other shape, and the
-  // depth along the normal.
-  // The result has no points and the answer "maybe" if the event's bodies do not exist any more or its answer is not
-  // yes. For a contact between two steps, the result refers to this step, at which the contact may be over: "no".
-  // Allocates nothing once warm; throws nothing.
+  // Returns up to four points at which the parts of an event of the last step touch, and the translation that separates
+  // them, as contacts() does for two trees. Boxes are solid, so a part wholly inside a box is moved out of it. For a
+  // half-space, the points are the outermost ones of the curve in which the surface cuts its plane (for a capsule, the
+  // lowest points of its ends), and the depth is that of the lowest point. Spheres and capsules touch any other shape
+  // at one point, and their depth is along the normal. If the event's bodies do not exist any more, or if its answer is
+  // not yes, the result has no points and the answer "maybe". For a contact between two steps, the result refers to the
+  // later step; if the contact is over then, the answer is "no". Throws nothing. Allocates nothing once its memory has
+  // grown to the largest pair.
   Manifold manifold(const PairEvent& event, const ContactOptions& options = {}) noexcept;
 
-  // Returns the first point of any body that the ray meets; of equal ones, that of the lowest index.
-  // This query and the two below include all bodies and half-spaces at the time of the last step (before the first one:
-  // at `start`). Trees stand for their surfaces; simple shapes are solid. The first query after a step or a change
+  // Returns the first point of any body that the ray meets; if several bodies have it, that of the lowest index.
+  // This query and the two below include all bodies and half-spaces at the time of the last step, or at `start` before
+  // the first step. Trees stand for their surfaces; simple shapes are solid. The first query after a step or a change
   // takes O(n log n) for n parts, and asks the source for the states of the bodies that the step has not asked for.
   // Later queries take O(log n) plus the cost of the parts that they examine. Results are correct to rounding in
   // double; bodies with invalid states are not found. Nothing is found if a number is not finite (a ray may be

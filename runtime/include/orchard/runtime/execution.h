@@ -15,31 +15,31 @@ struct Budget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();  // The time limit, by the steady clock.
 
+  // Whether there is a limit.
   bool limited() const noexcept { return work != Budget{}.work || time != Budget{}.time; }
   friend bool operator==(const Budget&, const Budget&) = default;
 };
 
-/// How the run-time's batches use more than one processor: a function of the caller's that runs numbered jobs, on the
-/// threads of a pool that the caller owns. orchard itself never starts a thread, and without such a function every
-/// batch is serial. The answers are the same either way.
+// Runs the jobs of a batch on threads of the application, for example those of its thread pool. orchard never starts a
+// thread; without an executor, the jobs of a batch run one after the other. The answers are the same either way.
 struct Executor {
-  /// One job of a batch. `data` is the argument of `run`, and `index` is 0 .. count - 1. A job must not throw.
+  // One job of a batch. `data` is the argument of `run`, and `index` is 0 .. count - 1. A job must not throw.
   using Job = void (*)(void* data, std::size_t index);
 
-  /// Calls job(data, i) once for each i < count, in any order and on any threads, and returns when all calls have
-  /// returned. Their effects are visible to the caller of `run` from then on. Null: the jobs run here, in order.
+  // A function of the application. It calls job(data, i) once for each i < count, in any order and on any threads, and
+  // returns when all calls have returned; their effects are then visible to the caller of `run`. If it is null, the
+  // jobs run in the calling thread, in ascending order.
   void (*run)(void* context, std::size_t count, Job job, void* data) = nullptr;
 
-  /// The first argument of `run`, for example the caller's pool.
+  // The first argument of `run`, for example the thread pool.
   void* context = nullptr;
 
-  /// How many jobs may run at once, at least 1: work is cut into at least this many parts. It changes the cutting only,
-  /// never an answer.
+  // The number of jobs that may run at once, at least 1. The work is divided into at least this many parts; the answers
+  // do not depend on it.
   std::size_t concurrency = 1;
 };
 
-/// Runs jobs 0 .. count - 1 of `work`, a callable that takes the index, and returns when all are done. Allocates
-/// nothing.
+// Calls work(i) for each i < count by the executor, and returns when all calls have returned. Allocates nothing.
 template <typename Work>
 void run_jobs(const Executor& executor, std::size_t count, Work& work) {
   if (executor.run == nullptr || count <= 1) {

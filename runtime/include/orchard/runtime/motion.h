@@ -6,13 +6,14 @@
 // Bounds on the motion of bodies, and what follows from them.
 namespace orchard::runtime {
 
-// What is known of a body at time t0 and for a while after (dissertation 4.1, 4.4). For t0 <= t <= expiry, the centre y
-// of its bounding sphere has |y''(t)| <= acceleration, and y''(t) . half_space <= 0 unless half_space is zero. Then
+// The state of a body at time t0, and bounds on its motion until an expiry (dissertation 4.1, 4.4). For t0 <= t <=
+// expiry, the centre y of its bounding sphere has |y''(t)| <= acceleration, and y''(t) . half_space <= 0 unless
+// half_space is zero. Then
 //   |y(t) - (position + velocity s)| <= drift s + acceleration s^2 / 2   with s = t - t0            (Lemma 4.1)
 //   (y(t) - (position + velocity s)) . d / |d| <= drift s                                          (Lemma 4.2)
 // Lengths are in the world's unit and times in seconds. half_space points *away* from the possible accelerations (for a
-// rocket: backwards); it may have any length but 0. The bounds may be exceeded by kMotionSlack times the size of the
-// coordinates, which is an integrator's rounding.
+// rocket: backwards); it may have any length but 0. To allow for the rounding of an integrator, the bounds may be
+// exceeded by kMotionSlack times the size of the coordinates.
 struct Motion {
   Vec3 position{};  // y(t0).
   Vec3 velocity{};  // y'(t0), to within drift.
@@ -59,30 +60,30 @@ inline bool spheres_touch(const Motion& a, const Motion& b) noexcept {
 // lies below it, and solves a quadratic; two or three rounds suffice.
 double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution, double slack = 0) noexcept;
 
-// A Motion is a promise. The following functions decide whether it was kept.
+// The following functions decide whether a body has kept the bounds of an earlier motion.
 
-// By how much a motion exceeds each bound of an earlier promise; 0 if that bound holds. s is the time between the two
-// in seconds, and d is the promised half-space with length 1.
+// By how much a motion exceeds each bound of an earlier motion of the same body; 0 if that bound holds. s is the time
+// between the two in seconds, and d is the earlier half-space with length 1.
 struct MotionBoundExcess {
   double position = 0;  // |y - (position + velocity s)| over drift s + M s^2 / 2: Lemma 4.1. A length.
   double side = 0;      // The same along d, over drift s: Lemma 4.2. A length.
-  double velocity = 0;  // |velocity - promised| over both drifts + M s: M itself. Length per second.
+  double velocity = 0;  // |velocity - predicted| over both drifts + M s: M itself. Length per second.
   double turn = 0;      // The same along d, over both drifts: d itself. Length per second.
   double radius = 0;    // The change of the radius. A length.
 
   bool none() const noexcept { return position == 0 && side == 0 && velocity == 0 && turn == 0 && radius == 0; }
 };
 
-// Compares `given` at `time` with the promise `bound` made at `bound_time`; both must be valid. All values are 0 if the
-// promise expired before or was made later. The velocity at the time of expiry is not compared, since it may jump
-// there. The tolerances are kMotionSlack of the coordinates, in addition `position_slack` for positions, and 1e-9 of
-// the values for velocities and radii.
+// Compares the motion `given` at `time` with the bounds of `bound`, which was given at `bound_time`; both must be
+// valid. All values are 0 if the bounds expired before `time` or were given later. The velocity at the time of expiry
+// is not compared, since it may jump there. The tolerances are kMotionSlack of the coordinates, in addition
+// `position_slack` for positions, and 1e-9 of the values for velocities and radii.
 MotionBoundExcess motion_bound_excess(const Motion& bound, double bound_time, const Motion& given, double time,
                                       double position_slack = 0) noexcept;
 
-// Returns whether a body at `position` now, with `velocity` unless that is null, keeps the promise made at
-// `bound_time`. This compares the position and the velocity as motion_bound_excess() does, with the drift of the
-// promise. Returns true once the promise has expired.
+// Returns whether a body at `position` at the time `now`, with `velocity` unless that is null, keeps the bounds given
+// at `bound_time`. This compares the position and the velocity as motion_bound_excess() does, with the drift of `bound`
+// alone. Returns true once the bounds have expired.
 bool keeps_motion_bound(const Motion& bound, double bound_time, double now, const Vec3& position, const Vec3* velocity,
                         double position_slack = 0) noexcept;
 

@@ -5,10 +5,11 @@
 
 // Computes motion bounds for common kinds of bodies and for integrators.
 //
-// The functions for bodies compute M and d (dissertation 4.4; its directions of d have to be negated, as done here).
-// Each returns a Motion as of `time` that expires after `horizon` seconds, or earlier if the half-space ends earlier,
-// but not before half of `horizon`: a half-space that ends before that is left out. If the user does something that the
-// bounds exclude, the application calls BroadPhase::cancel() and asks again. Units are lengths, seconds and radians.
+// The functions for bodies compute M and d (dissertation 4.4, with the directions of d negated, because those in the
+// text contradict its own condition). Each returns a Motion as of `time`. It expires after `horizon` seconds, or when
+// its half-space ceases to hold, if that is earlier. A half-space that holds for less than half of `horizon` is left
+// out. If the user does something that the bounds exclude, the application calls BroadPhase::cancel() and gives other
+// bounds. Units are lengths, seconds and radians.
 namespace orchard::runtime {
 
 // A spaceship whose engine pushes along its axis, and whose rudder turns the axis.
@@ -38,15 +39,16 @@ struct Vehicle {
 // until the heading may have turned by 90 degrees.
 Motion vehicle_motion(const Vehicle& vehicle, double time, double horizon) noexcept;
 
-// An object under the user's cursor, known by its last three positions, `step` seconds apart, the last one at `time`.
-// If the acceleration changes by at most max_jerk per second from the first position on, finite differences give
-// acceleration and velocity with their errors.
+// An object that follows the user's cursor exactly. Known are its last three positions, `step` seconds apart, the last
+// one at `time`, and max_jerk, the largest change of its acceleration per second.
 struct Dragged {
   Vec3 before_last{}, last{}, position{};
   double step = 0.01;
   double radius = 0;
   double max_jerk = 0;
 };
+// Returns a motion with the velocity and the acceleration from finite differences. M and the drift include the largest
+// errors of these that max_jerk allows.
 Motion dragged_motion(const Dragged& dragged, double time, double horizon) noexcept;
 
 // An object on a damped spring to the cursor: y'' = stiffness (cursor - y) - damping y'. The cursor stays within
@@ -84,10 +86,11 @@ enum class Sampling : std::uint8_t {
   between    // Linear interpolations between the last step and the next, as for drawing.
 };
 
-// The smallest drift with which Lemmas 4.1 and 4.2 hold for everything the integrator can do with the velocity it has
-// at the last step; 0 for most. Why: in each of these methods a step changes the position by h v + p and the velocity
-// by q, where h = dt, p and q are sums of evaluated accelerations with non-negative weights, |p| <= c M h^2 and |q| <=
-// M h. After n steps, s = n h, the position is off x + s v by sum(p) + h sum over k < n of (v_k - v), at most
+// Returns the smallest drift with which Lemmas 4.1 and 4.2 hold for everything that the integrator can do, if the
+// motion has the velocity of the last step; it is 0 for most integrators. Proof: in each of these methods a step
+// changes the position by h v + p and the velocity by q, where h = dt, p and q are sums of evaluated accelerations with
+// non-negative weights, |p| <= c M h^2 and |q| <= M h. After n steps, s = n h, the position is off x + s v by sum(p) +
+// h sum over k < n of (v_k - v), at most
 //   n c M h^2 + h (0 + 1 + .. + (n - 1)) M h  =  M s^2 / 2 + (c - 1/2) M h s,
 // and not at all to the side of d if no acceleration points there. So the drift is max(0, c - 1/2) M h. c is
 //   0    explicit Euler; staggered leapfrog, given the later velocity

@@ -5,26 +5,26 @@
 
 #include "orchard/runtime/broad_phase.h"
 
-// Checks whether bodies keep the promised bounds on their motion, and suggests bounds.
+// Checks whether bodies keep the bounds on their motion, and suggests bounds.
 namespace orchard::runtime {
 
 // The options of a MotionMonitor.
 struct MonitorOptions {
   // A suggested M is the largest acceleration of the last `window` seconds times this factor, at least 1. Higher values
-  // break fewer promises and give looser bounds.
+  // give looser bounds, which bodies exceed less often.
   double safety = 1.5;
   double window = 0.5;  // The length of the observed past, in seconds, above 0.
-  // In seconds: the range of the time until a suggested promise expires.
+  // The range, in seconds, of the time until suggested bounds expire.
   double min_horizon = 0.02, longest_horizon = 1;
   double min_acceleration = 0;  // The smallest suggested M.
   double position_slack = 0;    // The error of positions, as in BroadPhaseOptions.
 };
 
-// Observes the motions of bodies (dissertation 4.4): whether they keep the promised bounds, and which bounds could be
-// promised. A promise that is broken silently is the only way in which a broad phase misses a contact.
-// (BroadPhaseOptions::validate finds such promises while a program is developed.) Use the monitor where the simulation
+// Observes the motions of bodies (dissertation 4.4): whether they keep their bounds, and which bounds they would keep.
+// A broad phase misses a contact only if a body exceeds its bounds and nothing cancels them.
+// (BroadPhaseOptions::validate finds such bounds while a program is developed.) Use the monitor where the simulation
 // moves its bodies:
-//   monitor.note_bound(body, time, motion);                                     // in the source, as it answers
+//   monitor.note_bound(body, time, motion);                                     // in the source, for what it returns
 //   if (!monitor.observe(body, time, position, velocity)) world.cancel(id);   // at every step, before advance()
 // A Detector with DetectorOptions::watch does this itself. The monitor allocates only when a body index occurs for the
 // first time. O(1) per call.
@@ -32,29 +32,29 @@ class MotionMonitor {
  public:
   explicit MotionMonitor(const MonitorOptions& options = {}) : options_(options) {}
 
-  // Replaces the promise of a body by `motion`, made at `time`.
+  // Replaces the bounds of a body by those of `motion`, given at `time`.
   void note_bound(BodyIndex body, double time, const Motion& motion);
 
-  // Records the position and the velocity of a body at `time`. Returns false if Lemma 4.1 or 4.2 does not hold for the
-  // last promise, or if the velocity has left its bound: the promise is broken, counted once and cancelled. Returns
-  // true if nothing was promised or the promise has expired. Times must not decrease; repeating a time does not change
-  // what the monitor has learnt.
+  // Records the position and the velocity of a body at `time`. Returns false if the body exceeds its last bounds: if
+  // Lemma 4.1 or 4.2 does not hold, or if the velocity has left its bound. The violation is counted once, and the
+  // bounds are cancelled. Returns true if the body has no bounds or they have expired. Times must not decrease;
+  // repeating a time does not change what the monitor has learnt.
   bool observe(BodyIndex body, double time, const Vec3& position, const Vec3& velocity);
   // Does the same without a velocity: compares positions only, and uses the difference of the last two positions as the
   // velocity for suggestions.
   bool observe(BodyIndex body, double time, const Vec3& position);
 
-  // Returns a motion that can be promised now, after observe() at `time`. M is `safety` times the largest acceleration
-  // of the last `window` seconds. half_space is opposite to the mean acceleration if every recent acceleration was
-  // certainly within 60 degrees of it. The time until expiry is halved by each broken promise and grows by a quarter
-  // with each kept one, within the options' range. The radius is the given one. The suggestion is a guess about the
-  // future, and observe() finds out if it was wrong.
+  // Returns a motion with suggested bounds, after observe() at `time`. M is `safety` times the largest acceleration of
+  // the last `window` seconds. half_space is opposite to the mean acceleration if every recent acceleration was
+  // certainly within 60 degrees of it. The time until expiry is halved after each violation and grows by a quarter
+  // after each time without one, within the range of the options. The radius is the given one. The suggestion is a
+  // guess about the future; observe() finds out if it was wrong.
   Motion suggest(BodyIndex body, double time, double radius) const;
 
-  void cancelled(BodyIndex body);     // The application cancelled the promise.
+  void cancelled(BodyIndex body);     // The application cancelled the bounds.
   void forget(BodyIndex body);        // A teleport: discards everything known, but keeps the counts.
   void begin(BodyIndex body);         // Another body has this index: discards everything known and its counts.
-  void count_broken(BodyIndex body);  // Counts a broken promise of another kind, and cancels the present one.
+  void count_broken(BodyIndex body);  // Counts a violation of another bound, and cancels the present bounds.
   std::uint64_t broken() const noexcept { return broken_; }
   std::uint64_t broken(BodyIndex body) const noexcept { return body < tracks_.size() ? tracks_[body].broken : 0; }
   std::size_t memory_bytes() const noexcept { return tracks_.capacity() * sizeof(Track); }
@@ -71,7 +71,7 @@ class MotionMonitor {
     double min_along(const Vec3& way) const noexcept;  // of the directions' cosines with it, a lower bound
   };
   struct Track {
-    // The promise.
+    // The bounds.
     bool bounded = false;
     double bound_time = 0;
     Motion motion;

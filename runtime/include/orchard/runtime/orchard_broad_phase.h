@@ -22,8 +22,8 @@ typedef struct orchard_body {
 } orchard_body;
 #define ORCHARD_NO_BODY 0xffffffffu
 
-/* What is known of a body at the time for which it is asked: for that time <= t <= expiry, |y''(t)| <= acceleration,
- * and y''(t) . half_space <= 0 unless half_space is zero. */
+/* The state of a body at the time for which it is asked, and bounds on its motion until `expiry`: |y''(t)| <=
+ * acceleration, and y''(t) . half_space <= 0 unless half_space is zero. */
 typedef struct orchard_motion {
   double position[3], velocity[3];
   double radius;
@@ -49,8 +49,8 @@ typedef void (*orchard_motion_source)(void* context, double time, const uint32_t
 /* A callback that returns 0 if the two bodies are no pair. a.index < b.index. */
 typedef int (*orchard_pair_filter)(void* context, orchard_body a, orchard_body b);
 
-/* A promise, given at bound_time, that the motion given at `time` does not keep, and by how much it exceeds each
- * bound: two lengths, two speeds, a length; 0 if the bound holds. See motion.h. */
+/* Motion bounds, given at bound_time, that the motion given at `time` does not keep, and by how much it exceeds each of
+ * them: two lengths, two speeds, a length; 0 if the bound holds. See motion.h. */
 typedef struct orchard_motion_bound_violation {
   orchard_body body;
   double bound_time, time;
@@ -63,8 +63,8 @@ typedef struct orchard_broad_phase_options {
   double time_step, start;
   uint32_t window; /* 0: the broad phase chooses. */
   double position_slack;
-  int validate;                         /* For debugging: compares every motion with the earlier promise. */
-  orchard_motion_bound_listener broken; /* Null: broken promises are only counted. */
+  int validate;                         /* For debugging: compares every motion with the bounds given before. */
+  orchard_motion_bound_listener broken; /* Null: violations are only counted. */
   void* broken_context;
   /* Runs updates of all windows of many bodies as jobs: run(run_context, count, job, data) calls job(data, i) for each
    * i < count, on any threads, and returns when all calls have returned. Several jobs call the source at once then.
@@ -128,11 +128,11 @@ typedef struct orchard_advance {
  * there are none. A null budget is unlimited. */
 orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now,
                                             const orchard_work_budget* budget);
-/* Skips the steps before the last one that is not after t; use it after a pause. Returns the number of skipped steps;
- * 0 if nothing is due in between, or without memory. */
+/* Skips steps after a pause: the next step to be processed is the last one that is not after t. Returns the number of
+ * skipped steps; 0 if nothing is due before that step, or if there is no memory. */
 uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t);
-/* Predicts what is due at the `count` steps after `time`. Fills the arrays (each may be null), and returns how many
- * steps are known. */
+/* Predicts the work of the `count` steps after `time`. Fills the arrays (each may be null), and returns the number of
+ * steps that are known. */
 size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
                                         size_t* meetings, size_t* overlaps);
 

@@ -19,7 +19,7 @@ typedef struct orchard_detector orchard_detector;
 typedef uint32_t orchard_shape;
 #define ORCHARD_NO_SHAPE 0xffffffffu
 
-/* What is known of a body at the time of a step. The promise (velocity .. expiry) is about pose.translation. */
+/* The state of a body at the time of a step. The motion bounds (velocity .. expiry) are about pose.translation. */
 typedef struct orchard_body_state {
   orchard_pose pose;
   double velocity[3];
@@ -54,8 +54,8 @@ typedef void (*orchard_run_jobs)(void* context, size_t count, void (*job)(void* 
 
 typedef struct orchard_detector_options {
   double time_step, start, position_slack;
-  /* Whether each step compares every moving body with its promise. 0: no comparison, and contacts are missed silently
-   * if a promise is not kept. Below 0, the default: with a state source only. */
+  /* Whether each step compares every moving body with its motion bounds. 0: no comparison, and contacts are missed
+   * silently if bounds are not kept. Below 0, the default: with a state source only. */
   int watch;
   uint32_t steps_to_end;
   size_t max_unfinished;
@@ -153,8 +153,9 @@ orchard_frame orchard_detector_step(orchard_detector* detector, double time, orc
 orchard_frame orchard_detector_step_latest(orchard_detector* detector, double time, orchard_budget budget);
 /* Returns an event of the last step; index < events. */
 orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index);
-/* Returns where the bodies of an event touch, at up to four points, and how they come apart: see Detector::manifold.
- * It has no points and the answer "maybe" if the event's answer is not yes or its bodies do not exist any more. */
+/* Returns up to four points at which the bodies of an event touch, and the translation that separates them: see
+ * Detector::manifold. It has no points and the answer "maybe" if the event's answer is not yes or its bodies do not
+ * exist any more. */
 orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t index);
 /* Queries about all bodies at the last step: see Detector::cast_ray. They return 1, or 0 if nothing is found. A null
  * filter includes all bodies. */

@@ -23,8 +23,8 @@ namespace orchard::runtime {
 // The largest coordinate of a query, in the body's units.
 inline constexpr double kFarthest = 1e100;
 
-// Returns whether a query can be answered. Returns false in the cases above, so that such an answer can be
-// distinguished.
+// Returns whether a query can be answered. It returns false in the cases above. Use it to find out whether an answer is
+// only the one that misses no contact.
 bool can_ask(const TreeView& tree, const Pose& pose, const std::array<double, 3>& place) noexcept;
 
 // A point of a surface.
@@ -62,8 +62,8 @@ std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std
                                const std::array<double, 3>& direction,
                                double longest = std::numeric_limits<double>::infinity()) noexcept;
 
-// Casts many rays against one body. The hits are the same, and the cost of the pose is paid once. hits.size() >=
-// rays.size().
+// Casts many rays against one body. The hits are those of cast_ray(), and the pose is prepared only once. Precondition:
+// hits.size() >= rays.size().
 void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
                std::span<std::optional<RayHit>> hits) noexcept;
 
@@ -151,8 +151,8 @@ class RayIndex {
   std::vector<float> sizes_;  // The diagonals of the leaves' boxes, rounded up.
 };
 
-// Casts rays as with the tree that the index was built from. If a ray begins so far away that floats do not reach, more
-// than 1e30 units, every triangle is tested.
+// Casts rays with the same hits as for the tree from which the index was built. If a ray begins more than 1e30 units
+// away, which floats cannot represent well, every triangle is tested.
 std::optional<RayHit> cast_ray(const RayIndex& index, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction,
                                double longest = std::numeric_limits<double>::infinity()) noexcept;

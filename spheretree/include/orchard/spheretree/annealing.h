@@ -53,7 +53,8 @@ struct AnnealingOptions {
 // lower effort a share of it. The times are about 1 : 3 : 17.
 AnnealingOptions annealing_options(Effort effort);
 
-// AnnealingOptions::first_acceptance for anneal_tree(): so low that the annealing keeps what the builder found.
+// The value of AnnealingOptions::first_acceptance for anneal_tree(). It is so low that the annealing starts from the
+// spheres of the builder instead of scattering them first.
 inline constexpr double kCoolStart = 0.05;
 
 // Counts of the annealing.
@@ -82,11 +83,12 @@ AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& opt
                              const Progress& progress = {});
 
 // Makes a tree of any builder tighter by annealing the children of each node, from the top down (dissertation 8.2). The
-// changes are those of annealed_tree(), from the tree's own spheres in place of octants, and each set of siblings ends
-// as the best one that it has been: no set gets a larger energy than it had. Take kCoolStart as first_acceptance, or
-// what the builder found is forgotten first. Precondition: the tree is conservative, nodes in breadth-first order; it
-// stays so. `depth`, `branching`, `redundancy` and `refinement` have no meaning here. Bounds and inaccuracies become
-// stale: call measure() afterwards. Throws InputError unless surface.solid(). Deterministic as above.
+// changes are those of annealed_tree(), but they start from the spheres of the tree instead of octants. Each set of
+// siblings gets the best state that was found, so no set has a larger energy than before. Use kCoolStart as
+// options.first_acceptance. `depth`, `branching`, `redundancy` and `refinement` are not used.
+// Precondition: the tree is conservative, with nodes in breadth-first order; it remains so. Bounds and inaccuracies
+// become stale: call measure() afterwards. Throws InputError unless surface.solid(). The result is the same for a seed
+// on any number of threads.
 AnnealingReport anneal_tree(SphereTree& tree, const Surface& surface, const AnnealingOptions& options = {},
                             const Progress& progress = {});
 

@@ -16,15 +16,14 @@ SphereTree ball_tree(std::span<const Sphere> balls, Index branching = 8);
 struct BallTree {
   runtime::PackedSphereTree packed;
   // The number of balls that are not proven to lie in all packed balls of a path to a leaf, and the number of nodes
-  // with an unproven bound. Both are 0, unless an assumption about roundings is wrong. They are decided on the packed
-  // floats alone.
+  // with an unproven bound. Both are 0 if the code is right. The proof uses only the floats of the packed tree.
   Index balls_unproven = 0, bounds_unproven = 0;
 };
 
-// Packs ball_tree() of the balls and proves it. Every point of the union lies in all balls of a path, so that "no" is
-// certain for the unions of two such trees at every level. There are no triangles, so the last answer is "maybe", which
-// is given where two leaves meet. Each leaf contains its ball and is larger by roundings to float alone. Throws Error
-// as pack() does.
+// Packs ball_tree() of the balls, and proves that every point of the union of the balls lies in all packed balls of a
+// path. So the answer "no" for two such trees is certain for their unions, at every level. Because there are no
+// triangles, the answer for two leaves that meet is "maybe". Each leaf contains its ball, and is larger only by
+// rounding to float. Throws Error as pack() does.
 BallTree pack_balls(std::span<const Sphere> balls);
 
 }  // namespace orchard

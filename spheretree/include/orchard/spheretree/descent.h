@@ -7,7 +7,7 @@ namespace orchard {
 
 // The options of random_descent().
 struct DescentOptions {
-  Index trials_per_node = 200;
+  Index trials_per_node = 200;  // The number of random changes of each ball. More trials give tighter balls.
   std::uint64_t seed = 1;
 };
 
@@ -18,9 +18,9 @@ struct DescentReport {
   double looseness_before = 0, looseness_after = 0;
 };
 
-// Makes a tree of any builder tighter: balls are moved and shrunk at random, and a change is kept if the ball gets less
-// loose (radius + signed distance of the centre) and the path rule still holds. No ball ever gets looser. The steps of
-// a ball shrink while its trials fail.
+// Makes a tree of any builder tighter. Balls are moved and shrunk at random. The looseness of a ball is its radius plus
+// the signed distance of its centre; a change is kept if it lowers the looseness and the path rule still holds. The
+// steps of a ball become shorter while its trials fail.
 // Precondition: the tree is conservative; it remains so. Bounds and inaccuracies become stale: call measure()
 // afterwards. Throws InputError unless surface.solid(). Each trial costs one query of the signed distance and one local
 // check of the path rule. Source: dissertation 8.2.

@@ -7,7 +7,7 @@
 // Builds sphere-trees by merging the balls of a medial axis.
 namespace orchard {
 
-// How merged spheres come to cover the surface between the forming points.
+// How merged spheres are changed so that they also cover the surface between the forming points.
 enum class MergeClosing {
   // Siblings divide the points of their parent among them and are fitted to their points. Then each uncovered part
   // becomes further points for a sphere to contain, and the sphere is fitted again. The result is conservative.
@@ -30,9 +30,9 @@ struct MergeReport {
   struct Level {
     Index spheres = 0;
     Index removed = 0, split = 0;  // Redundant spheres that were removed, and loose ones split in their place.
-    Index uncovered_regions = 0;   // In the first round of closing.
-    int rounds = 0;                // Rounds of closing.
-    // The largest growth by cover(), which closes what is left, as a fraction of R.
+    Index uncovered_regions = 0;   // The number of uncovered regions in the first round of closing.
+    int rounds = 0;                // The number of rounds of closing.
+    // The largest growth of a sphere by cover(), which covers the rest after these rounds, as a fraction of R.
     double growth = 0;
   };
   // The levels below the root; empty without MergeClosing::refit.

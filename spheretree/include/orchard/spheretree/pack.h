@@ -10,8 +10,8 @@ namespace orchard {
 // region. Radii and bounds are rounded outward, so that every packed ball contains the ball that it was made from. A
 // bound that measure() did not fill is packed as unknown, +infinity, and so is every bound on separation that depends
 // on it.
-// Throws Error if the tree has no root, is too large, or has a ball that is out of the run-time's range, which no ball
-// near a mesh of a usable size is (mesh.h).
+// Throws Error if the tree has no root, is too large, or has a ball beyond the range of the run-time. Balls near a mesh
+// of a usable size (mesh.h) are never beyond it.
 runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface);
 // Packs the balls only, around the centre of the root, without triangles.
 runtime::PackedSphereTree pack(const SphereTree& tree);

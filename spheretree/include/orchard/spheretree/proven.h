@@ -13,12 +13,11 @@ struct ProvenTree {
   std::vector<Index> weakened;
 };
 
-// Packs and verifies a measured tree. If verify() does not prove a bound, a weaker bound that it can prove replaces it:
-// for the signed distance of a centre, an upper bound on it; for a distance over a ball, whose search may have reached
-// its work limit, the sum of the radius and the centre's distance, which needs no search. The nodes of `tree` are
-// changed accordingly.
-// In the result every bound is proven; what is not covered remains uncovered. Costs one verify(), and another one if a
-// bound is replaced.
+// Packs and verifies a measured tree. If verify() does not prove a bound, it is replaced by a weaker bound that
+// verify() can prove. For the signed distance of a centre, this is an upper bound on it. For a distance over a ball,
+// which verify() cannot prove if its search reaches the work limit, this is the radius plus the distance of the centre,
+// which needs no search. The nodes of `tree` are changed accordingly. In the result every bound is proven, but
+// triangles that the tree does not cover remain uncovered. Costs one verify(), and another one if a bound is replaced.
 ProvenTree pack_proven(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
 }  // namespace orchard

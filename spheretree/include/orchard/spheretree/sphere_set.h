@@ -54,12 +54,13 @@ struct SphereSetOptions {
   // cover: the effort of the search, as for trees. Other fits: the number of steps. Higher effort gives better sets and
   // takes longer.
   Effort effort = Effort::standard;
-  // Whether the build looks for a sufficient number of spheres if a guarantee or an error is missed. The search makes
-  // up to four more sets.
+  // Whether the build searches for a number of spheres that is sufficient if a guarantee or an error is missed. The
+  // search builds up to four more sets.
   bool find_enough = true;
   std::uint64_t seed = 1;
-  // How closely the result is measured. It does not change what a cover or a set of spheres inside is, nor whether they
-  // are kept; the volume of a balanced set is judged by audit.rays.
+  // How precisely the result is measured. These options change neither the spheres of a cover or of a set inside nor
+  // whether their guarantee counts as kept. For a balanced set, audit.rays determines how precisely the volume is
+  // known, and so whether the guarantee counts as kept.
   SphereAuditOptions audit{};
 };
 
@@ -74,8 +75,8 @@ struct SphereSetBuild {
   bool kept = false;
   // Whether the requested error is reached. If it is not, `spheres` is the best set of as many spheres as are allowed.
   bool error_reached = true;
-  // If one of the two is false, a number of spheres for which a set was built that misses nothing. There is no value if
-  // no such set was found up to kMaxSetSpheres or if `find_enough` is off.
+  // If `kept` or `error_reached` is false: a number of spheres with which a set was built for which both are true.
+  // There is no value if no such set was found up to kMaxSetSpheres or if `find_enough` is off.
   std::optional<Index> enough;
   SphereAudit audit;                         // Measures of the spheres, without `padding`.
   std::optional<ParticleFigures> particles;  // Measures of the fit `particles`.

@@ -8,13 +8,13 @@
 // Builds the tightest sphere-trees, level by level.
 namespace orchard {
 
-// The quantity that is kept low on every level: the largest inaccuracy, the mean one, the volume outside the object, or
-// a balance. Each objective is a sum over the level of powers of the inaccuracy.
-//   balanced A high power at the top and low ones below, where they rise steeply beyond about twice the mean, and a
-//            small power of the radius.
+// The quantity that is minimised on every level: the largest inaccuracy, the mean inaccuracy, the volume outside the
+// object, or a compromise between these. The cost of a level is a sum over its balls of powers of the inaccuracy:
 //   maximum  A high power.
 //   mean     A low power.
 //   volume   A low power times a power of the radius.
+//   balanced A high power on the upper levels and a low power on the lower ones, times a small power of the radius. On
+//            the lower levels, an additional factor rises steeply above about twice the mean.
 enum class Objective { balanced, maximum, mean, volume };
 
 // The largest branching of a tightened tree.
@@ -33,9 +33,10 @@ struct TightenOptions {
   // first one is between 2 and kMaxBranching, and each other one is above the one before and at most kMaxFanOut times
   // it. The spheres of a level are given to the parents that gain most from them.
   std::vector<Index> spheres{};
-  // The times are about 1 : 2 : 6. High effort first builds the tree of standard effort. Then it searches further
-  // covers of each level, in which balls looser than that tree's loosest cost a thousand times as much, and takes a
-  // cover only if neither its mean nor its maximum nor its outside volume is above that tree's.
+  // Low, standard and high effort take time in proportions of about 1 : 2 : 6. High effort first builds the tree of
+  // standard effort. Then it searches for better covers of each level. In this search, balls that are looser than the
+  // loosest ball of the first tree cost a thousand times as much, and a cover is accepted only if its mean, its maximum
+  // and its outside volume are not above those of the first tree.
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;
   Refinement refinement{};
@@ -47,9 +48,9 @@ struct TightenReport {
   struct Level {
     Index balls = 0;
     Index closing_rounds = 0;
-    // Regions between the samples that were uncovered in the first round of closing.
+    // The number of regions between the samples that were uncovered in the first round of closing.
     Index uncovered_regions = 0;
-    // The largest growth by cover(), which closes what is left, as a fraction of R.
+    // The largest growth of a ball by cover(), which covers the rest after these rounds, as a fraction of R.
     double grown = 0;
     double seconds_search = 0, seconds_closing = 0;
   };
@@ -65,24 +66,24 @@ struct TightenBuild {
 // Throws InputError for a branching or numbers of spheres out of range.
 void require_sizes(const TightenOptions& options);
 
-// Builds a tight tree by solving each level as a whole: branching^level balls cover the whole surface, and every ball
-// is free to choose its parent. A parent may have up to kMaxFanOut children with up to three levels, fewer with more
-// levels, and at least up to twice `branching`.
+// Builds a tight tree by solving each level as a whole: up to branching^level balls cover the whole surface, and each
+// ball may get any parent. A parent may have up to kMaxFanOut children in trees of up to three levels. In deeper trees
+// the limit is lower, but not below twice `branching`.
 // 1. Balls are fitted to surface points so that max |p - c| + sd(c) is small over the centre c, and improved by Lloyd's
 //    iteration and large-neighbourhood search.
 // 2. The boundary lemma finds uncovered regions. Each one is given to the ball whose cost rises least, until there is
 //    none.
-// 3. Each ball is fitted again to exactly what no other ball contains. At high effort, the search continues with
-//    nothing uncovered.
-// No level is looser than the one above it or than the octree's levels with as many spheres or fewer, in the mean or
-// the maximum by more than 1e-4 R, unless the tree is refined in parts only. A level of more than 1000 balls is
-// searched no longer than one of 1000.
+// 3. Each ball is fitted again to the part of the surface that no other ball contains. At high effort, the search then
+//    continues among balls that cover the whole surface.
+// Neither the mean nor the maximum inaccuracy of a level exceeds, by more than 1e-4 R, that of the level above or that
+// of a level of the octree with at most as many spheres, unless only parts of the tree are refined. A level of more
+// than 1000 balls is searched no longer than one of 1000.
 //
 // There should be at least 20 surface points for each ball of the last level. Points that gap repair added are not
-// used. The result is conservative and, since work is counted and not timed, the same on any number of threads. The
-// search uses a frame that is computed from the mesh (spheretree/canonical_frame.h). So, with the same points, a mesh
-// that is scaled or moved gets the same tree up to the last digits, unless a corner or a point is so near to the border
-// between two lattice points that its rounding decides the side.
+// used. The result is conservative. It is the same on any number of threads, because work is counted and not timed. The
+// search uses a frame that is computed from the mesh (spheretree/canonical_frame.h). So if a mesh and its points are
+// scaled or moved, the tree is the same up to the last digits. In rare cases it is not: coordinates are rounded to a
+// lattice, and a corner or point may be so near to the middle between two lattice points that rounding errors decide.
 // Throws InputError as require_sizes() does and if there are no points, and Error as validate() of a sampling does.
 TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options = {},
                             const Progress& progress = {});

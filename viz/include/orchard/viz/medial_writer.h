@@ -13,21 +13,20 @@ namespace orchard {
 
 // Writes a medial axis as an unstructured grid (.vtu): a polygon for each face and wall, and a line for each edge that
 // belongs to no face.
-// Point arrays: radius; contact_angle (the widest angle in radians at which two forming points are seen); component;
+// Point arrays: radius; contact_angle (the largest angle in degrees at which two forming points are seen); component;
 // segment; added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count.
-// Cell arrays: segment; sheet (1, otherwise a curve) and trunk (1, otherwise a branch) of the segment; wall (1 for
-// walls); contact_angle (at which the two points are seen, NaN for lines); point_a, point_b (-1 for lines); added;
-// component.
-// Both have structure (the number of the part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2 border, 3
-// junction, 4 curve).
-// The file also contains the arrays `of_vertices`, and `of_faces` with one value for each face and then for each wall;
-// lines get NaN. Surface points are numbered as in the contacts of write_medial_axis().
+// Cell arrays: segment; sheet (1 if the segment is a sheet, 0 if it is a curve); trunk (1 if the segment is a trunk, 0
+// if it is a branch); wall (1 for walls); contact_angle (the angle in degrees at which the two points are seen, NaN for
+// lines); point_a, point_b (-1 for lines); added; component.
+// Points and cells have structure (the number of the part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2
+// border, 3 junction, 4 curve).
+// The file also contains the arrays `of_vertices`, and the arrays `of_faces`, which have one value for each face and
+// then one for each wall; lines get NaN. Surface points are numbered as in the contacts of write_medial_axis().
 void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
                        const ViewArrays& of_vertices = {}, const ViewArrays& of_faces = {});
 
-// Writes the mesh with a point array `medial_radius` and a point array `thickness`, which is twice that. `radii` has a
-// value for each vertex of the mesh, in mesh units. The file also contains the arrays `more`, with a value for each
-// vertex.
+// Writes the mesh with two point arrays: `medial_radius`, which has the values `radii` of the vertices in mesh units,
+// and `thickness`, which is twice that. The file also contains the arrays `more`, with a value for each vertex.
 void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii,
                      const ViewArrays& more = {});
 

@@ -22,8 +22,8 @@ struct ViewArray {
 };
 using ViewArrays = std::vector<ViewArray>;
 
-// Writes triangles with a cell array `cluster`. The field data `bounding_radius` is the length that tolerances and
-// figures are fractions of.
+// Writes triangles with a cell array `cluster`. The field data `bounding_radius` is the length R, of which tolerances
+// and reported values are fractions.
 void write_mesh(const std::filesystem::path& vtp, const Surface& surface);
 
 // Writes one vertex for each surface point, with point arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`, and
@@ -34,12 +34,12 @@ void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampl
 std::filesystem::path with_ending(const std::filesystem::path& prefix, const std::string& ending);
 
 // Writes a medial axis to four files. The first three number the vertices alike and can each be shown alone. They have
-// the point arrays `radius`, `contact_angle` (contact_angles(), radians), `component` and `valence` (number of
+// the point arrays `radius`, `contact_angle` (contact_angles(), in degrees), `component` and `valence` (number of
 // neighbours), and the arrays `of_vertices`.
 //   PREFIX-vertices.vtp  the medial vertices
 //   PREFIX-edges.vtp     a line for each pair of neighbours
 //   PREFIX-faces.vtp     the faces, with cell arrays `point_a` and `point_b`, the two contacts that a face separates,
-//                        and `contact_angle`, which is separation_angle() in radians, as in write_medial_grid(). Small
+//                        and `contact_angle`, which is separation_angle() in degrees, as in write_medial_grid(). Small
 //                        angles belong to sheets that run into shallow edges and noise; a threshold hides them. The
 //                        arrays `of_faces` have one value for each face and then for each wall; walls are not drawn.
 //   PREFIX-contacts.vtp  MedialAxis::points, one vertex each, to which `point_a`, `point_b` and the `forming_points` of

@@ -14,16 +14,16 @@ namespace orchard {
 struct InsertionReport {
   // The dimension that the points span. If it is below 3, the diagram has no vertices.
   int dimension = 0;
-  // Insertions in which every sign on the border of the cavity was beyond doubt.
+  // Insertions in which every sign at the border of the cavity was certain.
   std::uint64_t certified_insertions = 0;
-  // Insertions with marginal vertices in which keeping all of them gave a consistent cell.
+  // Insertions with uncertain signs, in which keeping all vertices with such signs gave a consistent cell.
   std::uint64_t settled_insertions = 0;
-  // Insertions of the same kind after exact arithmetic had decided doubtful signs.
+  // Insertions in which exact arithmetic decided the uncertain signs.
   std::uint64_t exact_insertions = 0;
-  // Insertions that the search under the five constraints decided.
+  // Insertions that were made by the search under the dissertation's five constraints.
   std::uint64_t constrained_insertions = 0;
-  // Whether all insertions used exact signs, because a sample was in doubt, too many insertions needed exact signs, or
-  // the diagram was too inaccurate without.
+  // Whether all insertions used exact signs. This happens if a sample of the points had uncertain signs, if too many
+  // insertions needed exact signs, or if the diagram was too inaccurate without them.
   bool exact_signs = false;
   // The certified bound, over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the
   // hull.
