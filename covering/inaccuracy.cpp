@@ -8,22 +8,19 @@
 
 #include "half_angle.h"
 #include "inner_walls.h"
+#include "search_limits.h"
 
 namespace orchard {
 namespace {
 
 // A spherical triangle on the unit sphere of directions, with an upper bound on the signed distance over its image.
-struct Cell {
+struct SphericalTriangle {
   double upper;
   std::array<Vector, 3> corners;
   std::array<Point, 2> known;  // of the surface: nearest to the middle, and to that of a larger cell
-};
-bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
-// Far more than any sphere of a sensible tree needs; met only by adversarial input, and then the bounds stay valid.
-constexpr int kMaxEvaluations = 200'000;
-// Least width of the bounds, as a fraction of R: a thousand roundings of a coordinate in a float.
-constexpr double kFinest = 1e-6;
+  static bool less_promising(const SphericalTriangle& a, const SphericalTriangle& b) { return a.upper < b.upper; }
+};
 
 // Best-first branch and bound. Over a cell with middle direction d the signed distance is at most
 //   sd(p) + |q - p|, since it is 1-Lipschitz, and
@@ -31,9 +28,9 @@ constexpr double kFinest = 1e-6;
 //   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two, y and z, and t from 0 to 1,
 // all taken at the farthest point q of the cap that the cell's corners span. Walls inside the solid are told apart from
 // its border (inner_walls.h).
-class Search {
+class SphereSearch {
  public:
-  Search(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
+  SphereSearch(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
       : surface_(surface),
         walls_(surface),
         sphere_(sphere),
@@ -50,10 +47,10 @@ class Search {
     probe_beyond_nearest(center_distance);
     if (everywhere <= best_ + width()) return {best_, everywhere};
     for (const auto& face : octahedron()) evaluate(face, {anchor_, anchor_});
-    while (!cells_.empty() && evaluations_ < kMaxEvaluations) {
+    while (!cells_.empty() && evaluations_ < detail::kMaxEvaluations) {
       if (cells_.front().upper <= best_ + width()) break;
-      std::pop_heap(cells_.begin(), cells_.end(), less_promising);
-      const Cell cell = cells_.back();
+      std::pop_heap(cells_.begin(), cells_.end(), SphericalTriangle::less_promising);
+      const SphericalTriangle cell = cells_.back();
       cells_.pop_back();
       split(cell.corners, cell.known);
     }
@@ -64,7 +61,7 @@ class Search {
  private:
   // How far the bounds may be apart, given the lower one.
   double width() const {
-    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
+    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, detail::kFinest * radius_});
   }
 
   // Where nothing else of the solid is near, the farthest point lies beyond the point of the surface that is nearest to
@@ -126,9 +123,9 @@ class Search {
     return true;
   }
 
-  void push(const Cell& cell) {
+  void push(const SphericalTriangle& cell) {
     cells_.push_back(cell);
-    std::push_heap(cells_.begin(), cells_.end(), less_promising);
+    std::push_heap(cells_.begin(), cells_.end(), SphericalTriangle::less_promising);
   }
 
   // The largest distance from y to a point of the cap around `middle` whose rim is `chord` (on the unit sphere) away.
@@ -162,13 +159,13 @@ class Search {
   Point anchor_ = Point::Zero();
   double upper_everywhere_ = 0, best_ = 0, dropped_ = 0;
   int evaluations_ = 0;
-  std::vector<Cell> cells_;
+  std::vector<SphericalTriangle> cells_;
 };
 
 }  // namespace
 
 Bounds inaccuracy(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance) {
-  return Search(surface, sphere, tolerance).run();
+  return SphereSearch(surface, sphere, tolerance).run();
 }
 
 double distance_bound(double signed_distance_of_center, double radius) {
