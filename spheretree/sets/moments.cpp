@@ -14,7 +14,7 @@ using Square = Eigen::Matrix<double, kRows, kRows>;
 
 // What a missed moment costs beside a weight that is changed: so that moments are met as nearly as doubles allow.
 constexpr double kMissed = 1e-10;
-constexpr int kMaxSteps = 200, kMaxHalvings = 40;
+constexpr int kMaxSteps = 200, kMaxStepHalvings = 40;
 constexpr double kConverged = 1e-13;
 
 // Of each ball per weight, about the body's centre and less the body's: the weighted sums are to be 0. Last the weight.
@@ -50,7 +50,7 @@ class Dual {
       const Row direction = -jacobian(x).ldlt().solve(slope);
       const double before = value(x), fall = slope.dot(direction);
       double length = 1;
-      for (int k = 0; k < kMaxHalvings && value(x + length * direction) > before + 1e-4 * length * fall; ++k)
+      for (int k = 0; k < kMaxStepHalvings && value(x + length * direction) > before + 1e-4 * length * fall; ++k)
         length /= 2;
       x += length * direction;
     }
