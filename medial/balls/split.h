@@ -23,7 +23,7 @@ struct SplitReport {
 
 // The errors of sorted cells, so that no cell is looked at twice; negative ones of what earlier calls gave up.
 template <class Cell>
-struct CellErrors {
+struct CachedCellErrors {
   std::vector<Cell> cells;
   std::vector<double> errors;
 };
@@ -33,8 +33,8 @@ struct SplitErrors {
   // For vertices that have other numbers now, in the same order, or none (kNone): cells with such are forgotten.
   void renumber(const std::vector<Index>& number);
 
-  CellErrors<std::array<Index, 2>> edges;
-  CellErrors<std::array<Index, 3>> triangles;
+  CachedCellErrors<std::array<Index, 2>> edges;
+  CachedCellErrors<std::array<Index, 3>> triangles;
 };
 
 // Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more

@@ -10,9 +10,9 @@ namespace {
 
 // Depths from which on dents are searched in cubes. Cubes take time as one over the square of it, the shell above takes
 // the more the more of it is where the solid is as thin.
-constexpr double kDeep = 3;        // times what is known
-constexpr double kMinDeep = 4e-3;  // of the diagonal, at least
-constexpr double kOfDeep = 0.1;    // accuracy: what cubes leave open is in the shell
+constexpr double kDeepDent = 3;        // times what is known
+constexpr double kMinDeepDent = 4e-3;  // of the diagonal, at least
+constexpr double kOfDeep = 0.1;        // accuracy: what cubes leave open is in the shell
 
 }  // namespace
 
@@ -20,7 +20,7 @@ SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstructio
                      Index max_parts) {
   if (!one_sided(surface)) return max_deep_dent(surface, reconstruction, known, accuracy, max_parts);
   const double diagonal = surface.bounding_box().diagonal().norm();
-  const double deep = std::max(kDeep * std::max(known, accuracy), kMinDeep * diagonal);
+  const double deep = std::max(kDeepDent * std::max(known, accuracy), kMinDeepDent * diagonal);
   SearchedMax in_cubes = max_deep_dent(surface, reconstruction, deep, std::max(accuracy, kOfDeep * deep), max_parts);
   if (in_cubes.max > deep) {  // searched again as finely as was asked for
     SearchedMax again = max_deep_dent(surface, reconstruction, in_cubes.max, accuracy, max_parts);

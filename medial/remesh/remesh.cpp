@@ -11,10 +11,10 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kCornerTurn = 35 * std::numbers::pi / 180;  // of a border on the surface: a corner keeps its place
-constexpr double kOutside = 2;     // tolerances, that an edge sticks out by which leads through the outside
-constexpr double kMaxAside = 0.3;  // of an edge: how far the ball in its middle may be from there
-constexpr int kRings = 3;          // of neighbours of what may be changed that may be changed, too
-constexpr int kSmoothings = 2;     // in a round
+constexpr double kOutsideTolerances = 2;  // tolerances, that an edge sticks out by which leads through the outside
+constexpr double kMaxMidballShift = 0.3;  // of an edge: how far the ball in its middle may be from there
+constexpr int kRings = 3;                 // of neighbours of what may be changed that may be changed, too
+constexpr int kSmoothings = 2;            // in a round
 
 }  // namespace
 
@@ -83,7 +83,7 @@ void Remesher::pin_corners() {
   }
   for (Index c = 0; c < mesh_.cells(); ++c) {
     const Cell& cell = mesh_.corners(c);
-    if (!is_triangle(cell) && errors_.leads_outside(cell[0], cell[1], kOutside * options_.tolerance))
+    if (!is_triangle(cell) && errors_.leads_outside(cell[0], cell[1], kOutsideTolerances * options_.tolerance))
       corners.insert(corners.end(), {cell[0], cell[1]});
   }
   for (const Index v : corners) mesh_.pin(v);
@@ -106,7 +106,7 @@ ExactBall Remesher::middle(Index a, Index b) {
     if (sharp_.nearest(straight, 0.5 * length(a, b), place)) return ball_on_edge(place);
   }
   const ExactBall exact = solver_.between(mesh_.ball(a), mesh_.ball(b), 0.5);
-  const bool near = (exact.center - straight).norm() <= kMaxAside * length(a, b);
+  const bool near = (exact.center - straight).norm() <= kMaxMidballShift * length(a, b);
   return (near && surface_.inside(exact.center)) || !surface_.inside(straight) ? exact : solver_.at(straight);
 }
 

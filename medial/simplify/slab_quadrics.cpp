@@ -21,10 +21,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kPull = 1e-4;    // of the trace: towards the middle of the edge, where planes leave a way open
-constexpr double kSpread = 1e-6;  // weight of an edge's length, so that short ones go first among equals
-constexpr double kBorder = 1.0;   // weight of the square over a border edge
-constexpr double kAsWhole = 2.0;  // of how far the whole mesh is off: as well as nothing was contracted
+constexpr double kPull = 1e-4;          // of the trace: towards the middle of the edge, where planes leave a way open
+constexpr double kLengthWeight = 1e-6;  // weight of an edge's length, so that short ones go first among equals
+constexpr double kBorder = 1.0;         // weight of the square over a border edge
+constexpr double kAsWhole = 2.0;        // of how far the whole mesh is off: as well as nothing was contracted
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr std::size_t kGuards = 4;  // of so many samples one stands guard, which tells as much of slabs
 constexpr double kFarthest = 2.0;   // edge lengths from its middle that a new ball may be
@@ -161,7 +161,7 @@ class Contraction {
         found = other;
       }
     }
-    return {found, cost + kSpread * length * length * length * length};
+    return {found, cost + kLengthWeight * length * length * length * length};
   }
 
   // What was too far, with a higher limit. False: no more.
