@@ -15,23 +15,23 @@ namespace {
 using nlohmann::json;
 
 // A column of the Markdown table.
-struct Column {
+struct MeasureColumn {
   const char* title;
   const char* measure;
   int digits;
   int better;  // -1: the least is the best, 1: the largest, 0: neither
 };
-constexpr Column kColumns[] = {{"max", "hausdorff_max", 3, -1},
-                               {"mean", "hausdorff_mean", 4, -1},
-                               {"left open, proven", "coverage_upper", 3, -1},
-                               {"sticks out, proven", "protrusion_upper", 3, -1},
-                               {"Chamfer", "chamfer", 4, -1},
-                               {"radius error", "radius_error_mean", 4, 0},
-                               {"covered", "covered", 4, 0},
-                               {"Q", "triangle_quality_mean", 3, 1},
-                               {"Q < .1", "triangle_quality_below", 3, -1},
-                               {"small sheets", "small_sheets", 0, -1},
-                               {"border turns", "border_turns", 3, -1}};
+constexpr MeasureColumn kColumns[] = {{"max", "hausdorff_max", 3, -1},
+                                      {"mean", "hausdorff_mean", 4, -1},
+                                      {"left open, proven", "coverage_upper", 3, -1},
+                                      {"sticks out, proven", "protrusion_upper", 3, -1},
+                                      {"Chamfer", "chamfer", 4, -1},
+                                      {"radius error", "radius_error_mean", 4, 0},
+                                      {"covered", "covered", 4, 0},
+                                      {"Q", "triangle_quality_mean", 3, 1},
+                                      {"Q < .1", "triangle_quality_below", 3, -1},
+                                      {"small sheets", "small_sheets", 0, -1},
+                                      {"border turns", "border_turns", 3, -1}};
 
 std::string number(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
 
@@ -51,7 +51,7 @@ class MarkdownTable {
   std::string run() {
     text_ = "| mesh | N | system | balls |";
     std::string rule = "|---|--:|---|--:|";
-    for (const Column& column : kColumns) text_ += fmt::format(" {} |", column.title), rule += "--:|";
+    for (const MeasureColumn& column : kColumns) text_ += fmt::format(" {} |", column.title), rule += "--:|";
     text_ += " topology | notes |\n" + rule + "---|---|\n";
     for (std::size_t i = 0; i < rows_.size();) {
       std::size_t end = i + 1;
@@ -67,7 +67,7 @@ class MarkdownTable {
     while (i > 0 && same_group(rows_[i - 1], rows_[i])) --i;
     return i;
   }
-  bool is_best(const LeaderboardRow& row, const Column& column, std::size_t begin, std::size_t end) const {
+  bool is_best(const LeaderboardRow& row, const MeasureColumn& column, std::size_t begin, std::size_t end) const {
     const double own = row.value(column.measure);
     std::size_t others = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -93,7 +93,7 @@ class MarkdownTable {
       text_ += " - | " + note("not measured: " + row.refused) + " |\n";
       return;
     }
-    for (const Column& column : kColumns) {
+    for (const MeasureColumn& column : kColumns) {
       const std::string value = number(row.value(column.measure), column.digits);
       text_ += is_best(row, column, begin, end) ? fmt::format(" **{}** |", value) : fmt::format(" {} |", value);
     }

@@ -33,11 +33,6 @@ namespace fs = std::filesystem;
 
 constexpr int kCloser = 3;  // times that the errors allowed are halved: more takes long and gains little
 
-std::string checksum_of(const fs::path& file) {
-  const std::vector<fs::path> files{file};
-  return provenance_of({}, files).inputs.front().checksum;
-}
-
 std::optional<json> read_json(const fs::path& file) {
   std::ifstream in(file);
   if (!in) return std::nullopt;

@@ -46,7 +46,7 @@ Dimension parse(const std::string& text) {
   return dimension;
 }
 
-struct Run {
+struct SweepRun {
   std::vector<std::size_t> choice;  // of each dimension's values
   std::vector<double> metrics;
 };
@@ -54,11 +54,11 @@ struct Run {
 std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
-                   const std::vector<Run>& runs) {
+                   const std::vector<SweepRun>& runs) {
   std::string text;
   for (const Dimension& dimension : dimensions) text += dimension.flag->name + ',';
   for (const Column& column : columns) text += column.name + (&column == &columns.back() ? "\n" : ",");
-  for (const Run& run : runs) {
+  for (const SweepRun& run : runs) {
     for (std::size_t d = 0; d < dimensions.size(); ++d) text += dimensions[d].values[run.choice[d]] + ',';
     for (std::size_t m = 0; m < run.metrics.size(); ++m) {
       text += csv_number(run.metrics[m]) + (m + 1 == run.metrics.size() ? "\n" : ",");
@@ -67,10 +67,10 @@ std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<C
   return text;
 }
 
-nlohmann::json to_json(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
-                       const std::vector<Run>& runs) {
+nlohmann::json sweep_json(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
+                          const std::vector<SweepRun>& runs) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Run& run : runs) {
+  for (const SweepRun& run : runs) {
     nlohmann::json row;
     for (std::size_t d = 0; d < dimensions.size(); ++d)
       row[dimensions[d].flag->name] = dimensions[d].values[run.choice[d]];
@@ -84,10 +84,10 @@ nlohmann::json to_json(const std::vector<Dimension>& dimensions, const std::vect
 
 // The first dimension runs along x; each combination of the others is a line.
 plot::Plot plot_of(std::size_t metric, const Column& column, const std::string& model,
-                   const std::vector<Dimension>& dimensions, const std::vector<Run>& runs) {
+                   const std::vector<Dimension>& dimensions, const std::vector<SweepRun>& runs) {
   const bool names = !dimensions[0].flag->choices.empty();
   std::map<std::string, std::vector<std::pair<double, double>>> lines;
-  for (const Run& run : runs) {
+  for (const SweepRun& run : runs) {
     std::string name;
     for (std::size_t d = 1; d < dimensions.size(); ++d) {
       name += (d > 1 ? ", " : "") + dimensions[d].flag->name + ' ' + dimensions[d].values[run.choice[d]];
@@ -168,8 +168,8 @@ std::size_t column_of(const std::vector<Column>& columns, const char* name) {
 }
 
 // Right topologies before wrong ones, then by the measure, what has none last; equals in the order of the sweep.
-std::vector<Run> best_first(std::vector<Run> runs, std::size_t best, std::size_t topology) {
-  std::stable_sort(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
+std::vector<SweepRun> best_first(std::vector<SweepRun> runs, std::size_t best, std::size_t topology) {
+  std::stable_sort(runs.begin(), runs.end(), [&](const SweepRun& a, const SweepRun& b) {
     if (a.metrics[topology] != b.metrics[topology]) return a.metrics[topology] > b.metrics[topology];
     const double x = a.metrics[best], y = b.metrics[best];
     return std::isnan(y) ? !std::isnan(x) : x < y;
@@ -179,7 +179,7 @@ std::vector<Run> best_first(std::vector<Run> runs, std::size_t best, std::size_t
 
 // Some columns for the eye, that of the order first; the file has all of them.
 void print_rows(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns, std::size_t best,
-                const std::vector<Run>& runs) {
+                const std::vector<SweepRun>& runs) {
   std::vector<std::size_t> shown{best};
   for (const char* name : {"hausdorff_max", "hausdorff_mean", "coverage_max", "protrusion_max", "radius_error_max",
                            "topology_right", "border_length", "small_pieces", "balls", "stability_99", "seconds"}) {
@@ -191,7 +191,7 @@ void print_rows(const std::vector<Dimension>& dimensions, const std::vector<Colu
     fmt::print("{:>{}}  ", dimension.flag->name, width(dimension.flag->name));
   for (const std::size_t m : shown) fmt::print("{:>{}}  ", columns[m].name, width(columns[m].name));
   fmt::print("\n");
-  for (const Run& run : runs) {
+  for (const SweepRun& run : runs) {
     for (std::size_t d = 0; d < dimensions.size(); ++d)
       fmt::print("{:>{}}  ", dimensions[d].values[run.choice[d]], width(dimensions[d].flag->name));
     for (const std::size_t m : shown) {
@@ -240,13 +240,13 @@ std::vector<std::string> sweep_names(const MedialCommand& command) {
 void sweep_medial(const MedialCommand& command, const Destination& destination, const Surface& surface,
                   const Progress& progress) {
   const std::vector<Dimension> dimensions = dimensions_of(command);
-  std::vector<Run> runs;
+  std::vector<SweepRun> runs;
   std::vector<std::size_t> choice(dimensions.size(), 0);
   do {
     const MedialBuildOptions options = build_options(tuning_of(command, dimensions, choice));
     MedialBuild build = build_medial_axis(surface, options, progress);
     const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
-    Run& run = runs.emplace_back();
+    SweepRun& run = runs.emplace_back();
     run.choice = choice;
     run.metrics = axis_numbers(build, judgement);
     if (command.tree) {
@@ -266,7 +266,7 @@ void sweep_medial(const MedialCommand& command, const Destination& destination, 
                plot::to_svg({plot_of(m, columns[m], model, dimensions, runs)}));
   const std::size_t best = best_column(command, columns);
   runs = best_first(std::move(runs), best, column_of(columns, "topology_right"));
-  nlohmann::json report{{"best_by", columns[best].name}, {"runs", to_json(dimensions, columns, runs)}};
+  nlohmann::json report{{"best_by", columns[best].name}, {"runs", sweep_json(dimensions, columns, runs)}};
   outputs.add_report(report);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));

@@ -92,7 +92,7 @@ std::vector<SphereLists> check_and_read(const CompareCommand& command) {
   return all;
 }
 
-json to_json(const std::vector<Compared>& all, double radius) {
+json compared_json(const std::vector<Compared>& all, double radius) {
   json files = json::array();
   for (const Compared& compared : all) {
     json levels = json::array();
@@ -110,7 +110,7 @@ json to_json(const std::vector<Compared>& all, double radius) {
   return {{"bounding_radius", radius}, {"files", files}};
 }
 
-void print(const std::vector<Compared>& all, std::size_t triangles, double radius) {
+void print_compared(const std::vector<Compared>& all, std::size_t triangles, double radius) {
   fmt::print("inaccuracy over the bounding radius, outside volume over the solid's; triangles without a path\n");
   fmt::print("level  spheres      mean       max   outside  uncovered  file\n");
   std::size_t levels = 0;
@@ -183,12 +183,12 @@ void compare(const CompareCommand& command) {
                stamped(chart(all, command.mesh.stem().string(), radius), "plot.svg", line_of(provenance)));
   }
   if (command.output.json) {
-    json report = to_json(all, radius);
+    json report = compared_json(all, radius);
     add_solid_json(solid, report);
     report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(all, surface.mesh().triangles.size(), radius);
+    print_compared(all, surface.mesh().triangles.size(), radius);
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());
   }
 }
