@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <numeric>
 
+#include "infinity.h"
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/octree.h"
