@@ -189,7 +189,7 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
   }
   if (!few.curve.empty()) {
     json rows = json::array();
-    for (const auto& [mesh, row] : few.curve) rows.push_back(to_json(row));
+    for (const auto& [mesh, row] : few.curve) rows.push_back(simplification_json(row));
     report["curve"] = std::move(rows);
     write_file(outputs.add(name("-curve.csv"), "numbers of balls against error"), to_csv(few.curve));
     write_file(outputs.add(name("-curve.svg"), "the same as a picture"), to_svg(few.curve));
