@@ -1,10 +1,10 @@
 # What the tests of all modules share.
 
-# orchard_add_tests(module SOURCES .. [APART .. | ALL_APART] [LINK ..] [LONG suites..]): one executable and one ctest label per module.
+# orchard_add_tests(module SOURCES .. [LINK ..] [LONG suites..]): one executable and one ctest label per module.
 # All tests are "quick"; the suites named take their random cases from tests/support/effort.h, and are once more, with
 # twenty times as many and fresh ones, a test that is "long".
 function(orchard_add_tests name)
-  cmake_parse_arguments(ARG "ALL_APART" "" "SOURCES;APART;LINK;LONG" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LONG" ${ARGN})
   set(target orchard_${name}_tests)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE orchard_flags ${ARG_LINK} GTest::gtest_main)
@@ -19,9 +19,7 @@ function(orchard_add_tests name)
     orchard_precompile_once(${target} construction_tests OPTIONS ${options} LINK Eigen3::Eigen GTest::gtest
       HEADERS <gtest/gtest.h> ${ORCHARD_CONSTRUCTION_HEADERS})
   endif()
-  if(NOT ARG_ALL_APART)
-    orchard_unite(${target} APART ${ARG_APART})
-  endif()
+  orchard_unite(${target})
   target_compile_definitions(${target} PRIVATE
     ORCHARD_DATA_DIR="${PROJECT_SOURCE_DIR}/data" ORCHARD_SHARED_MODELS="${PROJECT_SOURCE_DIR}/../shared/models")
   gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)

@@ -6,26 +6,24 @@
 #include "half_angle.h"
 #include "inner_walls.h"
 #include "orchard/covering/inaccuracy.h"
+#include "search_limits.h"
 
 namespace orchard {
 namespace {
 
-// As for inaccuracy(): the bounds stay valid when it is met.
-constexpr int kMaxEvaluations = 200'000;
-constexpr double kFinest = 1e-6;
-
 // A cube, with an upper bound on the signed distance over its part inside the ball.
-struct Cell {
+struct Cube {
   double upper;
   Point center;
   double half;    // of the side
   Point nearest;  // of the surface, to about the centre
-};
-bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
-class Search {
+  static bool less_promising(const Cube& a, const Cube& b) { return a.upper < b.upper; }
+};
+
+class CubeSearch {
  public:
-  Search(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
+  CubeSearch(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
       : surface_(surface), walls_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
   Bounds run(double at_least) {
@@ -54,7 +52,7 @@ class Search {
     anchor_ = nearest.position;
     if (everywhere_ > best_ && everywhere_ > limit_) evaluate(ball_.center, ball_.radius, anchor_);
   }
-  bool open() const { return !cells_.empty() && evaluations_ < kMaxEvaluations; }
+  bool open() const { return !cells_.empty() && evaluations_ < detail::kMaxEvaluations; }
   Bounds bounds() const {
     if (evaluations_ == 0) return {best_, everywhere_};
     const double left = cells_.empty() ? 0 : cells_.front().upper;
@@ -62,8 +60,8 @@ class Search {
   }
 
   void split_most_promising() {
-    std::pop_heap(cells_.begin(), cells_.end(), less_promising);
-    const Cell cell = cells_.back();
+    std::pop_heap(cells_.begin(), cells_.end(), Cube::less_promising);
+    const Cube cell = cells_.back();
     cells_.pop_back();
     for (int octant = 0; octant < 8; ++octant) {
       const Vector step((octant & 1) ? 1 : -1, (octant & 2) ? 1 : -1, (octant & 4) ? 1 : -1);
@@ -73,7 +71,7 @@ class Search {
 
   // How far the bounds may be apart, given the lower one.
   double width() const {
-    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
+    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, detail::kFinest * radius_});
   }
 
   // `known`: a point of the surface; often it does.
@@ -96,7 +94,7 @@ class Search {
     if (does_not_matter(upper)) return;
     if (value <= walls_.depth() && walls_.fill({sample, reach}) && does_not_matter(walls_.depth())) return;
     cells_.push_back({upper, center, half, nearest.position});
-    std::push_heap(cells_.begin(), cells_.end(), less_promising);
+    std::push_heap(cells_.begin(), cells_.end(), Cube::less_promising);
   }
 
   // A cell that cannot matter is dropped, but its bound counts towards the answer's.
@@ -139,18 +137,18 @@ class Search {
   Point anchor_ = Point::Zero(), at_ = Point::Zero();
   double everywhere_ = 0, best_ = 0, dropped_ = 0;
   int evaluations_ = 0;
-  std::vector<Cell> cells_;
+  std::vector<Cube> cells_;
 };
 
 }  // namespace
 
 Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance,
                            double at_least) {
-  return Search(surface, ball, tolerance).run(at_least);
+  return CubeSearch(surface, ball, tolerance).run(at_least);
 }
 
 Bounds farthest_against(const Surface& surface, const Sphere& ball, double limit, Point& at) {
-  Search search(surface, ball, {});
+  CubeSearch search(surface, ball, {});
   const Bounds bounds = search.run_against(std::max(0.0, limit));
   at = search.where_lower();
   return bounds;

@@ -8,23 +8,20 @@
 
 #include "half_angle.h"
 #include "inner_walls.h"
+#include "search_limits.h"
 
 namespace orchard {
 namespace {
 
 // A spherical triangle of directions, with an upper bound on the signed distance over the part of the sphere's surface
 // that lies in these directions from its centre.
-struct Cell {
+struct SphericalTriangle {
   double upper;
   std::array<Vector, 3> corners;
   std::array<Point, 2> known;  // of the surface: nearest to the middle, and to that of a larger cell
-};
-bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
-// Far more than any sphere of a sensible tree needs. If adversarial input reaches it, the bounds are wider but valid.
-constexpr int kMaxEvaluations = 200'000;
-// The bounds are not made narrower than this fraction of R: a thousand roundings of a coordinate in a float.
-constexpr double kFinest = 1e-6;
+  static bool less_promising(const SphericalTriangle& a, const SphericalTriangle& b) { return a.upper < b.upper; }
+};
 
 // Best-first branch and bound. Let p be the sphere's point in the middle direction of a cell, and q any point of the
 // cap around p that the cell's corners span. The signed distance sd at q is at most
@@ -33,9 +30,9 @@ constexpr double kFinest = 1e-6;
 //   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two points y and z of the surface, and t from 0 to 1.
 // The greatest value of each over the cap bounds the cell. Walls inside the solid do not count as its border
 // (inner_walls.h).
-class Search {
+class SphereSearch {
  public:
-  Search(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
+  SphereSearch(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
       : surface_(surface),
         walls_(surface),
         sphere_(sphere),
@@ -52,10 +49,10 @@ class Search {
     probe_beyond_nearest(center_distance);
     if (everywhere <= best_ + width()) return {best_, everywhere};
     for (const auto& face : octahedron()) evaluate(face, {anchor_, anchor_});
-    while (!cells_.empty() && evaluations_ < kMaxEvaluations) {
+    while (!cells_.empty() && evaluations_ < detail::kMaxEvaluations) {
       if (cells_.front().upper <= best_ + width()) break;
-      std::pop_heap(cells_.begin(), cells_.end(), less_promising);
-      const Cell cell = cells_.back();
+      std::pop_heap(cells_.begin(), cells_.end(), SphericalTriangle::less_promising);
+      const SphericalTriangle cell = cells_.back();
       cells_.pop_back();
       split(cell.corners, cell.known);
     }
@@ -66,7 +63,7 @@ class Search {
  private:
   // How far apart the bounds may be at the end, given the lower one.
   double width() const {
-    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
+    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, detail::kFinest * radius_});
   }
 
   // Measures the sphere's point in the direction of the surface point that is nearest to the centre; for a centre
@@ -130,9 +127,9 @@ class Search {
     return true;
   }
 
-  void push(const Cell& cell) {
+  void push(const SphericalTriangle& cell) {
     cells_.push_back(cell);
-    std::push_heap(cells_.begin(), cells_.end(), less_promising);
+    std::push_heap(cells_.begin(), cells_.end(), SphericalTriangle::less_promising);
   }
 
   // The largest distance from y to a point of the cap around `middle`, whose rim is `chord` away from its middle on the
@@ -168,13 +165,13 @@ class Search {
   Point anchor_ = Point::Zero();
   double upper_everywhere_ = 0, best_ = 0, dropped_ = 0;
   int evaluations_ = 0;
-  std::vector<Cell> cells_;
+  std::vector<SphericalTriangle> cells_;
 };
 
 }  // namespace
 
 Bounds inaccuracy(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance) {
-  return Search(surface, sphere, tolerance).run();
+  return SphereSearch(surface, sphere, tolerance).run();
 }
 
 double distance_bound(double signed_distance_of_center, double radius) {

@@ -8,36 +8,32 @@
 #include "lemma_check.h"
 
 namespace orchard {
-namespace {
-
 using detail::CircleInPlane;
 using detail::LemmaCheck;
 using detail::TrianglePlane;
 
-// A ball's circle in a triangle, as it was when the ball had this version.
-struct Cached {
-  Index ball;
-  std::uint64_t version;
-  CircleInPlane circle;
-};
-
-struct TriangleState {
-  TrianglePlane plane;
-  std::vector<Cached> cache;    // ascending by ball
-  std::vector<Index> coverers;  // leaves that the certificate rests on, ascending; empty: not covered
-  bool covered() const { return !coverers.empty(); }
-};
-
-// The outcome of a check, kept apart until it is known to stand.
-struct Outcome {
-  Index slot;
-  std::vector<Index> coverers;
-  std::vector<Cached> fresh;  // circles that the cache did not have
-};
-
-}  // namespace
-
 struct IncrementalCover::Data {
+  // A ball's circle in a triangle, as it was when the ball had this version.
+  struct Cached {
+    Index ball;
+    std::uint64_t version;
+    CircleInPlane circle;
+  };
+
+  struct TriangleState {
+    TrianglePlane plane;
+    std::vector<Cached> cache;    // ascending by ball
+    std::vector<Index> coverers;  // leaves that the certificate rests on, ascending; empty: not covered
+    bool covered() const { return !coverers.empty(); }
+  };
+
+  // The outcome of a check, kept apart until it is known to stand.
+  struct Outcome {
+    Index slot;
+    std::vector<Index> coverers;
+    std::vector<Cached> fresh;  // circles that the cache did not have
+  };
+
   const Surface& surface;
   PathForest forest;
   std::vector<Index> triangles;  // ascending; the other arrays of triangles are by place in this one

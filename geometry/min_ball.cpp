@@ -4,20 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "farthest_point.h"
+
 namespace orchard {
-namespace {
-
-Index farthest_from(const Point& from, std::span<const Point> points) {
-  Index farthest = 0;
-  double max = -1;
-  for (Index i = 0; i < points.size(); ++i) {
-    const double squared = (points[i] - from).squaredNorm();
-    if (squared > max) farthest = i, max = squared;
-  }
-  return farthest;
-}
-
-}  // namespace
 
 double radius_around(const Point& center, std::span<const Point> points) {
   double max = 0;
@@ -28,8 +17,8 @@ double radius_around(const Point& center, std::span<const Point> points) {
 
 Sphere ritter_ball(std::span<const Point> points) {
   if (points.empty()) return {};
-  const Point& first = points[farthest_from(points[0], points)];
-  const Point& second = points[farthest_from(first, points)];
+  const Point& first = points[detail::farthest_from(points[0], points)];
+  const Point& second = points[detail::farthest_from(first, points)];
   Sphere ball{first + 0.5 * (second - first), 0.5 * (second - first).norm()};
   for (const Point& p : points) {
     const Vector offset = p - ball.center;

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "farthest_point.h"
 #include "orchard/geometry/min_ball.h"
 
 namespace orchard {
 namespace {
 
 // CGAL's double version can return a ball that is too small; by more than this, and it is not just rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kBallRounding = 1e-12;
 
 // Points as spheres of radius zero, which is how CGAL wants to see them.
 template <class Number>
@@ -53,21 +54,14 @@ Point exact_center(const std::vector<Point>& points) {
   return center;
 }
 
-std::size_t farthest_from(const Point& center, std::span<const Point> points) {
-  std::size_t farthest = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if ((points[i] - center).squaredNorm() > (points[farthest] - center).squaredNorm()) farthest = i;
-  return farthest;
-}
-
 // Grows a small set of points whose minimal ball holds all of them: add the farthest one outside until there is none.
 Point center_of_active_set(std::span<const Point> points) {
-  std::vector<Point> active{points[farthest_from(points[0], points)]};
-  active.push_back(points[farthest_from(active[0], points)]);
+  std::vector<Point> active{points[detail::farthest_from(points[0], points)]};
+  active.push_back(points[detail::farthest_from(active[0], points)]);
   for (std::size_t round = 0; round < points.size(); ++round) {
     Point center = exact_center(active);
-    const Point& farthest = points[farthest_from(center, points)];
-    if ((farthest - center).norm() <= radius_around(center, active) * (1 + kRounding)) return center;
+    const Point& farthest = points[detail::farthest_from(center, points)];
+    if ((farthest - center).norm() <= radius_around(center, active) * (1 + kBallRounding)) return center;
     active.push_back(farthest);
   }
   return exact_center(active);
@@ -79,7 +73,7 @@ Sphere minimal_ball(std::span<const Point> points) {
   if (points.empty()) return {};
   Sphere ball = ball_in_doubles(points);
   const double radius = radius_around(ball.center, points);
-  if (!(radius <= ball.radius * (1 + kRounding))) ball.center = center_of_active_set(points);
+  if (!(radius <= ball.radius * (1 + kBallRounding))) ball.center = center_of_active_set(points);
   ball.radius = radius_around(ball.center, points);
   return ball;
 }

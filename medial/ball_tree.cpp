@@ -5,7 +5,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr Index kLeaf = 4;
+constexpr Index kBallLeaf = 4;
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void BallTree::build(Index at, Index first, Index count) {
     middles.extend(boxes_[items_[i]].center());
     node.radius = std::max(node.radius, radii_[items_[i]]);
   }
-  if (count <= kLeaf) {
+  if (count <= kBallLeaf) {
     node.first = first;
     node.count = count;
     nodes_[at] = node;

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "infinity.h"
 #include "wide.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kDualSteps = 24;
 // A predicted gain below this part of the looseness is not worth another query.
-constexpr double kWorthwhile = 2e-4;
+constexpr double kWorthwhileGain = 2e-4;
 // Steps below this part of the radius change nothing that matters.
-constexpr double kMinStep = 1e-4;
+constexpr double kMinFitStep = 1e-4;
 // What a known point of the surface may be off by, as a fraction of its distance; if it is by more, we look again.
-constexpr double kSurely = 1 + 1e-9;
+constexpr double kKnownPointFactor = 1 + 1e-9;
 
 }  // namespace
 
@@ -111,7 +110,7 @@ double BallFitter::Terms<kRoom>::max_after(const Vector& step) const {
 ClosestPoint BallFitter::closest(const Point& center) const {
   const Cut& last = cuts_.back();
   const Point known = last.at - last.value * last.gradient;
-  const ClosestPoint nearest = surface_.closest_within(center, (center - known).norm() * kSurely);
+  const ClosestPoint nearest = surface_.closest_within(center, (center - known).norm() * kKnownPointFactor);
   return nearest.triangle == kNone ? surface_.closest(center) : nearest;
 }
 
@@ -213,11 +212,11 @@ FittedBall BallFitter::fit_here(std::span<const Point> points, const FittedBall&
   FittedBall best{start.center, measure(start.center), cuts_.back().value, cuts_.back().gradient};
   squared_.swap(measured_);
   double t = 0.3 * best.looseness() + 0.05 * best.radius;
-  for (int used = 1; used < evaluations && t > kMinStep * best.radius;) {
+  for (int used = 1; used < evaluations && t > kMinFitStep * best.radius;) {
     linearise(best, t);
     const Vector step = best_step(t);
     const double length = step.norm(), predicted = best.looseness() - predicted_looseness(step);
-    if (predicted <= 0 || length < kMinStep * kWorthwhile * best.radius) break;
+    if (predicted <= 0 || length < kMinFitStep * kWorthwhileGain * best.radius) break;
     FittedBall next{best.center + step, 0, 0, Vector::Zero()};
     next.radius = measure(next.center);
     // The distance changes by no more than the step: no need to look where even that would not help.
@@ -235,7 +234,7 @@ FittedBall BallFitter::fit_here(std::span<const Point> points, const FittedBall&
       best = next;
       squared_.swap(measured_);
     }
-    if (predicted < kWorthwhile * best.looseness()) break;
+    if (predicted < kWorthwhileGain * best.looseness()) break;
     t *= gain > 0.6 * predicted ? 1.7 : gain < 0.2 * predicted ? 1.0 / 3 : 1.0;
   }
   return best;

@@ -19,7 +19,7 @@ constexpr double kFinerLattices[] = {kGoldenPart * 0x1p-31, kGoldenPart * 0x1p-3
 constexpr double kFineLattice = kSilverPart * 0x1p-22, kCoarseLattice = kSilverPart * 0x1p-9;
 
 constexpr double kHalfDiagonal = 0.867;  // of a cell of side 1
-constexpr double kRoundings =
+constexpr double kFrameRounding =
     0x1p-48;  // the rounding errors of bringing a point into the frame, where numbers are about 1
 
 Point on_lattice(const Point& point, double lattice) {
@@ -78,7 +78,7 @@ Sphere CanonicalFrame::out(const Sphere& ball) const {
   const Point center = center_ + scale_ * ball.center;
   const double rounding =
       std::numeric_limits<double>::epsilon() * (center_.cwiseAbs().sum() + scale_ * ball.center.cwiseAbs().sum());
-  return {center, scale_ * (ball.radius + kHalfDiagonal * lattice_ + kRoundings) + rounding};
+  return {center, scale_ * (ball.radius + kHalfDiagonal * lattice_ + kFrameRounding) + rounding};
 }
 
 Point on_fine_lattice(const Point& point) { return on_lattice(point, kFineLattice); }

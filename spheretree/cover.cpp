@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "infinity.h"
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
@@ -13,10 +13,10 @@
 namespace orchard {
 namespace {
 
-constexpr int kMaxRounds = 60;
+constexpr int kMaxCoverRounds = 60;
 constexpr double kMarginGrowth = 2;  // from one round to the next
 constexpr int kKeepingRounds = 30;   // in which balls that are not to grow do not
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using detail::kInfinity;
 
 // What one path should take in: points of an uncovered region. The path region then holds their convex hull as well.
 using Points = std::vector<Point>;
@@ -128,8 +128,8 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
   std::vector<Index> triangles;
   for (Index i = 0; i < surface.mesh().triangles.size(); ++i) triangles.push_back(i);
   double margin = first_margin * radius;
-  for (; report.rounds < kMaxRounds; ++report.rounds) {
-    report_progress(progress, "covering", static_cast<double>(report.rounds) / kMaxRounds);
+  for (; report.rounds < kMaxCoverRounds; ++report.rounds) {
+    report_progress(progress, "covering", static_cast<double>(report.rounds) / kMaxCoverRounds);
     const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
     if (coverage.complete()) return report;
     if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
@@ -150,7 +150,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
     margin *= kMarginGrowth;
   }
   throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
-              std::to_string(kMaxRounds) + " rounds");
+              std::to_string(kMaxCoverRounds) + " rounds");
 }
 
 namespace {
@@ -176,8 +176,8 @@ CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double facto
   CoverReport report;
   std::vector<Index> triangles(surface.mesh().triangles.size());
   std::iota(triangles.begin(), triangles.end(), Index{0});
-  for (; report.rounds < kMaxRounds; ++report.rounds) {
-    report_progress(progress, "growing", static_cast<double>(report.rounds) / kMaxRounds);
+  for (; report.rounds < kMaxCoverRounds; ++report.rounds) {
+    report_progress(progress, "growing", static_cast<double>(report.rounds) / kMaxCoverRounds);
     const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
     if (coverage.complete()) return report;
     if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
@@ -198,7 +198,7 @@ CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double facto
     }
   }
   throw Error("growing: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
-              std::to_string(kMaxRounds) + " rounds");
+              std::to_string(kMaxCoverRounds) + " rounds");
 }
 
 }  // namespace orchard

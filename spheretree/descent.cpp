@@ -9,10 +9,10 @@
 namespace orchard {
 namespace {
 
-constexpr std::uint64_t kStage = 300;  // of the random numbers
+constexpr std::uint64_t kDescentStage = 300;  // of the random numbers
 // Steps as fractions of the ball's looseness: where they start, how they change, and where a ball has had enough.
-constexpr double kFirstStep = 0.2, kMinStep = 2e-4;
-constexpr double kLonger = 1.6, kShorter = 0.85;
+constexpr double kFirstDescentStep = 0.2, kMinDescentStep = 2e-4;
+constexpr double kLongerDescent = 1.6, kShorterDescent = 0.85;
 
 class Descent {
  public:
@@ -20,7 +20,7 @@ class Descent {
       : tree_(tree), surface_(surface), options_(options), cover_(surface, path_balls(tree)) {
     const std::size_t count = tree.nodes.size();
     center_distance_.resize(count);
-    step_.assign(count, kFirstStep);
+    step_.assign(count, kFirstDescentStep);
     for (std::size_t i = 0; i < count; ++i) center_distance_[i] = surface.signed_distance(tree.nodes[i].sphere.center);
   }
 
@@ -30,12 +30,12 @@ class Descent {
     for (Index round = 0; round < options_.trials_per_node; ++round) {
       report_progress(progress, "random descent", static_cast<double>(round) / options_.trials_per_node);
       for (Index node = 0; node < tree_.nodes.size(); ++node) {
-        if (step_[node] < kMinStep) continue;
+        if (step_[node] < kMinDescentStep) continue;
         ++report.trials;
-        Random random(options_.seed, kStage + round, node);
+        Random random(options_.seed, kDescentStage + round, node);
         const bool better = try_node(node, random);
         report.accepted += better;
-        step_[node] = std::min(kFirstStep, step_[node] * (better ? kLonger : kShorter));
+        step_[node] = std::min(kFirstDescentStep, step_[node] * (better ? kLongerDescent : kShorterDescent));
       }
     }
     report.looseness_after = mean_looseness();

@@ -50,8 +50,8 @@ Box child_box(const Box& box, int which) {
 
 namespace {
 
-constexpr int kMaxHalvings = 8;  // for each box wanted: where one side of a
-                                 // halved box is empty, there is no box more
+constexpr int kMaxBoxHalvings = 8;  // for each box wanted: where one side of a
+                                    // halved box is empty, there is no box more
 
 void keep_if_occupied(const Surface& surface, const Octant& parent, const Box& box, std::vector<Octant>& parts) {
   Octant part{box, {}, kNone};
@@ -65,7 +65,7 @@ void keep_if_occupied(const Surface& surface, const Octant& parent, const Box& b
 std::vector<Octant> occupied_parts(const Surface& surface, const Octant& parent, Index count) {
   if (count == 8) return occupied_children(surface, parent);
   std::vector<Octant> parts{parent};
-  for (Index halving = 0; parts.size() < count && halving < kMaxHalvings * count; ++halving) {
+  for (Index halving = 0; parts.size() < count && halving < kMaxBoxHalvings * count; ++halving) {
     const auto max = std::max_element(parts.begin(), parts.end(), [](const Octant& a, const Octant& b) {
       return a.box.diagonal().squaredNorm() < b.box.diagonal().squaredNorm();
     });

@@ -15,12 +15,12 @@ namespace {
 // The limit on coordinates of meshes leaves room: balls of a tree are not hundreds of times as large as the mesh.
 static_assert(500 * kMaxCoordinate <= double{runtime::kCoordinateLimit});
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 // The least float that is not below `value`.
 float round_up(double value) {
   const auto rounded = static_cast<float>(value);
-  return static_cast<double>(rounded) < value ? std::nextafter(rounded, kInfinity) : rounded;
+  return static_cast<double>(rounded) < value ? std::nextafter(rounded, kFloatInfinity) : rounded;
 }
 
 // A bound on the rounding errors of a difference and a norm in doubles, for lengths up to `size`.

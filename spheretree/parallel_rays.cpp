@@ -2,14 +2,12 @@
 
 #include <limits>
 
+#include "golden_steps.h"
+
 namespace orchard::detail {
 namespace {
 
-// Powers of 1 / 1.3247.., the root of x^3 = x + 1: the two-dimensional golden ratio (Roberts 2018).
-constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 constexpr double kRaysPerCell = 2;
-
-double fraction(double x) { return x - std::floor(x); }
 
 // Twice the area that a point spans with an edge, positive on its left. Both triangles at an edge get the same number,
 // but for its sign, so no ray slips between them.
@@ -32,11 +30,8 @@ ParallelRays::ParallelRays(const Box& box, std::uint64_t count, const Eigen::Vec
   per_axis_ = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(count) / kRaysPerCell)));
   cell_ = sizes / per_axis_;
   std::vector<Eigen::Vector2d> places;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const double n = static_cast<double>(i);
-    places.emplace_back(
-        min_ + sizes.cwiseProduct(Eigen::Vector2d(fraction(shift.x() + n * kStepX), fraction(shift.y() + n * kStepY))));
-  }
+  for (std::uint64_t i = 0; i < count; ++i)
+    places.emplace_back(min_ + sizes.cwiseProduct(golden_place(shift, static_cast<double>(i))));
   sort_into_cells(places);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
 // What is known of distances by other distances may be wrong by a few roundings.
-constexpr double kRoundings = 1 + 1e-6;
+constexpr double kRegionDistanceFactor = 1 + 1e-6;
 // Uncovered regions below this part of the last growth are left to it.
 constexpr double kLeftToGrowth = 0.4;
 
@@ -87,7 +87,8 @@ class Prober {
     const double here = distance_bound(arc);
     double step = step_;
     for (int probe = 0; probe < kProbes; ++probe, step *= 2)
-      if ((here + step) * kRoundings > region.distance) try_point(arc.middle + out * (step / length), region);
+      if ((here + step) * kRegionDistanceFactor > region.distance)
+        try_point(arc.middle + out * (step / length), region);
   }
 
  private:

@@ -15,7 +15,7 @@ namespace {
 
 // The rounding errors of the sum of a centre, of a closest-point query and of a few comparisons, per unit of
 // coordinate.
-constexpr double kRounding = 0x1p-49;
+constexpr double kVerifyRounding = 0x1p-49;
 
 void add(const VerifyOptions& options, Verification& result, Violation violation) {
   if (result.violations.size() < options.max_violations) result.violations.push_back(std::move(violation));
@@ -83,7 +83,7 @@ class Verifier {
   Verifier(const Surface& surface, const runtime::PackedSphereTree& tree)
       : surface_(surface), tree_(tree), nodes_(packed_nodes(tree)), balls_(path_balls(tree)) {
     origin_ = Point(tree.origin[0], tree.origin[1], tree.origin[2]);
-    rounding_ = kRounding * (origin_.norm() + surface.bounding_radius());
+    rounding_ = kVerifyRounding * (origin_.norm() + surface.bounding_radius());
   }
 
   Verification run(const VerifyOptions& options, const Progress& progress) {

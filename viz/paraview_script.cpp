@@ -103,7 +103,7 @@ def main():
 main()
 )PY";
 
-std::string digits(double value) {
+std::string six_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
@@ -111,7 +111,12 @@ std::string digits(double value) {
 
 std::string list(const Vector& v) {
   std::string text = "[";
-  text.append(digits(v.x())).append(", ").append(digits(v.y())).append(", ").append(digits(v.z())).append("]");
+  text.append(six_digits(v.x()))
+      .append(", ")
+      .append(six_digits(v.y()))
+      .append(", ")
+      .append(six_digits(v.z()))
+      .append("]");
   return text;
 }
 
@@ -171,8 +176,8 @@ void write_paraview_script(const std::filesystem::path& prefix, const PipelineVa
                      "-view.py, or without a window\npvbatch " + name +
                      "-view.py -o picture.png [--level K]. In ParaView the levels are steps of time.\n\"\"\"\n";
   text += "PREFIX = " + quoted(name) + "\n";
-  text += "CENTER, RADIUS = " + list(scene.center) + ", " + digits(scene.radius) + "\n";
-  text += "HALF_HEIGHT = " + digits(scene.half_height) + "\n";
+  text += "CENTER, RADIUS = " + list(scene.center) + ", " + six_digits(scene.radius) + "\n";
+  text += "HALF_HEIGHT = " + six_digits(scene.half_height) + "\n";
   text += "TO_EYE, UP = " + list(scene.to_eye) + ", " + list(scene.up) + "\n";
   text += "LAST_LEVEL = " + (values.tree ? std::to_string(values.tree->depth()) : std::string("-1")) + "\n";
   if (values.tree) text += "COLOR = " + quoted(scene.color) + "\n";

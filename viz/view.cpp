@@ -62,7 +62,7 @@ void write_scene(const fs::path& prefix, const Scene& scene, const std::set<Inde
   files.write();
 }
 
-std::string digits(double value) {
+std::string all_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;
@@ -71,7 +71,7 @@ std::string digits(double value) {
 template <class Numbers>
 std::string listed(const Numbers& numbers) {
   std::string list;
-  for (const double value : numbers) list += (list.empty() ? "" : ",") + digits(value);
+  for (const double value : numbers) list += (list.empty() ? "" : ",") + all_digits(value);
   return list;
 }
 
@@ -85,7 +85,7 @@ std::vector<std::string> arguments_of(const Figure& figure) {
   if (figure.range) add("--range", listed(*figure.range));
   if (figure.look_at)
     add("--look-at", listed(std::array{figure.look_at->x(), figure.look_at->y(), figure.look_at->z()}));
-  if (figure.span > 0) add("--span", digits(figure.span));
+  if (figure.span > 0) add("--span", all_digits(figure.span));
   if (figure.clip) add("--clip", listed(*figure.clip));
   for (const auto& [flag, on] : {std::pair{"--edges", figure.edges},
                                  {"--balls", figure.balls},

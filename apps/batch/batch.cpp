@@ -47,14 +47,14 @@ BatchRunOptions options_of(const BatchCommand& command) {
           .faults = faults_of(command)};
 }
 
-json to_json(const BatchCounts& counts, double seconds) {
+json counts_json(const BatchCounts& counts, double seconds) {
   return {{"statuses", counts.statuses},           {"failures", counts.reasons},
           {"known_before", counts.known_before},   {"promises_not_kept", counts.broken_promises},
           {"to_be_run_again", counts.not_lasting}, {"seconds", seconds}};
 }
 
-void print(const BatchCommand& command, const Shard& shard, std::size_t meshes, const BatchCounts& counts,
-           double seconds) {
+void print_batch(const BatchCommand& command, const Shard& shard, std::size_t meshes, const BatchCounts& counts,
+                 double seconds) {
   std::vector<std::string> parts;
   for (const auto& [status, count] : counts.statuses) parts.push_back(fmt::format("{} {}", count, status));
   fmt::print("{} meshes{}: {}; {} known before, {:.1f} s\n", meshes,
@@ -105,8 +105,8 @@ ExitCode batch(const BatchCommand& command) {
   const BatchCounts counts = BatchRun(manifest, positions, worker, folder, options, progress).run();
   folder.publish(manifest, positions.size());
   progress.clear();
-  if (command.output.json) fmt::print("{}\n", to_json(counts, clock.seconds()).dump(2));
-  if (talk) print(command, shard, positions.size(), counts, clock.seconds());
+  if (command.output.json) fmt::print("{}\n", counts_json(counts, clock.seconds()).dump(2));
+  if (talk) print_batch(command, shard, positions.size(), counts, clock.seconds());
   return finish(counts);
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "batch/batch_progress.h"
+#include "batch/mebibyte.h"
 #include "batch/triangle_count.h"
 #include "command_line/command_line.h"
 #include "command_line/text.h"
@@ -19,20 +20,19 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMargin = 2;  // of what is asked of Slurm, over what is expected: it kills what exceeds that
-constexpr double kMebibyte = 1048576;
 constexpr double kLeastBytes = 64 * kMebibyte, kLeastSeconds = 60;
 
 // Of a raw axis (docs/results/growth.md), of a refined one (docs/results/medial-axes.md: 2 to 26 s there), and of a
 // set: seconds and bytes at least, for each surface point or sphere, and for each triangle.
-struct Rates {
+struct MeshRates {
   double seconds, per_item, per_triangle;
   double bytes, bytes_per_item, bytes_per_triangle;
 };
-constexpr Rates kRawAxis{0.05, 9e-5, 1.7e-5, 2.4e7, 5000, 430};
-constexpr Rates kRefinedAxis{3, 8e-4, 1e-4, 4e7, 8000, 430};
-constexpr Rates kSphereSet{0.8, 0.035, 1.7e-5, 2.8e7, 2.2e5, 430};
+constexpr MeshRates kRawAxis{0.05, 9e-5, 1.7e-5, 2.4e7, 5000, 430};
+constexpr MeshRates kRefinedAxis{3, 8e-4, 1e-4, 4e7, 8000, 430};
+constexpr MeshRates kSphereSet{0.8, 0.035, 1.7e-5, 2.8e7, 2.2e5, 430};
 
-MeshCost cost_of(const Rates& rates, double items, double triangles) {
+MeshCost cost_of(const MeshRates& rates, double items, double triangles) {
   return {rates.seconds + items * rates.per_item + triangles * rates.per_triangle,
           rates.bytes + items * rates.bytes_per_item + triangles * rates.bytes_per_triangle};
 }

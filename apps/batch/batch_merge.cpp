@@ -26,7 +26,7 @@ Provenance provenance_of(const json& description) {
           .inputs = {}};
 }
 
-void print(const json& summary, const MergedRows& rows, const Outputs& outputs) {
+void print_merged(const json& summary, const MergedRows& rows, const Outputs& outputs) {
   const json& statuses = summary["statuses"];
   fmt::print("{} meshes of {} shard{}: {} solid, {} repaired, {} wrapped, {} failed\n", rows.lines.size(), rows.shards,
              rows.shards == 1 ? "" : "s", statuses["solid"].dump(), statuses["repaired"].dump(),
@@ -63,7 +63,7 @@ void merge_batches(const BatchCommand& command) {
   outputs.add_report(summary, "how many were solid, repaired, wrapped, failed and why");
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", summary.dump(2));
-  if (!command.output.json && !command.output.quiet) print(summary, rows, outputs);
+  if (!command.output.json && !command.output.quiet) print_merged(summary, rows, outputs);
 }
 
 }  // namespace orchard::apps

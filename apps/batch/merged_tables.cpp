@@ -14,12 +14,12 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kBins = 40, kMostMessages = 20;
+constexpr std::size_t kTightnessBins = 40, kMostMessages = 20;
 constexpr std::size_t kMostPoints = 5000;  // of a plot: more of them no program opens gladly, and no eye tells apart
 
 ordered_json parsed(const std::string& line) { return ordered_json::parse(line); }
 
-std::string cell(const json& value) {
+std::string csv_cell(const json& value) {
   if (value.is_null()) return {};
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
@@ -58,7 +58,7 @@ json by_frequency(const std::map<std::string, std::size_t>& messages) {
   return list;
 }
 
-json quantiles(std::vector<double> values) {
+json tightness_quantiles(std::vector<double> values) {
   if (values.empty()) return nullptr;
   std::sort(values.begin(), values.end());
   const auto at = [&](double part) {
@@ -76,7 +76,7 @@ std::vector<double> tightness_of(const MergedRows& rows) {
   return values;
 }
 
-plot::Plot histogram(const std::vector<double>& values) {
+plot::Plot tightness_histogram(const std::vector<double>& values) {
   plot::Plot plot;
   plot.title = fmt::format("tightness of {} results", values.size());
   plot.x_label = "tightness";
@@ -84,11 +84,11 @@ plot::Plot histogram(const std::vector<double>& values) {
   plot::Series& bars = plot.series.emplace_back();
   bars.kind = plot::Series::Kind::bars;
   const double max = std::max(*std::max_element(values.begin(), values.end()), 1e-12);
-  for (std::size_t bin = 0; bin < kBins; ++bin)
-    bars.x.push_back(max * static_cast<double>(bin) / static_cast<double>(kBins));
-  bars.y.assign(kBins, 0);
+  for (std::size_t bin = 0; bin < kTightnessBins; ++bin)
+    bars.x.push_back(max * static_cast<double>(bin) / static_cast<double>(kTightnessBins));
+  bars.y.assign(kTightnessBins, 0);
   for (const double value : values)
-    ++bars.y[std::min(kBins - 1, static_cast<std::size_t>(value / max * static_cast<double>(kBins)))];
+    ++bars.y[std::min(kTightnessBins - 1, static_cast<std::size_t>(value / max * static_cast<double>(kTightnessBins)))];
   return plot;
 }
 
@@ -103,10 +103,10 @@ std::string rows_csv(const MergedRows& rows) {
     const ordered_json row = parsed(line);
     std::vector<std::string> cells;
     for (const char* column : {"index", "mesh", "key", "status", "why", "exit_code", "message", "promise_kept"})
-      cells.push_back(cell(row[column]));
-    cells.push_back(cell(repairs_in_words(row["repairs"])));
-    cells.push_back(cell(notes_in_words(row["notes"])));
-    for (const std::string& name : figures) cells.push_back(cell(row["figures"].value(name, ordered_json())));
+      cells.push_back(csv_cell(row[column]));
+    cells.push_back(csv_cell(repairs_in_words(row["repairs"])));
+    cells.push_back(csv_cell(notes_in_words(row["notes"])));
+    for (const std::string& name : figures) cells.push_back(csv_cell(row["figures"].value(name, ordered_json())));
     csv += joined(cells, ",") + "\n";
   }
   return csv;
@@ -116,8 +116,8 @@ std::string costs_csv(const MergedRows& rows) {
   std::string csv = "index,mesh,seconds,peak_bytes\n";
   for (const std::string& line : rows.costs) {
     const ordered_json row = parsed(line);
-    csv += fmt::format("{},{},{},{}\n", cell(row["index"]), cell(row["mesh"]), cell(row["seconds"]),
-                       cell(row["peak_bytes"]));
+    csv += fmt::format("{},{},{},{}\n", csv_cell(row["index"]), csv_cell(row["mesh"]), csv_cell(row["seconds"]),
+                       csv_cell(row["peak_bytes"]));
   }
   return csv;
 }
@@ -141,7 +141,7 @@ json summary_of(const MergedRows& rows) {
           {"messages", by_frequency(messages)},
           {"meshes_with_repair", repairs},
           {"promises_not_kept", broken},
-          {"tightness", quantiles(tightness_of(rows))}};
+          {"tightness", tightness_quantiles(tightness_of(rows))}};
 }
 
 std::vector<plot::Plot> plots_of(const MergedRows& rows) {
@@ -162,7 +162,7 @@ std::vector<plot::Plot> plots_of(const MergedRows& rows) {
   }
   if (!points.x.empty()) plots.push_back(time);
   const std::vector<double> tightness = tightness_of(rows);
-  if (!tightness.empty()) plots.push_back(histogram(tightness));
+  if (!tightness.empty()) plots.push_back(tightness_histogram(tightness));
   return plots;
 }
 

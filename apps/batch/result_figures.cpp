@@ -13,9 +13,9 @@ using nlohmann::ordered_json;
 
 constexpr double kFromPercent = 0.01;
 
-using Names = std::vector<std::pair<const char*, const char*>>;  // of the row, and where the report has it
+using FigureNames = std::vector<std::pair<const char*, const char*>>;  // of the row, and where the report has it
 
-void copy(const json& report, const Names& names, ordered_json& figures) {
+void copy(const json& report, const FigureNames& names, ordered_json& figures) {
   for (const auto& [name, place] : names) {
     const json::json_pointer pointer(place);
     if (report.contains(pointer) && report[pointer].is_primitive()) figures[name] = report[pointer];
@@ -51,26 +51,26 @@ void add_set(const json& report, ordered_json& figures) {
 }  // namespace
 
 ordered_json figures_of(const json& report, const std::string& command) {
-  static const Names kMesh{{"triangles", "/mesh/triangles"},
-                           {"components", "/mesh/components"},
-                           {"diagonal", "/mesh/diagonal"},
-                           {"area", "/mesh/area"},
-                           {"volume", "/mesh/volume"},
-                           {"self_intersections", "/self_intersections"},
-                           {"repair_distance", "/repair/distance"},
-                           {"wrap_distance", "/wrap_distance"}};
-  static const Names kTree{{"surface_points", "/surface_points"}, {"conservative", "/conservative"}};
-  static const Names kAxis{{"surface_points", "/build/points"},
-                           {"vertices", "/build/vertices"},
-                           {"faces", "/build/faces"},
-                           {"open_percent", "/promise/open/upper"},
-                           {"protrusion_percent", "/promise/protrusion/upper"}};
-  static const Names kSet{{"spheres", "/spheres"},
-                          {"proven_closed", "/proven_closed"},
-                          {"open_share", "/open_share/1"},
-                          {"protrusion_over_diagonal", "/protrusion_max_over_diagonal/1"},
-                          {"gap_over_diagonal", "/largest_gap_over_diagonal/1"},
-                          {"union_over_solid", "/union_over_solid/value"}};
+  static const FigureNames kMesh{{"triangles", "/mesh/triangles"},
+                                 {"components", "/mesh/components"},
+                                 {"diagonal", "/mesh/diagonal"},
+                                 {"area", "/mesh/area"},
+                                 {"volume", "/mesh/volume"},
+                                 {"self_intersections", "/self_intersections"},
+                                 {"repair_distance", "/repair/distance"},
+                                 {"wrap_distance", "/wrap_distance"}};
+  static const FigureNames kTree{{"surface_points", "/surface_points"}, {"conservative", "/conservative"}};
+  static const FigureNames kAxis{{"surface_points", "/build/points"},
+                                 {"vertices", "/build/vertices"},
+                                 {"faces", "/build/faces"},
+                                 {"open_percent", "/promise/open/upper"},
+                                 {"protrusion_percent", "/promise/protrusion/upper"}};
+  static const FigureNames kSet{{"spheres", "/spheres"},
+                                {"proven_closed", "/proven_closed"},
+                                {"open_share", "/open_share/1"},
+                                {"protrusion_over_diagonal", "/protrusion_max_over_diagonal/1"},
+                                {"gap_over_diagonal", "/largest_gap_over_diagonal/1"},
+                                {"union_over_solid", "/union_over_solid/value"}};
   ordered_json figures = ordered_json::object();
   copy(report, kMesh, figures);
   copy(report, command == "build" ? kTree : command == "medial" ? kAxis : kSet, figures);

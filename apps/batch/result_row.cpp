@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "batch/mebibyte.h"
 #include "batch/result_figures.h"
 #include "command_line/exit_code.h"
 #include "command_line/text.h"
@@ -15,8 +16,6 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-constexpr double kMebibyte = 1048576;
 
 // The lines of the error output as one, each without the program's name and the path of the mesh in front.
 std::string message_of(const std::string& err, const std::filesystem::path& mesh, const std::string& name,

@@ -69,7 +69,7 @@ bool takes_folder(const CLI::Option& option) {
   return takes_file(option) && option.get_description().starts_with("Folder");
 }
 
-std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
+std::vector<std::string> option_names(const std::set<CLI::Option*>& options) {
   std::vector<std::string> names;
   names.reserve(options.size());
   for (const CLI::Option* option : options) names.push_back(option->get_name());
@@ -85,8 +85,8 @@ OptionEntry entry_of(const CLI::App& command, const CLI::Option& option) {
   if (entry.positional) entry.names.push_back(option.get_name(true));
   entry.help = option.get_description();
   entry.group = option.get_group();
-  entry.needs = names_of(option.get_needs());
-  entry.excludes = names_of(option.get_excludes());
+  entry.needs = option_names(option.get_needs());
+  entry.excludes = option_names(option.get_excludes());
   entry.flag = option.get_expected_min() == 0 && !entry.positional;
   entry.required = option.get_required();
   entry.repeats = option.get_expected_max() > 1;

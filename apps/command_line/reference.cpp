@@ -7,7 +7,7 @@
 namespace orchard::apps {
 namespace {
 
-std::string cell(const std::string& text) { return replaced(replaced(text, "|", "\\|"), "<", "&lt;"); }
+std::string markdown_cell(const std::string& text) { return replaced(replaced(text, "|", "\\|"), "<", "&lt;"); }
 
 // The lines of a footer that are commands.
 std::vector<std::string> examples(const CommandEntry& command) {
@@ -20,7 +20,8 @@ std::vector<std::string> examples(const CommandEntry& command) {
 
 std::string exit_code_table() {
   std::string text = "\n## Exit codes\n\n| Code | Meaning |\n|---:|---|\n";
-  for (const ExitCodeRow& row : exit_codes()) text += fmt::format("| {} | {} |\n", int{row.code}, cell(row.meaning));
+  for (const ExitCodeRow& row : exit_codes())
+    text += fmt::format("| {} | {} |\n", int{row.code}, markdown_cell(row.meaning));
   return text;
 }
 
@@ -44,7 +45,8 @@ std::string markdown_reference(const CLI::App& app) {
     for (const OptionEntry& option : command.options) {
       const std::string value = placeholder_of(option);
       text += fmt::format("| `{}` | {} | {} |\n", joined(option.names, "`, `"),
-                          value.empty() ? "" : "`" + cell(value) + "`", cell(option.help + "." + notes_of(option)));
+                          value.empty() ? "" : "`" + markdown_cell(value) + "`",
+                          markdown_cell(option.help + "." + notes_of(option)));
     }
     const std::vector<std::string> lines = examples(command);
     if (!lines.empty()) text += "\n```sh\n" + joined(lines, "\n") + "\n```\n";

@@ -1,6 +1,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,10 @@ namespace orchard::apps {
 
 inline std::string joined(const std::vector<std::string>& words, const std::string& between = " ") {
   return fmt::format("{}", fmt::join(words, between));
+}
+
+inline bool among(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 // The text with every `what` replaced `by` that.

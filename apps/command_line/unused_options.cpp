@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "command_line/text.h"
 #include "command_line/tree_options.h"
 #include "medial/medial_run.h"
 #include "orchard/geometry/error.h"
@@ -33,7 +34,7 @@ const std::vector<OwnOption>& own_options() {
   return options;
 }
 
-std::string names_of(const std::vector<TreeMethod>& methods) {
+std::string method_names(const std::vector<TreeMethod>& methods) {
   std::vector<std::string> names;
   names.reserve(methods.size());
   for (const TreeMethod method : methods) names.emplace_back(name(method));
@@ -47,14 +48,10 @@ std::vector<TuningStep> steps_replaced(const std::string& source) {
   return {TuningStep::diagram, TuningStep::axis};
 }
 
-using Names = std::vector<std::string>;
-
-bool among(const std::string& name, const Names& names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
+using FlagNames = std::vector<std::string>;
 
 // Refuses flags for a step that a file is in place of.
-void refuse_replaced(const TuningFlag& flag, const Names& sources) {
+void refuse_replaced(const TuningFlag& flag, const FlagNames& sources) {
   for (const std::string& source : sources) {
     const std::vector<TuningStep> replaced = steps_replaced(source);
     if (std::find(replaced.begin(), replaced.end(), flag.step) != replaced.end())
@@ -75,7 +72,7 @@ void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tu
 }
 
 // Refuses what a sweep overrides, and what it varies without any column that would tell.
-void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
+void refuse_unused_in_sweep(const MedialCommand& command, const FlagNames& swept) {
   for (const std::string& name : swept) {
     if (among(name, command.given))
       throw InputError(fmt::format("--{} has no effect with --sweep {}=.., which sets it", name, name));
@@ -95,14 +92,14 @@ void refuse_unused_options(const BuildCommand& command) {
     const bool anneals = is_for(TreeMethod::annealing);
     if (!among(option, command.given) || is_for(method) || (anneals && command.tree.anneal)) continue;
     throw InputError(fmt::format("--{} has no effect on --method {}; it is for {}{}", option, name(method),
-                                 names_of(methods), anneals ? ", and for others with --anneal" : ""));
+                                 method_names(methods), anneals ? ", and for others with --anneal" : ""));
   }
-  Names sources;
+  FlagNames sources;
   for (const char* source : {"points", "diagram", "from-axis"})
     if (among(source, command.given)) sources.emplace_back(source);
   const auto refuse_without_axis = [&](const std::string& option) {
     throw InputError(fmt::format("--{} has no effect on --method {}, which builds from no medial axis; it is for {}",
-                                 option, name(method), names_of({TreeMethod::tightened, TreeMethod::merging})));
+                                 option, name(method), method_names({TreeMethod::tightened, TreeMethod::merging})));
   };
   if (!samples_surface(method) && !sources.empty()) refuse_without_axis(sources.front());
   for (const TuningFlag& flag : tuning_flags()) {
@@ -125,7 +122,7 @@ void refuse_unused_options(const MedialCommand& command) {
   if (among("sort-by", command.given) && !sweeps) throw InputError("--sort-by has no effect without --sweep");
   if (command.picture && (sweeps || (!command.report && !judges)))
     throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
-  const Names swept = swept_flags(command);
+  const FlagNames swept = swept_flags(command);
   refuse_unused_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
   if (!command.features.empty()) {
@@ -137,7 +134,7 @@ void refuse_unused_options(const MedialCommand& command) {
     if (among("feature-loss", command.given))
       throw InputError("--feature-loss has no effect with --features, which says where sheets end");
   }
-  Names sources;
+  FlagNames sources;
   for (const char* source : {"points", "diagram"})
     if (among(source, command.given)) sources.emplace_back(source);
   const std::vector<MedialTuning> tunings = tunings_of(command);

@@ -11,18 +11,18 @@ namespace orchard::apps {
 namespace {
 
 // A triangle by the places of its corners, whatever their order.
-struct Placed {
+struct PlacedTriangle {
   std::array<std::array<double, 3>, 3> corners;
   Index triangle;
 };
 
-bool before(const Placed& a, const Placed& b) { return a.corners < b.corners; }
+bool before(const PlacedTriangle& a, const PlacedTriangle& b) { return a.corners < b.corners; }
 
-std::vector<Placed> placed(const TriangleMesh& mesh) {
-  std::vector<Placed> all;
+std::vector<PlacedTriangle> placed(const TriangleMesh& mesh) {
+  std::vector<PlacedTriangle> all;
   all.reserve(mesh.triangles.size());
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    Placed& one = all.emplace_back(Placed{{}, t});
+    PlacedTriangle& one = all.emplace_back(PlacedTriangle{{}, t});
     for (std::size_t i = 0; i < 3; ++i) {
       const Point& p = mesh.vertices[mesh.triangles[t][i]];
       one.corners[i] = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};  // -0 is the same place as 0
@@ -34,9 +34,10 @@ std::vector<Placed> placed(const TriangleMesh& mesh) {
 }
 
 // The triangles of `mesh` that are in `some` and not in `others`, where a second one in the same place counts as one.
-TriangleMesh only_in(const TriangleMesh& mesh, const std::vector<Placed>& some, const std::vector<Placed>& others) {
+TriangleMesh only_in(const TriangleMesh& mesh, const std::vector<PlacedTriangle>& some,
+                     const std::vector<PlacedTriangle>& others) {
   TriangleMesh part;
-  for (const Placed& one : some) {
+  for (const PlacedTriangle& one : some) {
     if (std::binary_search(others.begin(), others.end(), one, before)) continue;
     const auto first = static_cast<Index>(part.vertices.size());
     for (const Index vertex : mesh.triangles[one.triangle]) part.vertices.push_back(mesh.vertices[vertex]);
@@ -57,7 +58,7 @@ SurfaceDistanceOptions search(const TriangleMesh& from) {
 double RepairDistance::upper() const { return std::max(to_input.upper, from_input.upper); }
 
 RepairDistance repair_distance(const TriangleMesh& input, const Surface& repaired, const Progress& progress) {
-  const std::vector<Placed> before_repair = placed(input), after_repair = placed(repaired.mesh());
+  const std::vector<PlacedTriangle> before_repair = placed(input), after_repair = placed(repaired.mesh());
   const TriangleMesh lost = only_in(input, before_repair, after_repair);
   const TriangleMesh gained = only_in(repaired.mesh(), after_repair, before_repair);
   RepairDistance distance;

@@ -32,7 +32,7 @@ std::vector<std::string> models_of(const LeaderboardFolder& found) {
 std::string plot_name(const std::string& model) { return model + "-leaderboard.svg"; }
 std::string state_name(const std::string& model) { return model + "-worst.pvsm"; }
 
-void print(const std::vector<LeaderboardRow>& rows) {
+void print_rows(const std::vector<LeaderboardRow>& rows) {
   fmt::print("{:<20} {:>6} {:<18} {:>6} {:>9} {:>9}  {}\n", "mesh", "N", "system", "balls", "max %", "mean %",
              "topology");
   for (const LeaderboardRow& row : rows) {
@@ -106,7 +106,7 @@ void leaderboard(const LeaderboardCommand& command) {
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
-  print(rows);
+  print_rows(rows);
   for (const std::string& words : found.skipped) fmt::print("no entry: {}\n", words);
   outputs.print();
 }

@@ -16,7 +16,7 @@ namespace orchard::apps {
 namespace {
 
 constexpr std::size_t kMostViews = 16;  // more are too small to see anything
-constexpr double kMark = 0.025;         // of the bounding radius: the balls at worst places
+constexpr double kStateMark = 0.025;    // of the bounding radius: the balls at worst places
 
 bool is_shown(const LeaderboardRow& row, const std::string& model) { return row.model == model && row.refused.empty(); }
 
@@ -71,7 +71,7 @@ class ModelScene {
                              .file = files.places,
                              .look = StateLayer::Look::spheres,
                              .array = "value",
-                             .sphere_radius = kMark * scene_.radius});
+                             .sphere_radius = kStateMark * scene_.radius});
     if (row.asked != asked_ || scene_.views.size() == kMostViews) return;
     largest_ = std::max(largest_, largest_value(row));
     const std::size_t last = scene_.layers.size();

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const GapRepairReport& repair) {
+json gap_repair_json(const GapRepairReport& repair) {
   json passes = json::array();
   for (const GapRepairPass& pass : repair.passes) {
     passes.push_back({{"cells_tested", pass.cells_tested},
@@ -39,7 +39,7 @@ json to_json(const Topology& topology) {
           {"euler_characteristic", topology.euler_characteristic()}};
 }
 
-json to_json(const RefineReport& report) {
+json refinement_json(const RefineReport& report) {
   return {{"vertices_before", report.vertices_before},
           {"inexact_vertices", report.inexact},
           {"folded_triangles", report.folded_triangles},
@@ -64,11 +64,11 @@ json to_json(const MedialBuild& build) {
   const double gained = static_cast<double>(build.sampling.size()) - build.points;
   return {{"points", build.points},
           {"points_added_over_points", gained / points},
-          {"gap_repair", to_json(build.gap_repair)},
+          {"gap_repair", gap_repair_json(build.gap_repair)},
           {"voronoi_vertices", build.diagram.vertices.size()},
           {"vertices_before_pruning", build.unpruned_vertices},
           {"open_places", build.open_places},
-          {"refinement", build.refinement.vertices > 0 ? to_json(build.refinement) : json()},
+          {"refinement", build.refinement.vertices > 0 ? refinement_json(build.refinement) : json()},
           {"feature_edges", build.features.size()},
           {"vertices_on_stems", build.axis.stems},
           {"bridges", build.axis.bridges},

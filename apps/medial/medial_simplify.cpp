@@ -32,7 +32,7 @@ std::string model_of(const MedialCommand& command) {
 }
 
 // In percent of the diagonal.
-json to_json(const SimplifyReport& report) {
+json simplification_json(const SimplifyReport& report) {
   return {{"vertices", report.vertices},
           {"hausdorff_max", 100 * report.hausdorff.max},
           {"hausdorff_mean", 100 * report.hausdorff.mean},
@@ -79,7 +79,7 @@ std::string lost_of(const EnvelopeMesh& envelope) {
                      envelope.lost);
 }
 
-void print(const FewBalls& few) {
+void print_few_balls(const FewBalls& few) {
   const auto row = [](const SimplifyReport& report) {
     fmt::print("  {:>7} {:>12.3f} {:>8.3f} {:>10.4f} {:>10.3f} {:>12.3f}\n", report.vertices,
                100 * report.hausdorff.max, 100 * report.upper, 100 * report.hausdorff.mean, 100 * report.coverage.max,
@@ -180,7 +180,7 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
   const auto name = [&](const char* ending) { return named(model_of(command), ending); };
   if (few.simplified) {
     const MedialMesh& mesh = few.simplified->mesh;
-    report["simplified"] = to_json(few.simplified->report);
+    report["simplified"] = simplification_json(few.simplified->report);
     report["simplified"]["edges"] = mesh.edges.size();
     report["simplified"]["triangles"] = mesh.triangles.size();
     write_file(outputs.add(name("-simplified.ma"), "the axis in few balls, edges flagged by their features"),
@@ -194,7 +194,7 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
   }
   if (!few.curve.empty()) {
     json rows = json::array();
-    for (const auto& [mesh, row] : few.curve) rows.push_back(to_json(row));
+    for (const auto& [mesh, row] : few.curve) rows.push_back(simplification_json(row));
     report["curve"] = std::move(rows);
     write_file(outputs.add(name("-curve.csv"), "numbers of balls against error"), to_csv(few.curve));
     write_file(outputs.add(name("-curve.svg"), "the same as a picture"), to_svg(few.curve));
@@ -207,7 +207,7 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
         {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}, {"balls_lost", lost}};
   }
   if (!few.seconds.empty()) report["few_balls_seconds"] = seconds_json(few.seconds);
-  if (!command.output.quiet && !command.output.json) print(few);
+  if (!command.output.quiet && !command.output.json) print_few_balls(few);
 }
 
 }  // namespace orchard::apps

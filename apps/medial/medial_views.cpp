@@ -138,7 +138,7 @@ ViewArrays arrays_of(const SurfaceErrors& errors) {
   return {{"coverage", errors.coverage}, {"protrusion", errors.protrusion}};
 }
 
-constexpr double kMark = 0.015;  // of the bounding radius: the balls at worst places
+constexpr double kWorstPlaceMark = 0.015;  // of the bounding radius: the balls at worst places
 
 // The axis by radius in its transparent solid, with the lines where sheets end and meet. Its sheets in colours of their
 // own are in ParaView's list.
@@ -164,7 +164,7 @@ StateScene state_of(const MedialCommand& command, const MedialViews& views) {
   scene.layers.push_back({.name = "worst places",
                           .file = file("-worst.vtp"),
                           .look = StateLayer::Look::spheres,
-                          .sphere_radius = kMark * ball.radius,
+                          .sphere_radius = kWorstPlaceMark * ball.radius,
                           .color = {0.70, 0.07, 0.11}});
   scene.views.front().layers.push_back(4);
   return scene;

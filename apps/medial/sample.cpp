@@ -23,14 +23,16 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const Evenness& evenness) {
+json json_of(const Evenness& evenness) {
   return {
       {"mean_distance", evenness.mean}, {"min_over_mean", evenness.min}, {"deviation_over_mean", evenness.variation}};
 }
 
-const char* name(Relaxation relaxation) { return relaxation == Relaxation::clusters ? "clusters" : "neighbors"; }
+const char* relaxation_name(Relaxation relaxation) {
+  return relaxation == Relaxation::clusters ? "clusters" : "neighbors";
+}
 
-void print(const SampleCommand& command, const json& report) {
+void print_sample(const SampleCommand& command, const json& report) {
   fmt::print("{}: {} points, {} of them on edges; relaxed {} times ({})\n", command.mesh.string(),
              report["points"].get<std::size_t>(), report["edge_points"].get<std::size_t>(), command.iterations,
              report["relaxation"].get<std::string>());
@@ -92,8 +94,8 @@ void sample(const SampleCommand& command) {
   const SurfaceSampling unrelaxed = sample_surface(surface, options, bar.callback());
   bar.clear();
 
-  json evenness_json{{"before", to_json(evenness(unrelaxed, surface))},
-                     {"after", to_json(evenness(sampling, surface))}};
+  json evenness_json{{"before", json_of(evenness(unrelaxed, surface))},
+                     {"after", json_of(evenness(sampling, surface))}};
 
   Outputs outputs(destination);
   write_file(outputs.add(xyz, "a point a line"), to_xyz(sampling.points));
@@ -106,7 +108,7 @@ void sample(const SampleCommand& command) {
   const auto edge_points = std::count(sampling.origins.begin(), sampling.origins.end(), PointOrigin::edge);
   json report{{"points", sampling.size()},
               {"edge_points", edge_points},
-              {"relaxation", name(options.relaxation)},
+              {"relaxation", relaxation_name(options.relaxation)},
               {"iterations", command.iterations},
               {"seed", command.seed},
               {"evenness", std::move(evenness_json)},
@@ -117,7 +119,7 @@ void sample(const SampleCommand& command) {
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
-  print(command, report);
+  print_sample(command, report);
   fmt::print("{:.2f} s\n", seconds);
   outputs.print();
 }

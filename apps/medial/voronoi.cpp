@@ -58,7 +58,7 @@ Input read_input(const VoronoiCommand& command, const Progress& progress) {
 }
 
 // One algorithm's diagram of the points, and what the table says about it.
-struct Run {
+struct AlgorithmRun {
   VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
   std::string failure = {};  // not empty: the algorithm gave up, and there is no more than this
   double seconds = 0;
@@ -72,8 +72,8 @@ struct Run {
   }
 };
 
-Run run(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
-  Run result{.algorithm = algorithm};
+AlgorithmRun run(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
+  AlgorithmRun result{.algorithm = algorithm};
   const Stopwatch watch;
   VoronoiBuild build = orchard::voronoi(points, algorithm, progress);
   result.seconds = watch.seconds();
@@ -87,7 +87,7 @@ Run run(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Prog
 }
 
 // Bowyer's algorithm may fail; a comparison says so and goes on.
-Run run_to_compare(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
+AlgorithmRun run_to_compare(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
   const Stopwatch watch;
   try {
     return run(points, algorithm, progress);
@@ -100,8 +100,9 @@ Run run_to_compare(const std::vector<Point>& points, VoronoiAlgorithm algorithm,
   }
 }
 
-std::vector<Run> run_all(const VoronoiCommand& command, const std::vector<Point>& points, const Progress& progress) {
-  std::vector<Run> runs;
+std::vector<AlgorithmRun> run_all(const VoronoiCommand& command, const std::vector<Point>& points,
+                                  const Progress& progress) {
+  std::vector<AlgorithmRun> runs;
   try {
     if (!command.compare)
       runs.push_back(run(points, command.algorithm, progress));
@@ -114,11 +115,11 @@ std::vector<Run> run_all(const VoronoiCommand& command, const std::vector<Point>
   return runs;
 }
 
-json to_json(const VoronoiInaccuracy& inaccuracy) {
+json inaccuracy_json(const VoronoiInaccuracy& inaccuracy) {
   return {{"mean", inaccuracy.mean}, {"max", inaccuracy.max}, {"samples", inaccuracy.samples}};
 }
 
-json to_json(const Run& run) {
+json run_json(const AlgorithmRun& run) {
   json result{{"algorithm", name(run.algorithm)}, {"failures", run.failure.empty() ? 0 : 1}, {"seconds", run.seconds}};
   if (!run.failure.empty()) {
     result["failure"] = run.failure;
@@ -128,8 +129,8 @@ json to_json(const Run& run) {
   result.update({{"dimension", report.dimension},
                  {"vertices", run.diagram.vertices.size()},
                  {"vertices_at_infinity", run.vertices_at_infinity()},
-                 {"inaccuracy", to_json(run.inaccuracy)},
-                 {"corner_inaccuracy", to_json(run.corners)},
+                 {"inaccuracy", inaccuracy_json(run.inaccuracy)},
+                 {"corner_inaccuracy", inaccuracy_json(run.corners)},
                  {"duplicates", report.duplicates},
                  {"bytes_per_point", static_cast<double>(run.diagram.vertices.size() * sizeof(VoronoiVertex)) /
                                              static_cast<double>(run.diagram.points.size()) +
@@ -143,10 +144,10 @@ json to_json(const Run& run) {
   return result;
 }
 
-void print_table(const std::vector<Run>& runs) {
+void print_table(const std::vector<AlgorithmRun>& runs) {
   fmt::print(
       "algorithm      vertices  infinite  coplanar  inaccuracy mean         max  at corners  failures  seconds\n");
-  for (const Run& run : runs) {
+  for (const AlgorithmRun& run : runs) {
     fmt::print("{:<13}", name(run.algorithm));
     if (run.failure.empty())
       fmt::print("{:10} {:9} {:9} {:16.3g} {:11.3g} {:11.3g}", run.diagram.vertices.size(), run.vertices_at_infinity(),
@@ -155,11 +156,11 @@ void print_table(const std::vector<Run>& runs) {
       fmt::print("{:>10} {:>9} {:>9} {:>16} {:>11} {:>11}", "-", "-", "-", "-", "-", "-");
     fmt::print("  {:8} {:8.3f}\n", run.failure.empty() ? 0 : 1, run.seconds);
   }
-  for (const Run& run : runs)
+  for (const AlgorithmRun& run : runs)
     if (!run.failure.empty()) fmt::print("{}\n", run.failure);
 }
 
-void print_insertions(const Run& run) {
+void print_insertions(const AlgorithmRun& run) {
   const InsertionReport& report = run.report;
   if (run.algorithm != VoronoiAlgorithm::highest_first || run.diagram.vertices.empty()) return;
   fmt::print("highest-first insertions: {} certified, {} settled, {} by exact signs, {} by the constrained search{}\n",
@@ -172,13 +173,13 @@ void print_insertions(const Run& run) {
     fmt::print("{} points coincide with an earlier one and were left out\n", report.duplicates.size());
 }
 
-void print(const VoronoiCommand& command, const Input& input, const std::vector<Run>& runs) {
+void print_diagrams(const VoronoiCommand& command, const Input& input, const std::vector<AlgorithmRun>& runs) {
   Box box;
   for (const Point& p : input.points) box.extend(p);
   fmt::print("{}: {} points{}, {:.4g} x {:.4g} x {:.4g}\n", command.input.string(), input.points.size(),
              input.repair ? " sampled" : "", box.sizes().x(), box.sizes().y(), box.sizes().z());
   print_table(runs);
-  for (const Run& run : runs) print_insertions(run);
+  for (const AlgorithmRun& run : runs) print_insertions(run);
   if (runs.back().failure.empty() && runs.back().report.dimension < 3)
     fmt::print("The points {}, so they have no Voronoi vertices.\n",
                std::array{"are one", "lie on a line",
@@ -191,9 +192,10 @@ std::string diagram_name(const VoronoiCommand& command, VoronoiAlgorithm algorit
   return named(command.input, fmt::format("-{}{}", name(algorithm), extension));
 }
 
-void write(const VoronoiCommand& command, const Input& input, const std::vector<Run>& runs, Outputs& outputs) {
+void write_diagrams(const VoronoiCommand& command, const Input& input, const std::vector<AlgorithmRun>& runs,
+                    Outputs& outputs) {
   if (input.repair) write_file(outputs.add(points_name(command), "a point a line"), to_xyz(input.points));
-  for (const Run& run : runs) {
+  for (const AlgorithmRun& run : runs) {
     if (!run.failure.empty()) continue;
     write_file(outputs.add(diagram_name(command, run.algorithm, ".vor"), "the diagram as text"), to_vor(run.diagram));
   }
@@ -201,7 +203,7 @@ void write(const VoronoiCommand& command, const Input& input, const std::vector<
   VoronoiCellsView view;
   if (!command.cells.empty()) view.points = command.cells;
   if (!command.box.empty()) view.box = Box(Point(command.box.data()), Point(command.box.data() + 3));
-  for (const Run& run : runs) {
+  for (const AlgorithmRun& run : runs) {
     if (!run.failure.empty()) continue;
     write_voronoi_cells(outputs.add(diagram_name(command, run.algorithm, ".vtu"), "open this in ParaView"), run.diagram,
                         view);
@@ -246,20 +248,20 @@ void voronoi(const VoronoiCommand& command) {
   ProgressBar bar(talk);
   const Input input = read_input(command, bar.callback());
   check_cells(command, input);
-  const std::vector<Run> runs = run_all(command, input.points, bar.callback());
+  const std::vector<AlgorithmRun> runs = run_all(command, input.points, bar.callback());
   bar.clear();
   if (talk) print_reading(command.input, input.reading);
   if (talk && input.repair) print_repair(command.input, *input.repair, input.distance, input.bounding_radius);
   if (input.repair) print_hole_warning(command.input, *input.repair, input.distance, input.bounding_radius);
-  if (talk) print(command, input, runs);
+  if (talk) print_diagrams(command, input, runs);
   json report{
       {"points", input.points.size()}, {"sampled", input.repair.has_value()}, {"reading", reading_json(input.reading)}};
   if (input.repair) report["repair"] = to_json(*input.repair, input.distance, input.bounding_radius);
-  for (const Run& run : runs) report["algorithms"].push_back(to_json(run));
+  for (const AlgorithmRun& run : runs) report["algorithms"].push_back(run_json(run));
   report["provenance"] = to_json(destination.provenance);
   if (!command.folder.empty()) {
     Outputs outputs(destination);
-    write(command, input, runs, outputs);
+    write_diagrams(command, input, runs, outputs);
     outputs.add_report(report, "this report as JSON");
     outputs.commit();
     if (talk) outputs.print();

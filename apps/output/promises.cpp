@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string percent(double share) { return fmt::format("{:.3g} % of the diagonal", 100 * share); }
+std::string percent_of_diagonal(double share) { return fmt::format("{:.3g} % of the diagonal", 100 * share); }
 
 json limited(const std::optional<double>& promised, double found, double upper) {
   if (!promised) return nullptr;
@@ -33,18 +33,19 @@ Broken broken(const PromiseCheck& check) {
     result.what.push_back(fmt::format("the axis has {}, the solid {}", in_words(check.found), in_words(check.wanted)));
   if (!check.keeps_open())
     result.what.push_back(fmt::format("the surface is left open by {}, where at most {} was promised",
-                                      percent(check.open), percent(*check.promise.open)));
+                                      percent_of_diagonal(check.open), percent_of_diagonal(*check.promise.open)));
   if (check.keeps_open() && check.promise.open && check.open_upper > *check.promise.open)
     result.what.push_back(fmt::format(
         "it could be proven only that the surface is left open by {} at most, where at most {} was promised",
-        percent(check.open_upper), percent(*check.promise.open)));
+        percent_of_diagonal(check.open_upper), percent_of_diagonal(*check.promise.open)));
   if (!check.keeps_protrusion())
     result.what.push_back(fmt::format("the axis sticks out of the solid by {}, where at most {} was promised",
-                                      percent(check.protrusion), percent(*check.promise.protrusion)));
+                                      percent_of_diagonal(check.protrusion),
+                                      percent_of_diagonal(*check.promise.protrusion)));
   if (check.keeps_protrusion() && check.promise.protrusion && check.protrusion_upper > *check.promise.protrusion)
     result.what.push_back(fmt::format(
         "it could be proven only that the axis sticks out of the solid by {} at most, where at most {} was promised",
-        percent(check.protrusion_upper), percent(*check.promise.protrusion)));
+        percent_of_diagonal(check.protrusion_upper), percent_of_diagonal(*check.promise.protrusion)));
   return result;
 }
 
@@ -66,7 +67,7 @@ Broken broken(const FewBalls& few, const SimplifyOptions& options, const Topolog
         fmt::format("the simplified axis has {} balls, where {} were asked for", mesh.size(), options.vertices));
   if (options.vertices == 0 && report.upper > options.error)
     result.what.push_back(fmt::format("the simplified axis is off by up to {}, where at most {} was asked for",
-                                      percent(report.upper), percent(options.error)));
+                                      percent_of_diagonal(report.upper), percent_of_diagonal(options.error)));
   if (const Topology found = topology(mesh); found != wanted)
     result.what.push_back(
         fmt::format("the simplified axis has {}, where {} was promised", in_words(found), in_words(wanted)));

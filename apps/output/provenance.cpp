@@ -16,17 +16,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string checksum_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::array<char, 65536> piece{};
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
-    for (std::streamsize i = 0; i < in.gcount(); ++i)
-      hash = (hash ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3u;
-  if (in.bad() || !in.eof()) throw InputError(file.string() + ": cannot be read");
-  return fmt::format("{:016x}", hash);
-}
-
 fs::path whole_path(const fs::path& file) {
   std::error_code failure;
   fs::path whole = fs::weakly_canonical(file, failure);
@@ -39,6 +28,17 @@ std::string dumped(const json& value, int indent = -1) {
 }
 
 }  // namespace
+
+std::string checksum_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 65536> piece{};
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
+    for (std::streamsize i = 0; i < in.gcount(); ++i)
+      hash = (hash ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3u;
+  if (in.bad() || !in.eof()) throw InputError(file.string() + ": cannot be read");
+  return fmt::format("{:016x}", hash);
+}
 
 Provenance provenance_of(const Invocation& run, std::span<const fs::path> inputs) {
   Provenance provenance{.run = run, .inputs = {}};

@@ -42,6 +42,9 @@ struct Provenance {
   std::vector<ProvenanceInput> inputs;  // the one that files are named for comes first; may be empty
 };
 
+// The checksum of one file. Throws InputError if it cannot be read.
+std::string checksum_of(const std::filesystem::path& file);
+
 // Reads every input once. Throws InputError if one cannot be read.
 Provenance provenance_of(const Invocation& run, std::span<const std::filesystem::path> inputs);
 

@@ -168,7 +168,7 @@ std::string in_words(const json& value) {
   return value.size() > 0 && value[0].is_array() ? text : "(" + text + ")";
 }
 
-void print(const std::filesystem::path& file, const std::string& unit, const json& report) {
+void print_inspected(const std::filesystem::path& file, const std::string& unit, const json& report) {
   fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
   if (report.contains("reading"))
     for (const json& line : report["reading"]["lines"]) fmt::print("{}: {}\n", file.string(), line.get<std::string>());
@@ -212,7 +212,7 @@ void inspect(const InspectCommand& command) {
     report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(command.file, command.unit, report);
+    print_inspected(command.file, command.unit, report);
   }
   if (report.contains("repair") && report["repair"]["warning"].is_string())
     print_warning(command.file, report["repair"]["warning"]);

@@ -84,7 +84,7 @@ Plan check(const AuditCommand& command) {
   return plan;
 }
 
-json to_json(const Audited& set, const Surface& surface) {
+json audited_json(const Audited& set, const Surface& surface) {
   json report = apps::to_json(set.audit, surface);
   report["buffer"] = set.buffer;
   report["switched_off"] = set.switched_off;
@@ -107,7 +107,8 @@ void print_set(const Audited& set, const Surface& surface) {
   if (const std::string frame = suggested_frame(surface, set.spheres); !frame.empty()) fmt::print("{}\n", frame);
 }
 
-void write(const AuditCommand& command, const Plan& plan, const Surface& surface, const Audited& set, json& report) {
+void write_audit(const AuditCommand& command, const Plan& plan, const Surface& surface, const Audited& set,
+                 json& report) {
   if (!plan.destination) return;
   Outputs outputs(*plan.destination);
   write_sphere_views(command.mesh, "-audit", surface, set.spheres, outputs);
@@ -146,7 +147,7 @@ ExitCode audit(const AuditCommand& command) {
   bar.clear();
   print_hole_warning(command.mesh, read.repair, read.distance, surface.bounding_radius());
   json report{{"format", file.format}, {"link", group.name}, {"sets", json::array()}, {"solid", surface.solid()}};
-  for (const Audited& set : sets) report["sets"].push_back(to_json(set, surface));
+  for (const Audited& set : sets) report["sets"].push_back(audited_json(set, surface));
   report["reading"] = reading_json(read.reading);
   if (read.repair.changed()) report["repair"] = to_json(read.repair, read.distance, surface.bounding_radius());
   report["provenance"] = to_json(plan.provenance);
@@ -160,7 +161,7 @@ ExitCode audit(const AuditCommand& command) {
                surface.bounding_box().diagonal().norm());
     for (const Audited& set : sets) print_set(set, surface);
   }
-  write(command, plan, surface, sets.back(), report);
+  write_audit(command, plan, surface, sets.back(), report);
   const bool open =
       std::any_of(sets.begin(), sets.end(), [&](const Audited& set) { return is_open(set.audit, surface); });
   return open ? kAuditOpen : kSucceeded;

@@ -16,7 +16,7 @@ constexpr double kOtherUnit = 0.05;
 
 double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
 
-json to_json(const CuroboFigures& figures) {
+json curobo_json(const CuroboFigures& figures) {
   return {{"curobo_num_spheres", figures.num_spheres},
           {"curobo_coverage", figures.coverage},
           {"curobo_protrusion", figures.protrusion},
@@ -28,7 +28,7 @@ json to_json(const CuroboFigures& figures) {
           {"curobo_volume_ratio", figures.volume_ratio}};
 }
 
-json to_json(const SphereAudit::BesideSolid& beside, const Surface& surface) {
+json beside_json(const SphereAudit::BesideSolid& beside, const Surface& surface) {
   const UnionVolume& volume = beside.volume;
   const auto over_solid = [&](const Estimate& estimate) {
     return json{{"value", estimate.value / volume.solid}, {"standard_error", estimate.error / volume.solid}};
@@ -51,11 +51,11 @@ json to_json(const SphereAudit::BesideSolid& beside, const Surface& surface) {
       {"mass_center_error_over_diagonal", (volume.of_balls.center - volume.of_solid.center).norm() / diagonal(surface)},
       {"inertia_error_equal_density", inertia_difference(volume.of_balls, volume.of_solid, false)},
       {"inertia_error_equal_mass", inertia_difference(volume.of_balls, volume.of_solid, true)}};
-  report.update(to_json(beside.curobo));
+  report.update(curobo_json(beside.curobo));
   return report;
 }
 
-void print(const SphereAudit::BesideSolid& beside, const Surface& surface) {
+void print_beside(const SphereAudit::BesideSolid& beside, const Surface& surface) {
   const double size = diagonal(surface);
   const UnionVolume& volume = beside.volume;
   const auto percent = [&](double part) { return 100 * part / volume.solid; };
@@ -106,7 +106,7 @@ json to_json(const SphereAudit& audit, const Surface& surface) {
               {"largest_gap", bounds_json(audit.largest_gap)},
               {"largest_gap_over_diagonal", bounds_json(audit.largest_gap, size)},
               {"largest_gap_place", audit.covered ? json() : point_json(audit.gap_place)}};
-  if (audit.beside_solid) report.update(to_json(*audit.beside_solid, surface));
+  if (audit.beside_solid) report.update(beside_json(*audit.beside_solid, surface));
   return report;
 }
 
@@ -125,7 +125,7 @@ void print_audit(const SphereAudit& audit, const Surface& surface) {
         audit.gap_place.x(), audit.gap_place.y(), audit.gap_place.z());
   }
   if (audit.beside_solid)
-    print(*audit.beside_solid, surface);
+    print_beside(*audit.beside_solid, surface);
   else
     fmt::print("  volumes and protrusion    not measured: the mesh bounds no solid ({})\n", surface.report().faults());
 }

@@ -5,6 +5,7 @@
 
 #include "command_line/commands.h"
 #include "command_line/console.h"
+#include "command_line/text.h"
 #include "command_line/weight_option.h"
 #include "input/input_file.h"
 #include "input/load_solid.h"
@@ -30,10 +31,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr double kPercent = 0.01;
-
-bool among(const std::string& name, const std::vector<std::string>& names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 SphereSetOptions options_of(const SpheresCommand& command) {
   SphereSetOptions options = command.options;

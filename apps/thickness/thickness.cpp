@@ -23,9 +23,9 @@ namespace {
 
 using nlohmann::json;
 
-struct Names {
+struct FileNames {
   std::string ply, csv, svg, vtp, report, page;
-  explicit Names(const std::filesystem::path& mesh)
+  explicit FileNames(const std::filesystem::path& mesh)
       : ply(named(mesh, "-thickness.ply")),
         csv(named(mesh, "-thickness.csv")),
         svg(named(mesh, "-thickness.svg")),
@@ -53,7 +53,7 @@ std::vector<double> as_numbers(const std::vector<Index>& indices) {
 }
 
 void write_files(const ThicknessCommand& command, const ThicknessReport& report, Outputs& outputs) {
-  const Names names(command.mesh);
+  const FileNames names(command.mesh);
   const LocalThickness& thickness = report.thickness;
   const std::vector<MeshArray> of_vertices = arrays_of(thickness.at_vertices);
   std::vector<MeshArray> of_triangles = arrays_of(thickness.at_triangles);
@@ -82,7 +82,7 @@ void write_files(const ThicknessCommand& command, const ThicknessReport& report,
 
 ExitCode thickness(const ThicknessCommand& command) {
   check_input(command.mesh);
-  const Names names(command.mesh);
+  const FileNames names(command.mesh);
   const Destination destination{.folder = command.folder,
                                 .report = names.report,
                                 .provenance = provenance_of(command.output.run, std::array{command.mesh}),

@@ -15,7 +15,7 @@ constexpr double kWorthAWord = 30;  // seconds
 // Fitted to what tools/build-cost measured: so long for each step, most of which make a sphere, so long for each
 // triangle of the mesh, and more for each triangle the more steps there are. That it grows as their root is what
 // fitted, not derived.
-struct Rates {
+struct TreeRates {
   double step = 0;           // seconds
   double triangle = 0;       // seconds for each triangle and root of the number of spheres
   double triangle_once = 0;  // seconds for each triangle
@@ -67,7 +67,7 @@ double steps(const TreeRequest& tree, double points) {
   return result;
 }
 
-Rates rates(const TreeRequest& tree) {
+TreeRates rates(const TreeRequest& tree) {
   const int effort = as_number(tree.effort);
   switch (tree.method) {
     case TreeMethod::tightened: {
@@ -90,7 +90,7 @@ Rates rates(const TreeRequest& tree) {
 // As much as the method annealing.
 double annealing_afterwards(TreeRequest tree, double triangles) {
   tree.method = TreeMethod::annealing;
-  const Rates rate = rates(tree);
+  const TreeRates rate = rates(tree);
   return steps(tree, 0) * rate.step + triangles * rate.triangle_once;
 }
 
@@ -108,7 +108,7 @@ BuildCost estimated_cost(const TreeRequest& tree, bool axis, double points, doub
   const std::vector<double> levels = counts(tree, points);
   cost.spheres = std::accumulate(levels.begin(), levels.end(), 1.0);
   const double spheres = steps(tree, points);
-  const Rates rate = rates(tree);
+  const TreeRates rate = rates(tree);
   const double of_triangle = kSecondsPerTriangle + rate.triangle * std::sqrt(spheres) + rate.triangle_once;
   cost.seconds_of_points = points * seconds_per_point(tree, axis);
   cost.seconds =

@@ -8,7 +8,7 @@
 namespace orchard::apps {
 namespace {
 
-constexpr std::size_t kBins = 20;
+constexpr std::size_t kInaccuracyBins = 20;
 constexpr std::uint64_t kPlotRays = 2000;  // for the volume: a plot shows no more
 
 plot::Plot by_level(const std::string& title, const std::string& what) {
@@ -60,7 +60,7 @@ plot::Plot outside_volumes(const SphereTreeBuild& result, const Surface& surface
   return plot;
 }
 
-plot::Plot histogram(const SphereTree& tree, Index level, double radius) {
+plot::Plot inaccuracy_histogram(const SphereTree& tree, Index level, double radius) {
   std::vector<double> values;
   for (const SphereNode& node : tree.nodes)
     if (node.level == level) values.push_back(node.inaccuracy / radius);
@@ -71,11 +71,12 @@ plot::Plot histogram(const SphereTree& tree, Index level, double radius) {
   plot.y_label = "spheres";
   plot::Series& series = plot.series.emplace_back();
   series.kind = plot::Series::Kind::bars;
-  series.y.assign(kBins, 0);
-  for (std::size_t bin = 0; bin < kBins; ++bin)
-    series.x.push_back(max * static_cast<double>(bin) / static_cast<double>(kBins));
+  series.y.assign(kInaccuracyBins, 0);
+  for (std::size_t bin = 0; bin < kInaccuracyBins; ++bin)
+    series.x.push_back(max * static_cast<double>(bin) / static_cast<double>(kInaccuracyBins));
   for (const double value : values)
-    ++series.y[std::min(kBins - 1, static_cast<std::size_t>(value / max * static_cast<double>(kBins)))];
+    ++series.y[std::min(kInaccuracyBins - 1,
+                        static_cast<std::size_t>(value / max * static_cast<double>(kInaccuracyBins)))];
   return plot;
 }
 
@@ -85,7 +86,7 @@ std::vector<plot::Plot> build_plots(const SphereTreeBuild& result, const Surface
   std::vector<plot::Plot> plots{inaccuracies(result, surface.bounding_radius(), title)};
   if (surface.solid()) plots.push_back(outside_volumes(result, surface));
   for (Index level = 1; level <= result.tree.depth(); ++level)
-    plots.push_back(histogram(result.tree, level, surface.bounding_radius()));
+    plots.push_back(inaccuracy_histogram(result.tree, level, surface.bounding_radius()));
   return plots;
 }
 

@@ -51,7 +51,7 @@ runtime::Pose parse_pose(const std::string& text, const char* option) {
   return *pose;
 }
 
-const char* name(Answer answer) {
+const char* answer_name(Answer answer) {
   switch (answer) {
     case Answer::no:
       return "no";
@@ -66,7 +66,7 @@ const char* name(Answer answer) {
 // What is known after one level. Bounds are finite once the roots met.
 json row(const runtime::NarrowPhase& narrow, const std::string& level, double microseconds) {
   json entry{{"level", level},
-             {"answer", name(narrow.answer())},
+             {"answer", answer_name(narrow.answer())},
              {"pairs", narrow.pairs()},
              {"sphere_tests", narrow.pair_tests()},
              {"triangle_tests", narrow.triangle_tests()},
@@ -114,7 +114,7 @@ std::vector<std::array<double, 3>> pieces_of(const runtime::PackedSphereTree& tr
   return pieces;
 }
 
-struct Placed {
+struct PlacedTree {
   const char* name;
   const runtime::PackedSphereTree& tree;
   runtime::Pose pose;
@@ -122,7 +122,7 @@ struct Placed {
 
 // Surfaces that do not touch leave each piece of one either wholly inside the other solid or wholly outside of it, so
 // one vertex of each piece decides.
-void add_inside(json& inside, const Placed& outer, const Placed& inner) {
+void add_inside(json& inside, const PlacedTree& outer, const PlacedTree& inner) {
   if (outer.tree.triangles.empty()) return;
   const auto pieces = pieces_of(inner.tree);
   const auto within =
@@ -153,7 +153,7 @@ void print_contact(const runtime::Contact& contact, bool exact) {
   fmt::print("\n");
 }
 
-void print(const json& levels) {
+void print_pair_levels(const json& levels) {
   fmt::print("level  answer     pairs  sphere tests  triangle tests  separation at most  microseconds\n");
   for (const json& level : levels) {
     const json& bound = level["separation_bound"];
@@ -182,16 +182,18 @@ void collide(const CollideCommand& command) {
     add_inside(inside, {"b", b, pose_b}, {"a", a, pose_a});
   }
   if (command.output.json) {
-    const json report{
-        {"answer", name(narrow.answer())}, {"inside", inside}, {"levels", levels}, {"provenance", to_json(provenance)}};
+    const json report{{"answer", answer_name(narrow.answer())},
+                      {"inside", inside},
+                      {"levels", levels},
+                      {"provenance", to_json(provenance)}};
     fmt::print("{}\n", report.dump(2));
     return;
   }
   if (command.output.quiet) {
-    fmt::print("{}\n", name(narrow.answer()));
+    fmt::print("{}\n", answer_name(narrow.answer()));
     return;
   }
-  print(levels);
+  print_pair_levels(levels);
   if (narrow.answer() != Answer::no) print_contact(narrow.contact(), narrow.answer() == Answer::yes);
   print_inside(inside);
 }

@@ -97,7 +97,7 @@ std::vector<SphereLists> check_and_read(const CompareCommand& command) {
   return all;
 }
 
-json to_json(const std::vector<Compared>& all, double radius) {
+json compared_json(const std::vector<Compared>& all, double radius) {
   json files = json::array();
   for (const Compared& compared : all) {
     json levels = json::array();
@@ -115,7 +115,7 @@ json to_json(const std::vector<Compared>& all, double radius) {
   return {{"bounding_radius", radius}, {"files", files}};
 }
 
-void print(const std::vector<Compared>& all, std::size_t triangles, double radius) {
+void print_compared(const std::vector<Compared>& all, std::size_t triangles, double radius) {
   fmt::print("inaccuracy over the bounding radius, outside volume over the solid's; triangles without a path\n");
   fmt::print("level  spheres      mean       max   outside  uncovered  file\n");
   std::size_t levels = 0;

@@ -30,7 +30,7 @@ using nlohmann::json;
 using runtime::Answer;
 
 constexpr int kPasses = 3;  // over each pose, of which the fastest counts
-constexpr std::size_t kBins = 40;
+constexpr std::size_t kBoundBins = 40;
 
 // What is known of one pose after a level, and how long that took since the beginning.
 struct AtLevel {
@@ -81,7 +81,7 @@ double quantile(const std::vector<double>& sorted, double part) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(part * static_cast<double>(sorted.size())))];
 }
 
-json quantiles(std::vector<double> values) {
+json bound_quantiles(std::vector<double> values) {
   if (values.empty()) return json();
   std::sort(values.begin(), values.end());
   return {{"p10", quantile(values, 0.1)},
@@ -101,9 +101,9 @@ json times(std::vector<double> values) {
 }
 
 std::vector<std::size_t> histogram(const std::vector<double>& values, double width) {
-  std::vector<std::size_t> bins(kBins, 0);
+  std::vector<std::size_t> bins(kBoundBins, 0);
   for (const double value : values)
-    ++bins[width > 0 ? std::min(kBins - 1, static_cast<std::size_t>(value / width)) : 0];
+    ++bins[width > 0 ? std::min(kBoundBins - 1, static_cast<std::size_t>(value / width)) : 0];
   return bins;
 }
 
@@ -125,7 +125,7 @@ class Profile {
     }
     poses_ = poses.size();
     for (std::size_t i = 1; i < levels_.size(); ++i)
-      for (const double bound : levels_[i].bounds) width_ = std::max(width_, bound / kBins);
+      for (const double bound : levels_[i].bounds) width_ = std::max(width_, bound / kBoundBins);
   }
 
   json report() const {
@@ -159,7 +159,7 @@ class Profile {
             {"decided_of_separated", share(decided, separated_)},
             {"decided_of_left_by_roots", share(decided - at_roots, separated_ - at_roots)},
             {"maybe_though_separated", level.maybe_separated},
-            {"bound_over_radius", quantiles(level.bounds)},
+            {"bound_over_radius", bound_quantiles(level.bounds)},
             {"bound_histogram", histogram(level.bounds, width_)},
             {"bound_histogram_bin", width_},
             {"sphere_tests", level.reached > 0 ? level.tests / static_cast<double>(level.reached) : 0.0},
@@ -172,9 +172,11 @@ class Profile {
   LevelProfile exact_;
 };
 
-std::string number(const json& value) { return value.is_number() ? fmt::format("{:.4f}", value.get<double>()) : "-"; }
+std::string four_digits(const json& value) {
+  return value.is_number() ? fmt::format("{:.4f}", value.get<double>()) : "-";
+}
 
-void print(const json& report) {
+void print_profile(const json& report) {
   fmt::print("{} poses of {} flights, {} of them apart; bounds over R = {:.6g}, the radius of {}\n",
              report["poses"].get<std::size_t>(), report["flights"].get<std::size_t>(),
              report["separated"].get<std::size_t>(), report["radius"].get<double>(), report["a"].get<std::string>());
@@ -188,8 +190,8 @@ void print(const json& report) {
     fmt::print("{:>5} {:9} {:13} {:11.1f} % {:21.1f} % {:>23} {:>7} {:>7} {:13.0f} {:>13} {:>5}\n",
                level["level"].get<std::string>(), level["poses"].get<std::size_t>(),
                level["decided_no"].get<std::size_t>(), 100 * level["decided_of_separated"].get<double>(),
-               100 * level["decided_of_left_by_roots"].get<double>(), number(of(bound, "p10")),
-               number(of(bound, "median")), number(of(bound, "p90")), level["sphere_tests"].get<double>(),
+               100 * level["decided_of_left_by_roots"].get<double>(), four_digits(of(bound, "p10")),
+               four_digits(of(bound, "median")), four_digits(of(bound, "p90")), level["sphere_tests"].get<double>(),
                time.is_null() ? "-" : fmt::format("{:.2f}", time["median"].get<double>()),
                time.is_null() ? "-" : fmt::format("{:.1f}", time["p99"].get<double>()));
   }

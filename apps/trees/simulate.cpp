@@ -119,7 +119,7 @@ json report_of(const SimulateCommand& command, const Simulation& simulation, con
             {"other", microseconds(frames, [](const FrameRecord& f) { return f.seconds_other; })}}}};
 }
 
-void print(const json& report) {
+void print_simulation(const json& report) {
   fmt::print("{}: {} frames of {} steps, {} bodies at the end\n", report["scene"].get<std::string>(),
              report["frames"].get<std::size_t>(), report["steps_per_frame"].get<int>(),
              report["bodies"].get<std::size_t>());
@@ -139,9 +139,9 @@ void print(const json& report) {
 }
 
 // The frames one after the other, and their traces.
-class Run {
+class SimulationRun {
  public:
-  Run(const SimulateCommand& command, Simulation& simulation, Outputs* outputs)
+  SimulationRun(const SimulateCommand& command, Simulation& simulation, Outputs* outputs)
       : command_(command), simulation_(simulation), outputs_(outputs), draw_(command.seed ^ 0x5eed5u) {}
 
   void frame(const runtime::Budget& budget) {
@@ -218,7 +218,7 @@ void simulate(const SimulateCommand& asked) {
   Simulation simulation(command.scene, shapes, command.bodies, command.seed, replay ? &*replay : nullptr);
   std::optional<Outputs> outputs;
   if (!command.folder.empty()) outputs.emplace(destination);
-  Run run(command, simulation, outputs ? &*outputs : nullptr);
+  SimulationRun run(command, simulation, outputs ? &*outputs : nullptr);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const Progress progress = bar.callback();
   for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -242,7 +242,7 @@ void simulate(const SimulateCommand& asked) {
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(report);
+    print_simulation(report);
     if (!command.record.empty()) fmt::print("  {}  (to be given to --replay)\n", command.record.string());
     if (outputs) outputs->print();
   }

@@ -26,7 +26,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const char* name(Violation::Kind kind) {
+const char* violation_name(Violation::Kind kind) {
   switch (kind) {
     case Violation::Kind::uncovered:
       return "uncovered";
@@ -117,12 +117,12 @@ Verification verify_tree(const Subject& subject, Tree& tree, bool box_centered, 
   return verify_path_rule(subject.surface, path_balls(tree.text), {}, progress);
 }
 
-json to_json(const Verification& result, const Subject& subject) {
+json verification_json(const Verification& result, const Subject& subject) {
   const double radius = subject.surface.bounding_radius();
   json violations = json::array(), max = json::array();
   const auto index = [](Index i) { return i == kNone ? json() : json(i); };
   for (const Violation& v : result.violations)
-    violations.push_back({{"kind", name(v.kind)},
+    violations.push_back({{"kind", violation_name(v.kind)},
                           {"node", index(v.node)},
                           {"triangle", index(v.triangle)},
                           {"point", {v.point.x(), v.point.y(), v.point.z()}},
@@ -153,7 +153,7 @@ json to_json(const Verification& result, const Subject& subject) {
 
 void print_violations(const Verification& result) {
   for (const Violation& v : result.violations) {
-    fmt::print("{}:", name(v.kind));
+    fmt::print("{}:", violation_name(v.kind));
     if (v.node != kNone) fmt::print(" node {}", v.node);
     if (v.triangle != kNone) fmt::print(" triangle {}", v.triangle);
     fmt::print(" at ({:.9g}, {:.9g}, {:.9g}) by {:.3g}\n", v.point.x(), v.point.y(), v.point.z(), v.amount);
@@ -179,7 +179,7 @@ void print_uncovered(const Verification& result, const Surface& surface) {
       depth.upper / radius);
 }
 
-void print(const fs::path& mesh, const Verification& result, const Subject& subject, double seconds) {
+void print_verification(const fs::path& mesh, const Verification& result, const Subject& subject, double seconds) {
   const double radius = subject.surface.bounding_radius();
   print_reading(mesh, subject.reading);
   print_violations(result);
@@ -222,11 +222,11 @@ bool verify(const VerifyCommand& command) {
   bar.clear();
   print_hole_warning(command.mesh, subject.repair, subject.repair_distance, subject.surface.bounding_radius());
   if (command.output.json) {
-    json report = to_json(result, subject);
+    json report = verification_json(result, subject);
     report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(command.mesh, result, subject, seconds);
+    print_verification(command.mesh, result, subject, seconds);
   }
   return result.ok();
 }

@@ -1,5 +1,4 @@
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
@@ -9,23 +8,24 @@
 #include <set>
 #include <utility>
 
+#include "inexact_kernel.h"
 #include "polygons.h"
 
 namespace orchard {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using detail::CgalKernel;
 using Triangle = std::array<Index, 3>;
-constexpr int kUnknown = -1000;  // of a winding number
+constexpr int kUnnumbered = -1000;  // of a winding number
 
 struct Winding {
-  int number = kUnknown;
+  int number = kUnnumbered;
 };
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;  // a corner at the place
-using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<Winding, Kernel, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, CgalKernel>;  // a corner at the place
+using FaceBase = CGAL::Triangulation_face_base_with_info_2<Winding, CgalKernel,
+                                                           CGAL::Constrained_triangulation_face_base_2<CgalKernel>>;
 using Cdt =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+    CGAL::Constrained_Delaunay_triangulation_2<CgalKernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Vertex = Cdt::Vertex_handle;
 
@@ -46,7 +46,7 @@ class Projection {
     const Vector u = normal.cross(Vector::Unit(axis)).normalized();
     return {u, normal.cross(u)};
   }
-  Kernel::Point_2 operator()(const Point& p) const { return {u_.dot(p), v_.dot(p)}; }
+  CgalKernel::Point_2 operator()(const Point& p) const { return {u_.dot(p), v_.dot(p)}; }
 
  private:
   Projection(Vector u, Vector v) : u_(std::move(u)), v_(std::move(v)) {}
@@ -129,7 +129,7 @@ class PolygonTriangulation {
       open.pop_back();
       for (int i = 0; i < 3; ++i) {
         const Cdt::Face_handle across = face->neighbor(i);
-        if (across->info().number != kUnknown) continue;
+        if (across->info().number != kUnnumbered) continue;
         // The face lies to the left of this edge, what is across it to the right.
         const int number = face->info().number - passes(face->vertex(Cdt::ccw(i)), face->vertex(Cdt::cw(i)));
         if (number != 0 && number != 1) return false;

@@ -1,14 +1,12 @@
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include "exact_side.h"
+
+#include "inexact_kernel.h"
 
 namespace orchard::detail {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-Kernel::Point_2 point(const std::array<double, 2>& p) { return {p[0], p[1]}; }
-Kernel::Point_3 point(const Point& p) { return {p.x(), p.y(), p.z()}; }
+CgalKernel::Point_2 point(const std::array<double, 2>& p) { return {p[0], p[1]}; }
+CgalKernel::Point_3 point(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
 }  // namespace
 

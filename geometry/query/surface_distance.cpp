@@ -8,7 +8,7 @@ namespace orchard {
 namespace {
 
 // More than the rounding error of a closest point, which is a few units in the last place of the coordinates.
-constexpr double kRounding = 1e-14;
+constexpr double kClosestPointRounding = 1e-14;
 
 struct Piece {
   std::array<Point, 3> corners;
@@ -56,8 +56,8 @@ class Search {
     if (!queue_.empty()) result_.upper = std::max(result_.upper, queue_.top().upper);
     const double size = to_.bounding_box().min().cwiseAbs().cwiseMax(to_.bounding_box().max().cwiseAbs()).sum() +
                         from_.bounding_box().min().cwiseAbs().cwiseMax(from_.bounding_box().max().cwiseAbs()).sum();
-    result_.upper += kRounding * size;
-    result_.lower = std::max(0.0, result_.lower - kRounding * size);
+    result_.upper += kClosestPointRounding * size;
+    result_.lower = std::max(0.0, result_.lower - kClosestPointRounding * size);
     return result_;
   }
 

@@ -15,26 +15,20 @@ namespace {
 // The number of triangles from which on the tree is larger than the caches, so that disks save more time than they
 // cost.
 constexpr std::size_t kFine = 32'768;
-constexpr int kStack = 128;  // three entries for each level; the tree has fewer than 40 levels
-// Every float result has an error below kSlack * (distance + size of the mesh). There are at most thirteen roundings of
-// 6e-8, of the query, of stored values and of three products each; the constant has a margin of one half.
-constexpr float kSlack = 1.25e-6f;
+// Every float result has an error below kDistanceSlack * (distance + size of the mesh). There are at most thirteen
+// roundings of 6e-8, of the query, of stored values and of three products each; the constant has a margin of one half.
+constexpr float kDistanceSlack = 1.25e-6f;
 // A fraction of the coordinates of the mesh: more than the rounding of subtracting and adding the centre.
 constexpr double kBoxRoom = 0x1p-48;
 
 // Returns the largest squared float distance of a box or triangle that may be nearer than one at the float distance d,
 // given the errors of both.
 float squared_limit(float d) {
-  const float limit = d * (1 + 2 * kSlack) + 2 * kSlack;
+  const float limit = d * (1 + 2 * kDistanceSlack) + 2 * kDistanceSlack;
   return limit * limit;
 }
 
-Float4 broadcast(float x) { return Float4{x, x, x, x}; }
-Float4 min(Float4 a, Float4 b) { return a < b ? a : b; }
-Float4 max(Float4 a, Float4 b) { return a > b ? a : b; }
 Float4 clamp_unit(Float4 x) { return min(max(x, broadcast(0)), broadcast(1)); }
-Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
-Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Returns a number whose bit k says whether x[k] is at most the limit.
 unsigned at_most(Float4 x, float limit) {
@@ -123,7 +117,7 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
     float squared;
     Index child;
   };
-  std::array<Entry, kStack> stack;
+  std::array<Entry, Builder::kStackSize> stack;
   int top = 0;
   stack[static_cast<std::size_t>(top++)] = {0, 0};
   while (top > 0) {
@@ -300,7 +294,7 @@ void TriangleTree::near_where(const Sphere& ball, IsOut is_out, std::vector<Inde
   const double radius = scale_ * ball.radius;
   if (radius < 1e15 && localize(ball.center, query)) {
     const float limit = squared_limit(static_cast<float>(radius));
-    const float sure = static_cast<float>(radius) * (1 - 4 * kSlack) - 4 * kSlack;
+    const float sure = static_cast<float>(radius) * (1 - 4 * kDistanceSlack) - 4 * kDistanceSlack;
     const float sure_squared = sure > 0 ? sure * sure : -1.0f;
     const auto visit = [&](const Leaf& leaf) {
       const Float4 squared = squared_distances(query, leaf);

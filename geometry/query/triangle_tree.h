@@ -3,12 +3,10 @@
 #include <functional>
 #include <vector>
 
+#include "float4.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {
-
-// Four numbers side by side, one for each child of a node or each triangle of a leaf (a GCC and Clang extension).
-using Float4 = float __attribute__((vector_size(16)));
 
 // Every triangle that may hold the surface's point nearest to a query, and a few more: those that floats cannot tell
 // apart.

@@ -10,14 +10,11 @@ namespace {
 constexpr int kBins = 16;
 constexpr Index kLeafSize = 4;
 constexpr int kDepthOfHalving = 20;  // below it ranges are halved, which bounds the depth of any tree
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 float half_area(const Eigen::AlignedBox3f& box) {
   const Eigen::Vector3f s = box.sizes();
   return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
 }
-float rounded_down(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
-float rounded_up(double x) { return std::nextafter(static_cast<float>(x), kInfinity); }
 Index groups(Index count) { return (count + kLeafSize - 1) / kLeafSize; }
 
 // An orthonormal frame whose first axis is the longest edge and whose second points from it to the apex, and the
@@ -97,7 +94,7 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
   const auto node = static_cast<Index>(nodes_.size());
   nodes_.emplace_back();
   for (int axis = 0; axis < 3; ++axis) {
-    nodes_[node].lower[axis] = Float4{kInfinity, kInfinity, kInfinity, kInfinity};
+    nodes_[node].lower[axis] = broadcast(kFloatInfinity);
     nodes_[node].upper[axis] = -nodes_[node].lower[axis];
   }
   for (int k = 0; k < 4; ++k) nodes_[node].child[k] = kNone;

@@ -10,6 +10,8 @@ namespace orchard::detail {
 class TriangleTree::Builder {
  public:
   static constexpr Index kLeaf = 0x80000000u;
+  // Room for what a traversal has still to visit: three entries a level, and the tree is below 40 levels.
+  static constexpr std::size_t kStackSize = 128;
 
   Builder(const TriangleMesh& mesh, const Point& center, double scale, std::vector<Node>& nodes,
           std::vector<Leaf>& leaves);

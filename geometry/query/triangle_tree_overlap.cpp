@@ -7,11 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr float kSlack = 1e-5f;       // more than all float roundings of a slab test beside a mesh of size one
+constexpr float kSlabSlack = 1e-5f;   // more than all float roundings of a slab test beside a mesh of size one
 constexpr double kSlabReach = 1e6;    // farther corners would cost the slab its digits
 constexpr double kFloatReach = 1e30;  // farther corners are no floats
-
-Float4 broadcast(float x) { return Float4{x, x, x, x}; }
 
 bool boxes_meet(const Box& box, const std::array<Point, 3>& p) {
   return !box.intersection(Box(p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2]))).isEmpty();
@@ -33,8 +31,10 @@ class TriangleTree::TriangleQuery {
     usable_ = reach < kFloatReach;
     for (int axis = 0; axis < 3; ++axis) {
       const auto [lower, upper] = std::minmax({p[0][axis], p[1][axis], p[2][axis]});
-      lower_[axis] = broadcast(static_cast<float>(lower) - kSlack - kSlack * static_cast<float>(std::fabs(lower)));
-      upper_[axis] = broadcast(static_cast<float>(upper) + kSlack + kSlack * static_cast<float>(std::fabs(upper)));
+      lower_[axis] =
+          broadcast(static_cast<float>(lower) - kSlabSlack - kSlabSlack * static_cast<float>(std::fabs(lower)));
+      upper_[axis] =
+          broadcast(static_cast<float>(upper) + kSlabSlack + kSlabSlack * static_cast<float>(std::fabs(upper)));
     }
     if (reach > kSlabReach) return;
     const Vector normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
@@ -65,7 +65,6 @@ class TriangleTree::TriangleQuery {
     Float4 direction[3], size[3];  // unit; its absolute values
     Float4 lower, upper;
   };
-  static Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
   void add_slab(const Vector& direction, const std::array<Point, 3>& p) {
     if (!(direction.norm() > 0.5)) return;
@@ -75,8 +74,8 @@ class TriangleTree::TriangleQuery {
       slab.direction[axis] = broadcast(static_cast<float>(direction[axis]));
       slab.size[axis] = broadcast(static_cast<float>(std::fabs(direction[axis])));
     }
-    slab.lower = broadcast(static_cast<float>(lower) - kSlack - kSlack * static_cast<float>(std::fabs(lower)));
-    slab.upper = broadcast(static_cast<float>(upper) + kSlack + kSlack * static_cast<float>(std::fabs(upper)));
+    slab.lower = broadcast(static_cast<float>(lower) - kSlabSlack - kSlabSlack * static_cast<float>(std::fabs(lower)));
+    slab.upper = broadcast(static_cast<float>(upper) + kSlabSlack + kSlabSlack * static_cast<float>(std::fabs(upper)));
   }
 
   bool usable_ = false;

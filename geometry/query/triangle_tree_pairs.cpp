@@ -1,20 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "triangle_tree.h"
 #include "triangle_tree_builder.h"
 
 namespace orchard::detail {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-Float4 broadcast(float x) { return Float4{x, x, x, x}; }
-float below(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
-float above(double x) { return std::nextafter(static_cast<float>(x), kInfinity); }
-
-}  // namespace
 
 // Walks down the tree in two places at a time, wherever their boxes meet.
 class TriangleTree::Pairs {
@@ -70,16 +60,16 @@ class TriangleTree::Pairs {
   LeafBoxes boxes_of(const Leaf& leaf) const {
     LeafBoxes boxes;
     for (int axis = 0; axis < 3; ++axis) {
-      boxes.lower[axis] = broadcast(kInfinity);
-      boxes.upper[axis] = broadcast(-kInfinity);
+      boxes.lower[axis] = broadcast(kFloatInfinity);
+      boxes.upper[axis] = broadcast(-kFloatInfinity);
     }
     for (int lane = 0; lane < 4; ++lane) {
       if (leaf.triangle[lane] == kNone) continue;
       for (const Point& corner : tree_.corners(leaf.triangle[lane])) {
         const Point p = tree_.scale_ * (corner - tree_.center_);
         for (int axis = 0; axis < 3; ++axis) {
-          boxes.lower[axis][lane] = std::min(boxes.lower[axis][lane], below(p[axis]));
-          boxes.upper[axis][lane] = std::max(boxes.upper[axis][lane], above(p[axis]));
+          boxes.lower[axis][lane] = std::min(boxes.lower[axis][lane], rounded_down(p[axis]));
+          boxes.upper[axis][lane] = std::max(boxes.upper[axis][lane], rounded_up(p[axis]));
         }
       }
     }

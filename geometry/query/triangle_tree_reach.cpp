@@ -9,17 +9,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kStack = 128;  // three entries a level; the builder keeps the tree below 40 levels
 constexpr double kNear = 2;  // sizes of the mesh: for balls that are farther or larger, floats are not accurate enough
-constexpr float kSlack = 1e-5f;  // more than the rounding errors of a bound for balls within kNear
-
-Float4 broadcast(float x) { return Float4{x, x, x, x}; }
-Float4 min(Float4 a, Float4 b) { return a < b ? a : b; }
-Float4 max(Float4 a, Float4 b) { return a > b ? a : b; }
-Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Float4 abs(Float4 a) { return max(a, -a); }
-
-Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+constexpr float kBoundSlack = 1e-5f;  // more than the rounding errors of a bound for balls within kNear
 
 }  // namespace
 
@@ -36,7 +27,7 @@ class TriangleTree::Reach {
       const Vector way = tree.scale_ * (balls[k].center - middle);
       const double radius = tree.scale_ * balls[k].radius;
       size = std::max({size, way.cwiseAbs().maxCoeff(), std::abs(radius)});
-      radius_[k] = broadcast(static_cast<float>(radius) + kSlack);
+      radius_[k] = broadcast(static_cast<float>(radius) + kBoundSlack);
       for (int axis = 0; axis < 3; ++axis) way_[k][axis] = broadcast(static_cast<float>(way[axis]));
     }
     usable_ = size < kNear;
@@ -77,7 +68,7 @@ class TriangleTree::Reach {
  private:
   // The bound by a distance from the middle and its gradient, whose length is at most one.
   Float4 beyond(Float4 distance, const Float4* gradient) const {
-    Float4 most = broadcast(-std::numeric_limits<float>::infinity());
+    Float4 most = broadcast(-kFloatInfinity);
     for (std::size_t k = 0; k < 3; ++k) most = max(most, radius_[k] - dot(gradient, way_[k]));
     return most - distance;
   }
@@ -112,9 +103,9 @@ double TriangleTree::max_reach(const std::array<Sphere, 3>& balls, const Point& 
     float bound;
     Index child;
   };
-  std::array<Entry, kStack> stack;
+  std::array<Entry, Builder::kStackSize> stack;
   std::size_t top = 0;
-  stack[top++] = {std::numeric_limits<float>::infinity(), 0};
+  stack[top++] = {kFloatInfinity, 0};
   while (top > 0) {
     const Entry entry = stack[--top];
     if (!(entry.bound > limit)) continue;

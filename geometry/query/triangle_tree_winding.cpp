@@ -16,8 +16,6 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kStack = 128;  // three entries a level; the builder keeps the tree below 40 levels
-
 // On which side of the line from p to r, in the plane across the ray, the moved query lies: 0 only if p and r are in
 // one line with the ray.
 int side_of_edge(const Point& p, const Point& r, const Point& q, int u, int v) {
@@ -44,18 +42,17 @@ class TriangleTree::Ray {
  public:
   // The ray goes towards the nearest side of the mesh's box, because the shortest way out meets the fewest triangles.
   Ray(const TriangleTree& tree, const Point& query) : query_(query) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Vector local = tree.scale_ * (query - tree.center_);
     const Node& root = tree.nodes_[0];
     double min = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
-      float lower = kInfinity, upper = -kInfinity;
+      float lower = kFloatInfinity, upper = -kFloatInfinity;
       for (int k = 0; k < 4; ++k)
         lower = std::min(lower, root.lower[axis][k]), upper = std::max(upper, root.upper[axis][k]);
       if (upper - local[axis] < min) min = upper - local[axis], a_ = axis, towards_ = 1;
       if (local[axis] - lower < min) min = local[axis] - lower, a_ = axis, towards_ = -1;
-      below_[axis] = std::nextafter(static_cast<float>(local[axis]), -kInfinity);
-      above_[axis] = std::nextafter(static_cast<float>(local[axis]), kInfinity);
+      below_[axis] = std::nextafter(static_cast<float>(local[axis]), -kFloatInfinity);
+      above_[axis] = std::nextafter(static_cast<float>(local[axis]), kFloatInfinity);
     }
     u_ = (a_ + 1) % 3, v_ = (a_ + 2) % 3;
   }
@@ -96,7 +93,7 @@ class TriangleTree::Ray {
 int TriangleTree::winding_number(const Point& query) const {
   const Ray ray(*this, query);
   int sum = 0;
-  std::array<Index, kStack> stack;
+  std::array<Index, Builder::kStackSize> stack;
   std::size_t top = 0;
   stack[top++] = 0;
   while (top > 0) {

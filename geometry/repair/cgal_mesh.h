@@ -1,14 +1,13 @@
 #pragma once
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
 #include <vector>
 
+#include "inexact_kernel.h"
 #include "orchard/geometry/mesh.h"
 
 namespace orchard::detail {
 
-using CgalKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using CgalMesh = CGAL::Surface_mesh<CgalKernel::Point_3>;
 
 // The triangles as CGAL has them, without what it has removed.

@@ -10,14 +10,14 @@
 namespace orchard::detail {
 namespace {
 
-using Triangle = std::array<Index, 3>;
+using TriangleCorners = std::array<Index, 3>;
 
-bool repeats_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+bool repeats_a_corner(const TriangleCorners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
 // The triangles with all vertices welded that lie in the same place. The result has no positions.
 TriangleMesh all_welded(const TriangleMesh& mesh, const std::vector<Index>& first) {
   TriangleMesh welded{{}, mesh.triangles};
-  for (Triangle& t : welded.triangles)
+  for (TriangleCorners& t : welded.triangles)
     for (Index& vertex : t) vertex = first[vertex];
   return welded;
 }
@@ -41,7 +41,7 @@ std::vector<bool> weldable_vertices(const TriangleMesh& mesh, const std::vector<
 }
 
 // The corner opposite a triangle's longest edge.
-std::size_t apex_of(const TriangleMesh& mesh, const Triangle& t) {
+std::size_t apex_of(const TriangleMesh& mesh, const TriangleCorners& t) {
   std::array<double, 3> squared{};
   for (std::size_t i = 0; i < 3; ++i)
     squared[i] = (mesh.vertices[t[(i + 1) % 3]] - mesh.vertices[t[(i + 2) % 3]]).squaredNorm();
@@ -54,7 +54,7 @@ class FlatTriangles {
  public:
   FlatTriangles(TriangleMesh& mesh, MeshRepairReport& report) : mesh_(mesh), report_(report) {
     Box box;
-    for (const Triangle& t : mesh.triangles)
+    for (const TriangleCorners& t : mesh.triangles)
       for (const Index vertex : t) box.extend(mesh.vertices[vertex]);
     scale_ = unit_scale(box);
   }
@@ -99,7 +99,7 @@ class FlatTriangles {
   }
 
   void remove(Index t) {
-    const Triangle corners = mesh_.triangles[t];
+    const TriangleCorners corners = mesh_.triangles[t];
     const std::size_t at = apex_of(mesh_, corners);
     const Index apex = corners[at];
     const auto across = edge(corners[(at + 1) % 3], corners[(at + 2) % 3]);
@@ -116,7 +116,7 @@ class FlatTriangles {
 
   // Splits edge i of a triangle at `apex`; a triangle folded onto the flat one is removed with it.
   void split(Index triangle, Index i, Index apex) {
-    const Triangle corners = mesh_.triangles[triangle];
+    const TriangleCorners corners = mesh_.triangles[triangle];
     const Index x = corners[i], y = corners[(i + 1) % 3], z = corners[(i + 2) % 3];
     if (z == apex) {
       erased_[triangle] = true;
@@ -160,7 +160,7 @@ void weld_vertices(TriangleMesh& mesh, MeshRepairReport& report) {
       ++report.vertices_welded;
     }
   }
-  for (Triangle& t : mesh.triangles)
+  for (TriangleCorners& t : mesh.triangles)
     for (Index& vertex : t)
       if (weldable[vertex]) vertex = kept[first[vertex]];
 }
@@ -212,7 +212,7 @@ void drop_degenerate(TriangleMesh& mesh, MeshRepairReport& report) {
 
 void drop_unused_vertices(TriangleMesh& mesh, MeshRepairReport& report) {
   std::vector<Index> number(mesh.vertices.size(), kNone);
-  for (const Triangle& t : mesh.triangles)
+  for (const TriangleCorners& t : mesh.triangles)
     for (const Index vertex : t) number[vertex] = 0;
   Index used = 0;
   for (std::size_t v = 0; v < number.size(); ++v) {
@@ -224,7 +224,7 @@ void drop_unused_vertices(TriangleMesh& mesh, MeshRepairReport& report) {
   // A welded or joined vertex is out of use too, and is counted there.
   report.unused_vertices_dropped = dropped - std::min(dropped, report.vertices_welded + report.vertices_joined);
   mesh.vertices.resize(used);
-  for (Triangle& t : mesh.triangles)
+  for (TriangleCorners& t : mesh.triangles)
     for (Index& vertex : t) vertex = number[vertex];
 }
 

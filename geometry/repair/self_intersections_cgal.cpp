@@ -1,9 +1,9 @@
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
 #include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
 
 #include <algorithm>
 
+#include "inexact_kernel.h"
 #include "orchard/geometry/self_intersections.h"
 #include "query/triangle_tree.h"
 #include "same_place.h"
@@ -12,13 +12,13 @@
 namespace orchard {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using detail::CgalKernel;
 
 class PairTest {
  public:
   explicit PairTest(const TriangleMesh& mesh) : mesh_(mesh), place_(first_at_place(mesh)) {}
 
-  bool degenerate(Index t) const { return Kernel().is_degenerate_3_object()(triangle(t)); }
+  bool degenerate(Index t) const { return CgalKernel().is_degenerate_3_object()(triangle(t)); }
 
   bool meet(Index a, Index b) const {
     const auto p = places(a), q = places(b);
@@ -37,20 +37,20 @@ class PairTest {
     const auto& [i, j, k] = mesh_.triangles[t];
     return {place_[i], place_[j], place_[k]};
   }
-  Kernel::Point_3 corner(Index t, std::size_t i) const {
+  CgalKernel::Point_3 corner(Index t, std::size_t i) const {
     const Point& p = mesh_.vertices[mesh_.triangles[t][i % 3]];
     return {p.x(), p.y(), p.z()};
   }
-  Kernel::Triangle_3 triangle(Index t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
+  CgalKernel::Triangle_3 triangle(Index t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
 
   // Two triangles with one common corner meet elsewhere if and only if the edge opposite that corner in one of them
   // meets the other one.
   bool opposite_edge_meets(Index t, std::size_t i, Index other) const {
-    return CGAL::do_intersect(Kernel::Segment_3(corner(t, i + 1), corner(t, i + 2)), triangle(other));
+    return CGAL::do_intersect(CgalKernel::Segment_3(corner(t, i + 1), corner(t, i + 2)), triangle(other));
   }
   // Two triangles with a common edge meet elsewhere if they lie in one plane, on the same side of it.
   bool folded(Index a, std::size_t i, Index b, std::size_t j) const {
-    const Kernel::Point_3 p = corner(a, i), u = corner(a, i + 1), v = corner(a, i + 2), q = corner(b, j);
+    const CgalKernel::Point_3 p = corner(a, i), u = corner(a, i + 1), v = corner(a, i + 2), q = corner(b, j);
     return CGAL::coplanar(u, v, p, q) && CGAL::coplanar_orientation(u, v, p, q) == CGAL::POSITIVE;
   }
 

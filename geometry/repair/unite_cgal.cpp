@@ -18,17 +18,17 @@ namespace processing = CGAL::Polygon_mesh_processing;
 using ExactKernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactMesh = CGAL::Surface_mesh<ExactKernel::Point_3>;
 
-struct Part {
+struct VertexComponent {
   std::vector<Index> triangles;  // of the whole mesh, ascending
   Box box;
   double volume = 0;  // six times; negative: a cavity
 };
 
 // The parts that no vertex joins, in the order of their first triangles.
-std::vector<Part> parts_of(const TriangleMesh& mesh) {
+std::vector<VertexComponent> vertex_components(const TriangleMesh& mesh) {
   DisjointSets sets(mesh.vertices.size());
   for (const auto& [a, b, c] : mesh.triangles) sets.unite(a, b), sets.unite(a, c);
-  std::vector<Part> parts;
+  std::vector<VertexComponent> parts;
   std::vector<Index> number(mesh.vertices.size(), kNone);
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -37,7 +37,7 @@ std::vector<Part> parts_of(const TriangleMesh& mesh) {
       at = static_cast<Index>(parts.size());
       parts.emplace_back();
     }
-    Part& part = parts[at];
+    VertexComponent& part = parts[at];
     part.triangles.push_back(t);
     for (const Index v : {a, b, c}) part.box.extend(mesh.vertices[v]);
     const Point& origin = mesh.vertices[mesh.triangles[part.triangles.front()][0]];
@@ -47,7 +47,7 @@ std::vector<Part> parts_of(const TriangleMesh& mesh) {
 }
 
 // For each part the lowest part of its group: those whose triangles meet, one by way of another.
-std::vector<Index> groups_of(const std::vector<Part>& parts, const std::vector<std::array<Index, 2>>& cuts,
+std::vector<Index> groups_of(const std::vector<VertexComponent>& parts, const std::vector<std::array<Index, 2>>& cuts,
                              std::size_t triangles) {
   std::vector<Index> part_of(triangles);
   for (Index p = 0; p < parts.size(); ++p)
@@ -59,7 +59,7 @@ std::vector<Index> groups_of(const std::vector<Part>& parts, const std::vector<s
   return roots;
 }
 
-ExactMesh to_exact(const TriangleMesh& mesh, const Part& part) {
+ExactMesh to_exact(const TriangleMesh& mesh, const VertexComponent& part) {
   ExactMesh result;
   std::vector<ExactMesh::Vertex_index> vertices(mesh.vertices.size());
   for (const Index t : part.triangles) {
@@ -90,7 +90,7 @@ void append(const ExactMesh& from, TriangleMesh& to) {
 }
 
 // Adds the union of the parts of one group; returns false if there is none that is a manifold.
-bool append_union(const TriangleMesh& mesh, const std::vector<const Part*>& group, TriangleMesh& to) {
+bool append_union(const TriangleMesh& mesh, const std::vector<const VertexComponent*>& group, TriangleMesh& to) {
   ExactMesh whole = to_exact(mesh, *group.front());
   for (std::size_t p = 1; p < group.size(); ++p) {
     ExactMesh part = to_exact(mesh, *group[p]), both;
@@ -107,7 +107,7 @@ bool append_union(const TriangleMesh& mesh, const std::vector<const Part*>& grou
   return true;
 }
 
-void append_part(const TriangleMesh& mesh, const Part& part, TriangleMesh& to) {
+void append_part(const TriangleMesh& mesh, const VertexComponent& part, TriangleMesh& to) {
   std::vector<Index> number(mesh.vertices.size(), kNone);
   for (const Index t : part.triangles) {
     auto& corners = to.triangles.emplace_back(mesh.triangles[t]);
@@ -129,20 +129,20 @@ std::optional<UnitedMesh> unite_parts(const TriangleMesh& mesh, const Progress& 
   require_solid(solid);
   const std::vector<std::array<Index, 2>> cuts = self_intersections(solid);
   if (cuts.empty()) return std::nullopt;
-  const std::vector<Part> parts = parts_of(solid);
+  const std::vector<VertexComponent> parts = vertex_components(solid);
   const std::vector<Index> groups = groups_of(parts, cuts, solid.triangles.size());
   UnitedMesh result;
   for (Index root = 0; root < parts.size(); ++root) {
     report_progress(progress, "union of parts", root / static_cast<double>(parts.size()));
     if (groups[root] != root) continue;
-    std::vector<const Part*> group;
+    std::vector<const VertexComponent*> group;
     for (Index p = root; p < parts.size(); ++p)
       if (groups[p] == root) group.push_back(&parts[p]);
     if (group.size() == 1) {
       append_part(solid, *group.front(), result.mesh);
       continue;
     }
-    const bool cavity = std::ranges::any_of(group, [](const Part* part) { return part->volume < 0; });
+    const bool cavity = std::ranges::any_of(group, [](const VertexComponent* part) { return part->volume < 0; });
     if (cavity || !append_union(solid, group, result.mesh)) return std::nullopt;
     result.parts += static_cast<Index>(group.size());
   }

@@ -8,16 +8,16 @@
 namespace orchard::detail {
 namespace {
 
-struct Edge {
+struct BoundaryEdge {
   Index low, high;  // vertices
   Index half_edge;
   double length;
 };
 
-std::vector<Edge> boundary_edges(const Surface& surface, const std::function<bool(Index, Index)>& divided) {
+std::vector<BoundaryEdge> boundary_edges(const Surface& surface, const std::function<bool(Index, Index)>& divided) {
   const TriangleMesh& mesh = surface.mesh();
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
-  std::vector<Edge> edges;
+  std::vector<BoundaryEdge> edges;
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     if (edge.size() == 2 && !divided(edge[0].half_edge / 3, edge[1].half_edge / 3)) return;
     const EdgeUse& use = edge.front();
@@ -35,7 +35,7 @@ using Chain = std::vector<Link>;
 
 class Chains {
  public:
-  Chains(const std::vector<Edge>& edges, std::size_t vertex_count) : edges_(edges), used_(edges.size(), false) {
+  Chains(const std::vector<BoundaryEdge>& edges, std::size_t vertex_count) : edges_(edges), used_(edges.size(), false) {
     at_vertex_.assign(vertex_count, {kNone, kNone});
     degree_.assign(vertex_count, 0);
     for (Index e = 0; e < edges.size(); ++e)
@@ -73,13 +73,13 @@ class Chains {
     return chain;
   }
 
-  const std::vector<Edge>& edges_;
+  const std::vector<BoundaryEdge>& edges_;
   std::vector<bool> used_;
   std::vector<std::array<Index, 2>> at_vertex_;  // the first two boundary edges
   std::vector<Index> degree_;
 };
 
-void place_on_chain(const TriangleMesh& mesh, const std::vector<Edge>& edges, const Chain& chain, Index count,
+void place_on_chain(const TriangleMesh& mesh, const std::vector<BoundaryEdge>& edges, const Chain& chain, Index count,
                     double length, std::vector<EdgePoint>& out) {
   double before = 0;
   std::size_t at = 0;
@@ -101,7 +101,7 @@ void place_on_chain(const TriangleMesh& mesh, const std::vector<Edge>& edges, co
 EdgePlacement place_edge_points(const Surface& surface, const std::function<bool(Index, Index)>& divided, Index count,
                                 double min_spacing) {
   EdgePlacement placement;
-  const std::vector<Edge> edges = boundary_edges(surface, divided);
+  const std::vector<BoundaryEdge> edges = boundary_edges(surface, divided);
   const std::vector<Chain> chains = Chains(edges, surface.mesh().vertices.size()).collect();
   std::vector<double> lengths;
   double& total = placement.length;

@@ -14,7 +14,7 @@ struct Corner {
   Index vertex = 0;
   Barycentric at = Barycentric::Zero();
 };
-using Part = std::array<Corner, 3>;
+using TrianglePart = std::array<Corner, 3>;
 
 Feature feature_of(const Barycentric& at) {
   const bool on[3] = {at[0] > 0, at[1] > 0, at[2] > 0};
@@ -37,7 +37,7 @@ class Divider {
     result_.places.resize(mesh.vertices.size());
     for (Index triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
       triangle_ = triangle;
-      Part part;
+      TrianglePart part;
       for (std::size_t i = 0; i < 3; ++i) {
         const Index vertex = mesh.triangles[triangle][i];
         part[i] = {vertex, Barycentric::Unit(static_cast<Eigen::Index>(i))};
@@ -66,7 +66,7 @@ class Divider {
   }
 
   // Halves the part's long edges, which divides it into four, three or two; if it has none, adds it to the result.
-  void divide(const Part& part) {
+  void divide(const TrianglePart& part) {
     std::array<bool, 3> is_long{};
     int count = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -99,7 +99,7 @@ class Divider {
     divide({ab, bc, c});
   }
 
-  void add(const Part& part) {
+  void add(const TrianglePart& part) {
     result_.mesh.triangles.push_back({part[0].vertex, part[1].vertex, part[2].vertex});
     result_.of_triangle.push_back(triangle_);
   }

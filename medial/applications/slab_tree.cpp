@@ -9,7 +9,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr Index kLeaf = 4;  // triangles at most
+constexpr Index kSlabLeaf = 4;  // triangles at most
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -29,7 +29,7 @@ SlabTree::SlabTree(const Surface& surface) : surface_(surface) {
 // Divides the triangles into halves along the longest side of their middles' box.
 void SlabTree::fill(Index node, Index begin, Index end) {
   bound(nodes_[node], begin, end);
-  if (end - begin <= kLeaf) {
+  if (end - begin <= kSlabLeaf) {
     nodes_[node].first = begin;
     nodes_[node].count = end - begin;
     return;

@@ -9,7 +9,7 @@ namespace {
 
 // A ray that passes a corner or an edge within this margin counts as meeting it, so that no ray passes between two
 // triangles because of rounding.
-constexpr double kOnBorder = 1e-12;  // of the triangle's area
+constexpr double kOnTriangleBorder = 1e-12;  // of the triangle's area
 
 void take(Touch& best, const TangentPlace& place, const Point& at) {
   const Vector way = place.position - at;
@@ -118,7 +118,7 @@ Touch ray_through_triangle(const TangentPlace& place, const std::array<Point, 3>
   const double way = normal.dot(place.position - corners[0]) / slope;
   const Point at = place.position - way * place.normal;
   const double area2 = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
-  if (!(way > 0) || !is_in_triangle(at, corners, normal, kOnBorder * area2)) return {};
+  if (!(way > 0) || !is_in_triangle(at, corners, normal, kOnTriangleBorder * area2)) return {};
   return {way / 2, at};
 }
 

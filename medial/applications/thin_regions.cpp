@@ -10,7 +10,7 @@
 namespace orchard {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of a limit: what is below it by less is not
+constexpr double kLimitRounding = 1e-9;  // of a limit: what is below it by less is not
 
 double area_of(const TriangleMesh& mesh, Index triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
@@ -64,7 +64,7 @@ ThinRegions thin_regions(const LocalThickness& thickness, double below) {
   const TriangleMesh& mesh = thickness.mesh;
   const std::vector<double>& values = thickness.at_triangles.thickness;
   std::vector<std::uint8_t> thin(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) thin[i] = values[i] < (1 - kRounding) * below ? 1 : 0;
+  for (std::size_t i = 0; i < values.size(); ++i) thin[i] = values[i] < (1 - kLimitRounding) * below ? 1 : 0;
   DisjointSets sets = joined_at_corners(mesh, thin);
   ThinRegions result;
   result.of_triangle.assign(values.size(), kNone);

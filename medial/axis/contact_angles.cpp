@@ -14,11 +14,11 @@
 namespace orchard {
 namespace {
 
-constexpr std::size_t kEnough = 64;  // of the forming points of a coalesced centre
+constexpr std::size_t kMaxFormingPoints = 64;  // of the forming points of a coalesced centre
 
 std::span<const Index> looked_at(const MedialAxis& axis, Index vertex) {
   const auto forming = axis.forming_points[vertex];
-  return forming.first(std::min(forming.size(), kEnough));
+  return forming.first(std::min(forming.size(), kMaxFormingPoints));
 }
 
 class ContactFinder {

@@ -9,7 +9,6 @@
 namespace orchard::detail {
 namespace {
 
-using Edge = std::array<Index, 2>;
 using Triangle = std::array<Index, 3>;
 
 // A triangle in pieces, by the vertices that divide its sides (b c), (c a) and (a b), or kNone.
@@ -56,9 +55,9 @@ class TriangleCutter {
   std::vector<Triangle>& out_;
 };
 
-class Collapse {
+class ComplexCollapse {
  public:
-  Collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value)
+  ComplexCollapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value)
       : complex_(complex), doomed_(doomed), value_(value), at_(complex.edges, complex.triangles, complex.size()) {
     alive_.vertices.assign(complex.balls.size(), 1);
     alive_.edges.assign(complex.edges.size(), 1);
@@ -148,7 +147,7 @@ void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
       cutter.cut({a, b, c}, middle);
     }
   }
-  std::vector<Edge> edges, halves;
+  std::vector<std::array<Index, 2>> edges, halves;
   edges.reserve(complex.edges.size());
   for (Index e = 0; e < complex.edges.size(); ++e) {
     const auto& [a, b] = complex.edges[e];
@@ -188,7 +187,7 @@ void keep_alive(BallComplex& complex, const Alive& alive) {
 }
 
 void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex) {
-  Collapse(complex, doomed, value_of_vertex).run();
+  ComplexCollapse(complex, doomed, value_of_vertex).run();
 }
 
 }  // namespace orchard::detail

@@ -11,11 +11,12 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxSteps = 12;       // of Newton's method, from one set of contacts
-constexpr int kMaxRounds = 8;       // of contacts that come nearer than those held
-constexpr double kEqual = 1e-11;    // bounding radii: distances that are the same
-constexpr double kTouching = 1e-9;  // of a distance to a contact: what rounding may put between it and the surface
-constexpr double kRank = 0.03;      // of the widest contacts: normals that differ by less do not say where to go
+constexpr int kMaxNewtonSteps = 12;  // of Newton's method, from one set of contacts
+constexpr int kMaxRounds = 8;        // of contacts that come nearer than those held
+constexpr double kEqual = 1e-11;     // bounding radii: distances that are the same
+constexpr double kContactRounding =
+    1e-9;                       // of a distance to a contact: what rounding may put between it and the surface
+constexpr double kRank = 0.03;  // of the widest contacts: normals that differ by less do not say where to go
 
 using Balls = std::initializer_list<PartOfBall>;
 
@@ -25,7 +26,7 @@ double nearest_contact(const Point& place, Balls balls) {
     for (const ClosestPoint& contact : ball->touching())
       squared = std::min(squared, (contact.position - place).squaredNorm());
   }
-  return (1 + kTouching) * std::sqrt(squared);
+  return (1 + kContactRounding) * std::sqrt(squared);
 }
 
 // Whether the ball of this radius holds nothing of the surface for certain, being inside: that |x|^2 - distance(x)^2 is
@@ -38,7 +39,7 @@ bool is_surely_empty(const Point& place, double radius, Balls balls) {
     squared += part * (own - apart);
     inside = inside || apart < own;
   }
-  return inside && (1 - kTouching) * squared >= radius * radius;
+  return inside && (1 - kContactRounding) * squared >= radius * radius;
 }
 
 // For which a with loss(radius, a) = loss the ends of unit vectors at this angle are so far apart, squared: 4 sin^2(a /
@@ -125,7 +126,7 @@ bool BallSolver::step(Point& center) {
 }
 
 bool BallSolver::converge(Point& center) {
-  for (int i = 0; i < kMaxSteps; ++i) {
+  for (int i = 0; i < kMaxNewtonSteps; ++i) {
     merge(center);
     if (contacts_.size() < 2 || !(contacts_[0].distance > 0)) return false;
     if (!step(center)) return true;

@@ -14,7 +14,7 @@ namespace {
 
 // Most cells of a round are those of the last one: their errors are known.
 template <class Cell, class Measure>
-void measure(CellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of) {
+void measure(CachedCellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of) {
   std::vector<double> found(now.size());
   std::vector<std::size_t> unknown;
   std::size_t at = 0;
@@ -34,7 +34,7 @@ void measure(CellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of
 }
 
 template <class Cell>
-void renumber_cells(CellErrors<Cell>& known, const std::vector<Index>& number) {
+void renumber_cells(CachedCellErrors<Cell>& known, const std::vector<Index>& number) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < known.cells.size(); ++i) {
     Cell cell = known.cells[i];

@@ -24,7 +24,7 @@ struct SplitReport {
 // The errors of cells that have been checked, so that no cell is checked twice. Cells are sorted. The error is negative
 // for a cell that an earlier call gave up.
 template <class Cell>
-struct CellErrors {
+struct CachedCellErrors {
   std::vector<Cell> cells;
   std::vector<double> errors;
 };
@@ -35,8 +35,8 @@ struct SplitErrors {
   // are dropped.
   void renumber(const std::vector<Index>& number);
 
-  CellErrors<std::array<Index, 2>> edges;
-  CellErrors<std::array<Index, 3>> triangles;
+  CachedCellErrors<std::array<Index, 2>> edges;
+  CachedCellErrors<std::array<Index, 3>> triangles;
 };
 
 // Divides edges until two conditions hold for the balls that are interpolated on edges and triangles:

@@ -13,10 +13,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kSteps = 20;                    // of a ball that shrinks
-constexpr double kFirst = 0.1;                // of the lower triangle's height: the first ball's distance
+constexpr int kShrinkingSteps = 20;           // of a ball that shrinks
+constexpr double kFirstDistance = 0.1;        // of the lower triangle's height: the first ball's distance
 constexpr double kGrowth = 2;                 // of a ball that grows
-constexpr double kTouching = 1e-3;            // of a ball's radius: how far it may hold something of the surface
+constexpr double kFeatureTouching = 1e-3;     // of a ball's radius: how far it may hold something of the surface
 constexpr double kWeak = 0.5;                 // of the least loss: what a chain goes on over
 constexpr std::array kPlaces{0.5, 0.2, 0.8};  // of an edge, where its wedge is looked at
 
@@ -49,14 +49,14 @@ double wedge_loss(const Surface& surface, Index triangle, std::size_t side, doub
   // The balls grow by steps so small that each holds what lies between the one before and it, and the last shrinks to
   // where it touches something else. One that begins large may be beyond all of the surface.
   const double growth = std::min(kGrowth, (1 + cosine) / (1 - cosine));
-  double s = kFirst * std::min(height(surface, triangle, along), height(surface, other, along));
+  double s = kFirstDistance * std::min(height(surface, triangle, along), height(surface, other, along));
   if (!(s > 0)) return 0;
   ClosestPoint nearest = surface.closest(place + s * inward);
-  while (nearest.distance >= s * cosine * (1 - kTouching) && s < 2 * surface.bounding_radius()) {
+  while (nearest.distance >= s * cosine * (1 - kFeatureTouching) && s < 2 * surface.bounding_radius()) {
     s *= growth;
     nearest = surface.closest(place + s * inward);
   }
-  for (int step = 0; step < kSteps && nearest.distance < s * cosine * (1 - kTouching); ++step) {
+  for (int step = 0; step < kShrinkingSteps && nearest.distance < s * cosine * (1 - kFeatureTouching); ++step) {
     // The ball of the wedge that touches there, too: |place + s inward - nearest| = s cos.
     const Vector to = nearest.position - place;
     const double ahead = inward.dot(to), root = ahead * ahead - squared_sine * to.squaredNorm();

@@ -9,7 +9,7 @@ namespace {
 
 // How far an edge between two places may be from the middle of the way between them, as a part of this way. Around a
 // corner of 120 degrees it is just as far.
-constexpr double kMaxAside = 0.25;
+constexpr double kMaxMiddleDistance = 0.25;
 
 }  // namespace
 
@@ -55,7 +55,7 @@ void SharpEdges::all_at(const Point& place, double far, std::vector<std::array<I
 
 bool SharpEdges::goes_between(const Point& a, const Point& b) {
   ClosestPoint found{.position = Point::Zero()};
-  return a == b || nearest(0.5 * (a + b), kMaxAside * (a - b).norm(), found);
+  return a == b || nearest(0.5 * (a + b), kMaxMiddleDistance * (a - b).norm(), found);
 }
 
 bool SharpEdges::nearest(const Point& place, double far, ClosestPoint& found) {

@@ -12,8 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSamePlace = 1e-5;  // of the largest coordinate: files of one axis are written with six digits or more
-constexpr double kRound = 1e-2;      // of the radius: vertices of a ball's mesh are that far from round at most
+constexpr double kSameCenter =
+    1e-5;                        // of the largest coordinate: files of one axis are written with six digits or more
+constexpr double kRound = 1e-2;  // of the radius: vertices of a ball's mesh are that far from round at most
 
 struct Family {
   fs::path centers, faces, edges, spheres;
@@ -44,7 +45,7 @@ void add_cells(ForeignAxis& axis, const ForeignAxis& other, const fs::path& file
   double extent = 0;
   for (const Point& center : axis.mesh.centers) extent = std::max(extent, center.cwiseAbs().maxCoeff());
   for (std::size_t i = 0; i < axis.mesh.centers.size(); ++i) {
-    if ((axis.mesh.centers[i] - other.mesh.centers[i]).cwiseAbs().maxCoeff() > kSamePlace * extent)
+    if ((axis.mesh.centers[i] - other.mesh.centers[i]).cwiseAbs().maxCoeff() > kSameCenter * extent)
       throw differs("has vertex " + std::to_string(i + 1) + " at another place");
   }
   axis.mesh.edges.insert(axis.mesh.edges.end(), other.mesh.edges.begin(), other.mesh.edges.end());

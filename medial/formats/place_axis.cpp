@@ -14,13 +14,14 @@
 namespace orchard {
 namespace {
 
-constexpr Index kLookedAt = 300;     // balls at most, evenly chosen: a median needs no more
-constexpr double kOnSurface = 1e-6;  // of the diagonal: centres nearer than this are vertices or samples of the surface
-constexpr double kUnfilled = 0.1;    // of the diagonal: axes in few balls leave so much of the solid's box empty
-constexpr double kSameFrame = 0.3;   // of the diagonal: a frame that moves no corner of the box by more is the same one
-constexpr double kMostly = 0.9;      // of all balls
-constexpr double kFits = 0.25;       // of what it was: a frame that makes it so much better is named
-constexpr double kFarOff = 3;        // times tolerance::kFrameError: no frame need fit for a refusal
+constexpr Index kLookedAt = 300;  // balls at most, evenly chosen: a median needs no more
+constexpr double kSampleOnSurface =
+    1e-6;                           // of the diagonal: centres nearer than this are vertices or samples of the surface
+constexpr double kUnfilled = 0.1;   // of the diagonal: axes in few balls leave so much of the solid's box empty
+constexpr double kSameFrame = 0.3;  // of the diagonal: a frame that moves no corner of the box by more is the same one
+constexpr double kMostly = 0.9;     // of all balls
+constexpr double kFits = 0.25;      // of what it was: a frame that makes it so much better is named
+constexpr double kFarOff = 3;       // times tolerance::kFrameError: no frame need fit for a refusal
 
 // A map from the file's coordinates to the mesh's: first axes are exchanged, then it scales, then it moves.
 struct Frame {
@@ -106,7 +107,7 @@ class FrameFinder {
   // Whether nearly all centres are on the surface.
   bool on_surface(const Frame& frame) const {
     const auto near = std::count_if(balls_.begin(), balls_.end(), [&](const Sphere& ball) {
-      return surface_.distance(frame(ball.center)) < kOnSurface * diagonal_;
+      return surface_.distance(frame(ball.center)) < kSampleOnSurface * diagonal_;
     });
     return balls_.size() > 3 && static_cast<double>(near) > kMostly * static_cast<double>(balls_.size());
   }

@@ -26,7 +26,7 @@ using detail::RepairProposal;
 
 // Two new points of one pass are at least this share of a gap's width apart. What the first of them does not mend is
 // found in the next pass, so wide gaps get few points.
-constexpr double kSpread = 1;
+constexpr double kGapSpread = 1;
 
 // Repair points can cause further repair points, back and forth across a gap. After so many in a row, propose_repair()
 // is asked to end that.
@@ -39,7 +39,7 @@ bool was_rebuilt(const InsertionReport& report, std::size_t inserted) {
          inserted;
 }
 
-struct Candidate {
+struct CrossingCandidate {
   Index cell = kNone;
   std::vector<Index> neighbors;
   RepairProposal proposal;
@@ -139,8 +139,8 @@ class Repair {
 
   // Repair points for these crossings: projections before points to snap to, wide gaps before narrow ones, then by
   // cell.
-  std::vector<Candidate> propose(const std::vector<const Crossing*>& crossings) const {
-    std::vector<Candidate> candidates(crossings.size());
+  std::vector<CrossingCandidate> propose(const std::vector<const Crossing*>& crossings) const {
+    std::vector<CrossingCandidate> candidates(crossings.size());
     tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
       const Crossing& crossing = *crossings[i];
       const Index cell = crossing.component.cell;
@@ -149,17 +149,17 @@ class Repair {
                                               generations_[cell] >= kBounceLength),
                        crossing.neck};
     });
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    std::stable_sort(candidates.begin(), candidates.end(), [](const CrossingCandidate& a, const CrossingCandidate& b) {
       const bool a_snaps = a.proposal.facing.empty(), b_snaps = b.proposal.facing.empty();
       return a_snaps != b_snaps ? b_snaps : a.proposal.gap() > b.proposal.gap();
     });
     return candidates;
   }
 
-  void add_points(const std::vector<Candidate>& candidates) {
+  void add_points(const std::vector<CrossingCandidate>& candidates) {
     std::vector<std::uint8_t> projected(result_.sampling.size(), 0);  // cells that a projection mends in this pass
     detail::PointTree new_points(surface_.bounding_box());
-    for (const Candidate& candidate : candidates) {
+    for (const CrossingCandidate& candidate : candidates) {
       if (near_new_point(candidate, new_points)) continue;
       GapRepairPass& pass = result_.report.passes.back();
       const auto& [facing, snapped] = candidate.proposal;
@@ -182,10 +182,10 @@ class Repair {
     result_.report.passes.back().steps_among_new_points = new_points.steps();
   }
 
-  static bool near_new_point(const Candidate& candidate, const detail::PointTree& new_points) {
+  static bool near_new_point(const CrossingCandidate& candidate, const detail::PointTree& new_points) {
     const RepairProposal& proposal = candidate.proposal;
     const Point& position = proposal.facing.empty() ? proposal.snapped.position : proposal.facing[0].position;
-    const double spread = kSpread * proposal.gap();
+    const double spread = kGapSpread * proposal.gap();
     return new_points.any_within(
         position, spread, [&](const Point& point) { return (point - position).squaredNorm() < spread * spread; });
   }

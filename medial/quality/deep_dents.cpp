@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "deep_dents.h"
+#include "search_precision.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;  // of the found maximum: deeper places by less than this are not searched
-constexpr int kMaxLevels = 40;        // after these a cube is as small as rounding errors
-constexpr std::size_t kBlock = 64;    // cubes that one task divides
-constexpr double kRounding = 1e-12;   // of the coordinates: more than the error of a bound
+constexpr int kMaxCubeLevels = 40;      // after these a cube is as small as rounding errors
+constexpr std::size_t kCubeBlock = 64;  // cubes that one task divides
 
 struct Cube {
   Point center;
@@ -23,7 +22,7 @@ struct Cube {
 };
 
 // A place of the reconstruction's boundary.
-struct Place {
+struct BoundaryPlace {
   double depth = 0;  // in the solid
   Point place = Point::Zero();
   Sphere ball{Point::Zero(), 0};  // of the reconstruction
@@ -36,14 +35,14 @@ class DentSearch {
       : surface_(surface), reconstruction_(reconstruction), max_cubes_(max_cubes) {
     found_.depth = known;
     const Box& box = surface.bounding_box();
-    rounding_ = kRounding * (box.min().norm() + box.max().norm());
+    rounding_ = search_rounding(box);
     half_ = 0.5 * (box.max() - box.min()).maxCoeff();
     cubes_ = {first_cube(box)};
   }
 
   SearchedMax run(double accuracy) {
     while (more_cubes()) {
-      const Place found = divide();
+      const BoundaryPlace found = divide();
       if (found.depth > found_.depth) found_ = found;
       const double enough = found_.depth + std::max(accuracy, kShareAbove * found_.depth);
       std::erase_if(cubes_, [&](const Cube& cube) {
@@ -62,7 +61,7 @@ class DentSearch {
  private:
   bool more_cubes() {
     divided_ += cubes_.size();
-    return !cubes_.empty() && divided_ <= max_cubes_ && level_++ < kMaxLevels;
+    return !cubes_.empty() && divided_ <= max_cubes_ && level_++ < kMaxCubeLevels;
   }
 
   Cube first_cube(const Box& box) const {
@@ -75,17 +74,17 @@ class DentSearch {
 
   // Puts the parts that may hold places deeper than what was found in place of all cubes, and returns the deepest such
   // place. What was found stays the same for all parts, so that their order does not matter.
-  Place divide() {
+  BoundaryPlace divide() {
     struct Result {
       std::vector<Cube> parts;
-      Place deepest;
+      BoundaryPlace deepest;
     };
     half_ *= 0.5;
-    std::vector<Result> results((cubes_.size() + kBlock - 1) / kBlock);
+    std::vector<Result> results((cubes_.size() + kCubeBlock - 1) / kCubeBlock);
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t block) {
       Result& result = results[block];
-      const std::size_t end = std::min(cubes_.size(), (block + 1) * kBlock);
-      for (std::size_t i = block * kBlock; i < end; ++i) {
+      const std::size_t end = std::min(cubes_.size(), (block + 1) * kCubeBlock);
+      for (std::size_t i = block * kCubeBlock; i < end; ++i) {
         for (int part = 0; part < 8; ++part) {
           const Vector step(part & 1 ? half_ : -half_, part & 2 ? half_ : -half_, part & 4 ? half_ : -half_);
           look_at(cubes_[i], cubes_[i].center + step, result.parts, result.deepest);
@@ -93,7 +92,7 @@ class DentSearch {
       }
     });
     cubes_.clear();
-    Place deepest;
+    BoundaryPlace deepest;
     for (const Result& result : results) {
       cubes_.insert(cubes_.end(), result.parts.begin(), result.parts.end());
       if (result.deepest.depth > deepest.depth) deepest = result.deepest;
@@ -102,7 +101,7 @@ class DentSearch {
   }
 
   // Tests a part of a cube. The boundary does not meet it if the reconstruction holds all of it or none of it.
-  void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, Place& deepest) const {
+  void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, BoundaryPlace& deepest) const {
     const double reach = std::sqrt(3.0) * half_ + rounding_;
     const auto farthest_from = [&](const Point& place) {
       return ((center - place).cwiseAbs() + Vector::Constant(half_)).norm() + rounding_;
@@ -155,7 +154,7 @@ class DentSearch {
   }
 
   // Takes the place of the ball's boundary that is nearest to a point outside the reconstruction, if it is the deepest.
-  void take_boundary(const Point& from, const Sphere& ball, Place& deepest) const {
+  void take_boundary(const Point& from, const Sphere& ball, BoundaryPlace& deepest) const {
     const Vector way = from - ball.center;
     const double length = way.norm();
     if (!(length > 0)) return;
@@ -173,7 +172,7 @@ class DentSearch {
   double rounding_ = 0;  // bound on the rounding errors of coordinates
   std::size_t divided_ = 0;
   int level_ = 0;
-  Place found_;
+  BoundaryPlace found_;
 };
 
 }  // namespace

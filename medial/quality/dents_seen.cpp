@@ -11,9 +11,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // balls in one task
-constexpr int kMaxWayOut = 50;      // steps on the way out of the reconstruction
-constexpr double kOut = 1e-6;       // of the diagonal: a way out ends this near to the boundary
+constexpr std::size_t kBallBlock = 64;  // balls in one task
+constexpr int kMaxWayOut = 50;          // steps on the way out of the reconstruction
+constexpr double kOut = 1e-6;           // of the diagonal: a way out ends this near to the boundary
 
 // Moves a place straight out of the nearest ball, then out of the next one, until no ball contains it. Returns false if
 // that does not end.
@@ -36,7 +36,7 @@ std::vector<Dent> dents_seen_from(std::span<const Sphere> balls, const Surface& 
                                   const Reconstruction& reconstruction, double min_depth) {
   const double arrived = kOut * (surface.bounding_box().max() - surface.bounding_box().min()).norm();
   std::vector<Dent> found(balls.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, balls.size(), kBlock), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, balls.size(), kBallBlock), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const auto& [center, radius] = balls[i];
       if (radius <= min_depth) continue;

@@ -9,9 +9,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::uint64_t kStage = 0x656e76;
-constexpr int kTries = 100;          // for each sample that is asked for
-constexpr double kSamePlace = 1e-9;  // of the largest radius: a place is not inside the ball that it is made on
+constexpr std::uint64_t kEnvelopeStage = 0x656e76;
+constexpr int kTries = 100;        // for each sample that is asked for
+constexpr double kOwnBall = 1e-9;  // of the largest radius: a place is not inside the ball that it is made on
 
 struct Piece {
   enum class Kind : std::uint8_t { sphere, cone, face } kind = Kind::sphere;
@@ -36,12 +36,12 @@ class Sampler {
     if (areas_.empty() || !(areas_.back() > 0)) return samples;
     const std::uint64_t tries = std::uint64_t{count} * kTries;
     for (std::uint64_t i = 0; i < tries && samples.size() < count; ++i) {
-      Random random(seed, kStage, i);
+      Random random(seed, kEnvelopeStage, i);
       const double place = areas_.back() * random.uniform();
       const auto found = std::upper_bound(areas_.begin(), areas_.end() - 1, place);
       const Point point = point_on(pieces_[static_cast<std::size_t>(found - areas_.begin())], random);
       Sphere unused{Point::Zero(), 0};
-      const double bound = -kSamePlace * largest_;
+      const double bound = -kOwnBall * largest_;
       if (!(reconstruction_.distance_between(bound, 0, point, unused) < bound)) samples.push_back(point);
     }
     return samples;

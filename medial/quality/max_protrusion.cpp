@@ -11,15 +11,14 @@
 #include "../axis/incidence.h"
 #include "boundary_reach.h"
 #include "quality_parts.h"
+#include "search_precision.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;      // of the found maximum: values above it by less than this are not searched
-constexpr int kMaxLevels = 100;           // of halving: after these a cell is as small as rounding errors
-constexpr std::size_t kBlock = 64;        // cells that one task looks at
+constexpr int kMaxHalvingLevels = 100;    // of halving: after these a cell is as small as rounding errors
+constexpr std::size_t kCellBlock = 64;    // cells that one task looks at
 constexpr std::size_t kMaxHalves = 4096;  // of a single cell: if these do not decide, the cell is taken to protrude
-constexpr double kRounding = 1e-12;       // of the coordinates: more than the error of a bound
 
 // Balls interpolated linearly on up to three; edges and vertices repeat their last.
 struct Cell {
@@ -95,13 +94,13 @@ class ProtrusionSearch {
       : surface_(surface), accuracy_(accuracy), max_cells_(max_cells) {
     found_.max = known;
     const Box& box = surface.bounding_box();
-    rounding_ = kRounding * (box.min().norm() + box.max().norm());
+    rounding_ = search_rounding(box);
   }
 
   SearchedMax run(std::vector<Cell> cells) {
     double open = 0;  // the largest bound of cells that are not halved any more
     std::size_t looked_at = 0;
-    for (int level = 0; level < kMaxLevels && !cells.empty(); ++level) {
+    for (int level = 0; level < kMaxHalvingLevels && !cells.empty(); ++level) {
       looked_at += cells.size();
       if (looked_at > max_cells_) break;
       look_at(cells);
@@ -125,10 +124,10 @@ class ProtrusionSearch {
 
   void look_at(std::vector<Cell>& cells) {
     const double before = found_.max;
-    std::vector<SearchedMax> results((cells.size() + kBlock - 1) / kBlock, found_);
+    std::vector<SearchedMax> results((cells.size() + kCellBlock - 1) / kCellBlock, found_);
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t block) {
-      const std::size_t end = std::min(cells.size(), (block + 1) * kBlock);
-      for (std::size_t i = block * kBlock; i < end; ++i)
+      const std::size_t end = std::min(cells.size(), (block + 1) * kCellBlock);
+      for (std::size_t i = block * kCellBlock; i < end; ++i)
         cells[i].bound = std::min(cells[i].bound, bound_of(cells[i], before, results[block]));
     });
     for (const SearchedMax& result : results) {

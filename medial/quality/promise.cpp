@@ -9,8 +9,8 @@
 namespace orchard {
 namespace {
 
-constexpr const char* kStage = "checking what was promised";
-constexpr double kAccuracy = 1e-5;  // diagonals: how near the bounds on the largest values are brought
+constexpr const char* kPromiseStage = "checking what was promised";
+constexpr double kPromiseAccuracy = 1e-5;  // diagonals: how near the bounds on the largest values are brought
 constexpr double kKnown =
     0.97;  // of the limit: the proven bound is up to 2 % more than that, so it stays below the limit
 constexpr Index kMaxCells = 300'000;  // of the search for what protrudes
@@ -21,9 +21,9 @@ PromiseCheck check_promise(const Surface& surface, const MedialMesh& mesh, const
                            const Progress& progress) {
   if (!surface.solid()) throw InputError("a medial axis is compared with a solid: " + surface.report().faults());
   validate(mesh);
-  report_progress(progress, kStage, 0);
+  report_progress(progress, kPromiseStage, 0);
   PromiseCheck check{.promise = promise, .found = topology(mesh), .wanted = solid_topology(surface)};
-  const double diagonal = surface.bounding_box().diagonal().norm(), accuracy = kAccuracy * diagonal;
+  const double diagonal = surface.bounding_box().diagonal().norm(), accuracy = kPromiseAccuracy * diagonal;
   if (promise.open) {
     const double limit = *promise.open * diagonal;
     const double known = limit - accuracy;  // so that the proven bound is at most the limit
@@ -32,7 +32,7 @@ PromiseCheck check_promise(const Surface& surface, const MedialMesh& mesh, const
     if (open.max > limit) check.open = open.max / diagonal;
     check.open_upper = open.upper / diagonal;
   }
-  report_progress(progress, kStage, 0.5);
+  report_progress(progress, kPromiseStage, 0.5);
   if (promise.protrusion) {
     const double limit = *promise.protrusion * diagonal;
     std::vector<Sphere> balls;
@@ -44,7 +44,7 @@ PromiseCheck check_promise(const Surface& surface, const MedialMesh& mesh, const
     if (beyond.max > limit) check.protrusion = beyond.max / diagonal;
     check.protrusion_upper = beyond.upper / diagonal;
   }
-  report_progress(progress, kStage, 1);
+  report_progress(progress, kPromiseStage, 1);
   return check;
 }
 

@@ -8,9 +8,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kFirst = 256;  // balls whose far sides are looked at before it is known whether they suffice
+constexpr std::size_t kFirstBalls = 256;  // balls whose far sides are looked at before it is known whether they suffice
 
-struct Candidate {
+struct ProtrudingCandidate {
   double upper = 0;  // it protrudes by no more: distance is 1-Lipschitz
   std::size_t number = 0;
 };
@@ -50,16 +50,16 @@ BallReach reach_of(const Surface& surface, const Sphere& ball, const BallDepth& 
 std::vector<WorstPlace> worst_protrusions(const Surface& surface, std::span<const Sphere> balls,
                                           std::span<const BallDepth> depths, std::vector<WorstPlace> known, Index count,
                                           double apart, double negligible) {
-  std::vector<Candidate> candidates;
+  std::vector<ProtrudingCandidate> candidates;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     const double upper = depths[i].signed_distance + balls[i].radius;
     if (upper > negligible) candidates.push_back({upper, i});
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+  std::sort(candidates.begin(), candidates.end(), [](const ProtrudingCandidate& a, const ProtrudingCandidate& b) {
     return a.upper != b.upper ? a.upper > b.upper : a.number < b.number;
   });
   std::size_t looked_at = 0;
-  for (std::size_t next = kFirst;; next *= 2) {
+  for (std::size_t next = kFirstBalls;; next *= 2) {
     const std::size_t end = std::min(next, candidates.size());
     std::vector<WorstPlace> found(end - looked_at);
     tbb::parallel_for(looked_at, end, [&](std::size_t k) {

@@ -9,10 +9,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kAccuracy = 1e-5;            // of the diagonal: to which the maximum is searched
+constexpr double kCoverageAccuracy = 1e-5;    // of the diagonal: to which the maximum is searched
 constexpr std::size_t kMaxParts = 1'000'000;  // of the surface's triangles that are looked at
-constexpr std::size_t kBlock = 256;           // vertices or triangles that one task takes, one after the other
-constexpr double kOnBorder = 1e-9;            // of the diagonal: what rounding puts beside a border
+constexpr std::size_t kCoverageBlock = 256;   // vertices or triangles that one task takes, one after the other
+constexpr double kBesideBorder = 1e-9;        // of the diagonal: what rounding puts beside a border
 
 // The borders of sheets, the free ends of wires and the balls without edges, as flat triangles.
 TriangleMesh borders_of(const MedialMesh& mesh) {
@@ -52,10 +52,10 @@ Near near_cell(const Reconstruction& reconstruction, const Point& place, Index g
 // `visit(i, cell)` in parallel; in blocks, within which one sees the cell that the one before left.
 template <class Visit>
 void for_each_in_turn(std::size_t count, const Visit& visit) {
-  tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+  tbb::parallel_for(std::size_t{0}, (count + kCoverageBlock - 1) / kCoverageBlock, [&](std::size_t block) {
     Index cell = kNone;
-    const std::size_t end = std::min(count, (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) visit(i, cell);
+    const std::size_t end = std::min(count, (block + 1) * kCoverageBlock);
+    for (std::size_t i = block * kCoverageBlock; i < end; ++i) visit(i, cell);
   });
 }
 
@@ -92,7 +92,7 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
   if (farthest->distance > known.max)
     known = {farthest->distance, 0, vertices[static_cast<std::size_t>(farthest - at_vertices.begin())]};
   // What the cell of a corner comes near enough to needs no search.
-  const double enough = known.max + kAccuracy * diagonal;
+  const double enough = known.max + kCoverageAccuracy * diagonal;
   std::vector<double> bounds(surface.mesh().triangles.size());
   for_each_in_turn(bounds.size(), [&](std::size_t t, Index&) {
     const Corners corners = surface.corners(static_cast<Index>(t));
@@ -111,7 +111,7 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
       closed = std::max(closed, bounds[t]);
     }
   }
-  MaxOverTriangles found = max_over_triangles(triangles, known, kAccuracy * diagonal, kMaxParts,
+  MaxOverTriangles found = max_over_triangles(triangles, known, kCoverageAccuracy * diagonal, kMaxParts,
                                               [&](const Corners& corners, Index cell, double limit) {
                                                 return coverage_of(corners, reconstruction, cell, limit);
                                               });
@@ -131,7 +131,7 @@ Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reac
   const Surface at_borders(std::move(borders));
   tbb::parallel_for(std::size_t{0}, reaches.size(), [&](std::size_t i) {
     const SurfaceReach& reach = reaches[i];
-    if (reach.uncovered > 0 && at_borders.distance(reach.ball.center) > kOnBorder * diagonal)
+    if (reach.uncovered > 0 && at_borders.distance(reach.ball.center) > kBesideBorder * diagonal)
       inner[i] = reach.uncovered;
   });
   return spread_of(inner);

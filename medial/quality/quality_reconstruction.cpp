@@ -11,10 +11,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kArrived = 1e-6;    // of the diagonal: a march ends at a place this near to the boundary
-constexpr double kOnSurface = 1e-9;  // of the diagonal: centres that are no farther outside are on the surface
-constexpr int kMaxSteps = 50;
-constexpr std::size_t kBlock = 64;                                  // samples that one task handles in turn
+constexpr double kAtBoundary = 1e-6;       // of the diagonal: a march ends at a place this near to the boundary
+constexpr double kCenterOnSurface = 1e-9;  // of the diagonal: centres that are no farther outside are on the surface
+constexpr int kMaxMarchSteps = 50;
+constexpr std::size_t kSampleBlock = 64;                            // samples that one task handles in turn
 constexpr double kProtrusionAccuracy = 1e-5, kDentAccuracy = 1e-4;  // diagonals: accuracies of the maxima
 
 // The distance from a point inside a ball to the ball's border in a unit direction.
@@ -30,19 +30,19 @@ double way_out(const Sphere& ball, const Point& from, const Vector& direction) {
 double straight_out(const Reconstruction& reconstruction, const Point& from, Sphere ball, double depth,
                     double diagonal) {
   Point at = from;
-  for (int step = 0; step < kMaxSteps && depth > kArrived * diagonal; ++step) {
+  for (int step = 0; step < kMaxMarchSteps && depth > kAtBoundary * diagonal; ++step) {
     const Vector way = at - ball.center;
     const double length = way.norm();
     if (!(length > 0)) break;
     at = ball.center + ball.radius / length * way;
-    depth = -reconstruction.distance_below(-kArrived * diagonal, at, ball);
+    depth = -reconstruction.distance_below(-kAtBoundary * diagonal, at, ball);
   }
-  return depth > kArrived * diagonal ? std::numeric_limits<double>::infinity() : (at - from).norm();
+  return depth > kAtBoundary * diagonal ? std::numeric_limits<double>::infinity() : (at - from).norm();
 }
 
 // Whether the way found from a point to the boundary may be much longer than the shortest.
 bool is_loose(const SurfaceReach& reach, double diagonal) {
-  return reach.to_boundary > 1.1 * reach.min_to_boundary + kArrived * diagonal;
+  return reach.to_boundary > 1.1 * reach.min_to_boundary + kAtBoundary * diagonal;
 }
 
 // Shortens ways that may be too long: places of the boundary at which the ways of other samples ended may be nearer.
@@ -87,15 +87,15 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   }
   const Sphere deepest = reach.ball;
   const double first_depth = depth;
-  for (int step = 0; step < kMaxSteps && depth > kArrived * diagonal; ++step) {
+  for (int step = 0; step < kMaxMarchSteps && depth > kAtBoundary * diagonal; ++step) {
     reach.farthest += way_out(reach.ball, reach.farthest, sample.normal) * sample.normal;
-    depth = -reconstruction.distance_below(-kArrived * diagonal, reach.farthest, reach.ball);
+    depth = -reconstruction.distance_below(-kAtBoundary * diagonal, reach.farthest, reach.ball);
   }
   if (reach.farthest == sample.position) return reach;
   const double off = surface.signed_distance(reach.farthest);
   reach.beyond = std::max(0.0, off);
   reach.from_boundary = std::abs(off);
-  reach.arrived = !(depth > kArrived * diagonal);
+  reach.arrived = !(depth > kAtBoundary * diagonal);
   reach.to_boundary = (reach.farthest - sample.position).norm();
   reach.min_to_boundary = first_depth;
   // The way along the normal is the shortest, unless the ball does not belong to this place of the surface.
@@ -131,11 +131,11 @@ Spread spread_over(std::span<const SurfaceReach> reaches, double SurfaceReach::*
 std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction& reconstruction,
                                    std::span<const SurfaceSample> samples, double diagonal) {
   std::vector<SurfaceReach> reaches(samples.size());
-  const std::size_t blocks = (samples.size() + kBlock - 1) / kBlock;
+  const std::size_t blocks = (samples.size() + kSampleBlock - 1) / kSampleBlock;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    const std::size_t end = std::min(samples.size(), (block + 1) * kBlock);
+    const std::size_t end = std::min(samples.size(), (block + 1) * kSampleBlock);
     Index cell = kNone;
-    for (std::size_t i = block * kBlock; i < end; ++i)
+    for (std::size_t i = block * kSampleBlock; i < end; ++i)
       reaches[i] = reach_at(surface, reconstruction, samples[i], cell, diagonal);
   });
   tighten(samples, reaches, diagonal);
@@ -155,7 +155,7 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   const Spread to = spread_over(reaches, &SurfaceReach::to_boundary);
   const Spread from = spread_over(reaches, &SurfaceReach::from_boundary);
 
-  const double negligible = kArrived * quality.diagonal;
+  const double negligible = kAtBoundary * quality.diagonal;
   std::vector<WorstPlace> protruding, uncovered;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SurfaceReach& reach = reaches[i];
@@ -171,7 +171,7 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   }
   quality.coverage.max = open.max;
   quality.coverage_upper = open.upper;
-  const double on_surface = kOnSurface * quality.diagonal;
+  const double on_surface = kCenterOnSurface * quality.diagonal;
   quality.outside_vertices = fraction_outside(depths.first(balls.vertices), on_surface);
   quality.outside_edges = fraction_outside(depths.subspan(balls.vertices, balls.edges), on_surface);
   const std::span<const BallDepth> of_triangles = depths.subspan(balls.vertices + balls.edges);

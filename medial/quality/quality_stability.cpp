@@ -48,7 +48,7 @@ SurfaceSampling carried_along(SurfaceSampling sampling, const Surface& from, con
   return sampling;
 }
 
-struct Part {
+struct WidePart {
   std::vector<Point> points;  // vertices with a wide enough angle
   TriangleMesh sheets;  // what of the axis has one that is a little smaller, flat triangles for edges and vertices
 };
@@ -104,9 +104,9 @@ class SheetCutter {
   TriangleMesh sheets_;
 };
 
-Part wide_part(const MedialAxis& axis, double angle) {
+WidePart wide_part(const MedialAxis& axis, double angle) {
   const std::vector<double> angles = contact_angles(axis);
-  Part part{.points = {}, .sheets = SheetCutter(axis, angles, angle - 2 * kHysteresis).run()};
+  WidePart part{.points = {}, .sheets = SheetCutter(axis, angles, angle - 2 * kHysteresis).run()};
   for (Index i = 0; i < axis.size(); ++i) {
     if (angles[i] > angle) part.points.push_back(axis.centers[i]);
   }
@@ -150,8 +150,8 @@ std::optional<MedialStability> medial_stability(const Surface& surface, const Me
   MedialBuildOptions unchecked = options;
   unchecked.check_promise = false;
   const MedialBuild other = build_medial_axis(moved, unchecked, progress, std::move(points));
-  const Part a = wide_part(build.axis, 2 * stability.object_angle);
-  const Part b = wide_part(other.axis, 2 * stability.object_angle);
+  const WidePart a = wide_part(build.axis, 2 * stability.object_angle);
+  const WidePart b = wide_part(other.axis, 2 * stability.object_angle);
   if (a.points.empty() || b.points.empty()) return std::nullopt;
   std::vector<double> distances;
   add_distances(a.points, b.sheets, distances);

@@ -11,22 +11,21 @@
 #include <span>
 #include <vector>
 
+#include "search_precision.h"
 #include "shell_piece.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;       // of what was found: not searched for more
-constexpr double kRounding = 1e-12;        // of the coordinates: more than places and distances are off by
 constexpr double kNormalRounding = 1e-14;  // of a normal, times longest side squared over area
-constexpr double kFlat = 1e-12;            // sine: an edge that is convex by no more may be reflex
-constexpr int kMaxLevels = 60;             // of halving: then a piece is as small as rounding
-constexpr std::size_t kBlock = 64;         // triangles or pieces that one task looks at
+constexpr double kFlatSine = 1e-12;        // sine: an edge that is convex by no more may be reflex
+constexpr int kMaxShellLevels = 60;        // of halving: then a piece is as small as rounding
+constexpr std::size_t kShellBlock = 64;    // triangles or pieces that one task looks at
 constexpr double kWide = 0.5;              // cosine to the mean: normals that lie farther apart are looked at in parts
 constexpr int kTouches = 6;                // places q looked for, each nearer than the one before
-constexpr double kTouching = 1e-3;         // of the depth: a place q that is nearer by less is no other
-constexpr double kArrived = 0.01;          // of the accuracy: a way to the boundary ends this near
-constexpr int kMaxSteps = 20;              // on the way to the boundary
+constexpr double kSameDepth = 1e-3;        // of the depth: a place q that is nearer by less is no other
+constexpr double kShellArrived = 0.01;     // of the accuracy: a way to the boundary ends this near
+constexpr int kMaxShellSteps = 20;         // on the way to the boundary
 
 // What the last place that was looked at has told: pieces in a row are near each other.
 struct Hint {
@@ -45,13 +44,13 @@ class ShellSearch {
         max_pieces_(max_pieces) {
     found_.max = known;
     const Box& box = surface.bounding_box();
-    rounding_ = kRounding * (box.min().norm() + box.max().norm());
+    rounding_ = search_rounding(box);
   }
 
   SearchedMax run() {
     std::vector<ShellPiece> open = look_below_all();
     std::size_t looked_at = 0;
-    for (int level = 0; level < kMaxLevels && !open.empty(); ++level) {
+    for (int level = 0; level < kMaxShellLevels && !open.empty(); ++level) {
       looked_at += open.size();
       if (looked_at > max_pieces_) break;
       open = look_below_halves(open);
@@ -77,11 +76,11 @@ class ShellSearch {
 
   template <class LookAt>
   std::vector<ShellPiece> in_blocks(std::size_t count, const LookAt& look_at) {
-    std::vector<Result> results((count + kBlock - 1) / kBlock);
+    std::vector<Result> results((count + kShellBlock - 1) / kShellBlock);
     const double level = this->level();
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t block) {
       Hint hint;
-      for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+      for (std::size_t i = block * kShellBlock; i < std::min(count, (block + 1) * kShellBlock); ++i)
         look_at(i, level, hint, results[block]);
     });
     std::vector<ShellPiece> open;
@@ -141,7 +140,7 @@ class ShellSearch {
       if (std::abs(height) > std::abs(rise)) rise = height;
       far = std::max(far, (corner - from).norm());
     }
-    return rise > -kFlat * far;
+    return rise > -kFlatSine * far;
   }
 
   void look_below_edge(Index triangle, int edge, double level, Hint& hint, Result& result) const {
@@ -191,7 +190,7 @@ class ShellSearch {
     }
     const MeanNormal axis = mean_normal(columns);
     if (axis.cosine >= kWide) {
-      if (is_held(columns, {level, (1 + kFlat) * deepest_ / axis.cosine, slack}, hint)) return;
+      if (is_held(columns, {level, (1 + kFlatSine) * deepest_ / axis.cosine, slack}, hint)) return;
       const std::vector<Vector> hull = hull_of(columns, axis.direction);
       for (std::size_t k = 0; k < hull.size(); ++k) {
         look_at_whole(below(vertex, slack, {axis.direction, hull[k], hull[(k + 1) % hull.size()]}), level, hint,
@@ -224,7 +223,7 @@ class ShellSearch {
         const double length = edge.norm();
         if (length > 0 &&
             std::all_of(piece.columns.begin(), piece.columns.begin() + 3,
-                        [&](const NormalColumn& column) { return column.inward.dot(edge) > kFlat * length; }))
+                        [&](const NormalColumn& column) { return column.inward.dot(edge) > kFlatSine * length; }))
           return true;
       }
     }
@@ -235,7 +234,7 @@ class ShellSearch {
   void look_at_whole(ShellPiece piece, double level, Hint& hint, Result& result) const {
     const MeanNormal axis = mean_normal(piece.in_use());
     piece.from = level;
-    piece.to = (1 + kFlat) * deepest_ / std::max(axis.cosine, kWide / 2);
+    piece.to = (1 + kFlatSine) * deepest_ / std::max(axis.cosine, kWide / 2);
     look_at(piece, level, hint, result);
   }
 
@@ -307,7 +306,7 @@ class ShellSearch {
     for (int k = 0; k < kTouches; ++k) {
       const NormalColumn before = middle;
       const ClosestPoint other =
-          surface_.closest_within(middle.foot + middle.top * middle.inward, (1 - kTouching) * middle.top);
+          surface_.closest_within(middle.foot + middle.top * middle.inward, (1 - kSameDepth) * middle.top);
       if (other.triangle == kNone || !cut_at(single, other.position) || !(middle.top < before.top)) break;
       std::array<NormalColumn, 4> columns = piece.columns;
       std::span<NormalColumn> in_use(columns.data(), piece.count);
@@ -348,11 +347,11 @@ class ShellSearch {
     for (const NormalColumn& column : piece.in_use()) place += column.foot / static_cast<double>(piece.count);
     place += piece.from * axis.direction;
     // From outside, the nearest place of the reconstruction is on its boundary, wherever the way has come to.
-    const double arrived = accuracy_ * kArrived;
+    const double arrived = accuracy_ * kShellArrived;
     for (int step = 1;; ++step) {
       const auto near = reconstruction_.nearest_from(reconstruction_.nearest_in(hint.cell, place), place, 0);
       if (!(near.distance > 0)) return;
-      if (near.distance < arrived || step == kMaxSteps) {
+      if (near.distance < arrived || step == kMaxShellSteps) {
         take_boundary(place, near, found);
         return;
       }

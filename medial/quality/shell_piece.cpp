@@ -6,7 +6,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of a depth: halves of it overlap by as much
+constexpr double kDepthRounding = 1e-12;  // of a depth: halves of it overlap by as much
 
 }  // namespace
 
@@ -107,7 +107,7 @@ std::array<ShellPiece, 2> halves_of(const ShellPiece& piece) {
   }
   if (to - piece.from > max) {
     halves[0].to = halves[1].from = 0.5 * (piece.from + to);
-    halves[1].to = std::min(piece.to, to * (1 + kRounding));
+    halves[1].to = std::min(piece.to, to * (1 + kDepthRounding));
     return halves;
   }
   const auto split = [&](std::size_t a, std::size_t b) {

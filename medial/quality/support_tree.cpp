@@ -11,9 +11,9 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
-constexpr float kSlack = 1e-5f;    // a bound takes some forty roundings of 6e-8 beside numbers of size one
-constexpr double kFar = 1e12;      // sizes: from there on squares may be no floats
-constexpr float kNoFloat = 1e18f;  // instead of what is larger
+constexpr float kSupportSlack = 1e-5f;  // a bound takes some forty roundings of 6e-8 beside numbers of size one
+constexpr double kFar = 1e12;           // sizes: from there on squares may be no floats
+constexpr float kNoFloat = 1e18f;       // instead of what is larger
 
 Float4 broadcast(float x) { return Float4{x, x, x, x}; }
 Float4 abs(Float4 x) { return x < broadcast(0) ? -x : x; }
@@ -220,7 +220,7 @@ SupportTree::Query SupportTree::localized(const Point& query) const {
   const double size = local.cwiseAbs().maxCoeff();
   Query result;
   for (int axis = 0; axis < 3; ++axis) result.place[axis] = broadcast(static_cast<float>(local[axis]));
-  result.slack = size < kFar ? kSlack * (1 + static_cast<float>(size)) : std::numeric_limits<float>::infinity();
+  result.slack = size < kFar ? kSupportSlack * (1 + static_cast<float>(size)) : std::numeric_limits<float>::infinity();
   return result;
 }
 

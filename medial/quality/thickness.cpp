@@ -9,8 +9,8 @@
 namespace orchard {
 namespace {
 
-constexpr double kTouching = 1e-3;   // of the bounding radius: a ball this near touches
-constexpr std::size_t kBlock = 256;  // vertices that one task takes, one after the other
+constexpr double kTouchingBall = 1e-3;     // of the bounding radius: a ball this near touches
+constexpr std::size_t kVertexBlock = 256;  // vertices that one task takes, one after the other
 
 }  // namespace
 
@@ -20,11 +20,11 @@ std::vector<double> medial_radii_at_surface(const Surface& surface, const Medial
   const detail::BallTree tree(std::move(boxes), mesh.radii);
   const auto& vertices = surface.mesh().vertices;
   std::vector<double> result(vertices.size(), 0);
-  tbb::parallel_for(std::size_t{0}, (vertices.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+  tbb::parallel_for(std::size_t{0}, (vertices.size() + kVertexBlock - 1) / kVertexBlock, [&](std::size_t block) {
     // Those of the vertex before, which is often near: they bound what is looked for.
     Index nearest_ball = kNone, largest_ball = kNone;
-    const std::size_t end = std::min(vertices.size(), (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) {
+    const std::size_t end = std::min(vertices.size(), (block + 1) * kVertexBlock);
+    for (std::size_t i = block * kVertexBlock; i < end; ++i) {
       const auto distance = [&](Index ball) { return (vertices[i] - mesh.centers[ball]).norm() - mesh.radii[ball]; };
       double nearest = nearest_ball == kNone ? std::numeric_limits<double>::infinity() : distance(nearest_ball);
       double best = nearest;
@@ -34,7 +34,7 @@ std::vector<double> medial_radii_at_surface(const Surface& surface, const Medial
         return found;
       };
       nearest = tree.min(vertices[i], nearest, value, 1, 0);
-      const double touching = std::max(nearest, 0.0) + kTouching * surface.bounding_radius();
+      const double touching = std::max(nearest, 0.0) + kTouchingBall * surface.bounding_radius();
       const auto accept = [&](Index ball) {
         if (!(distance(ball) <= touching)) return false;
         largest_ball = ball;

@@ -8,11 +8,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxSteps = 30;      // from a place below the surface to the bottom of its dent
-constexpr double kArrived = 1e-3;  // of the limit: that near to a ball is at the bottom
-constexpr double kDeep = 1.1;      // times the limit: dents that are deeper are told
-constexpr double kDenser = 0.1;    // of how far dents are apart: what is looked at, so that the deepest is not missed
-constexpr double kShallow = 0.9;   // of the limit: nearer to the surface is another part of it
+constexpr int kMaxDescentSteps = 30;      // from a place below the surface to the bottom of its dent
+constexpr double kAtBottom = 1e-3;        // of the limit: that near to a ball is at the bottom
+constexpr double kDeeperThanLimit = 1.1;  // times the limit: dents that are deeper are told
+constexpr double kDenser = 0.1;   // of how far dents are apart: what is looked at, so that the deepest is not missed
+constexpr double kShallow = 0.9;  // of the limit: nearer to the surface is another part of it
 
 // How much of a triangle's side the plane `depth` below the triangle across loses to that of the triangle across: what
 // is farther out is nearer to that one. Nothing at a reflex edge.
@@ -67,7 +67,7 @@ UncoveredPlace DentsBelow::bottom_below(const UncoveredPlace& place, const Point
   const Vector down = (place.position - above).normalized();
   Point bottom = place.position;
   double gap = place.value;
-  for (int step = 0; step < kMaxSteps && gap > kArrived * limit_; ++step) {
+  for (int step = 0; step < kMaxDescentSteps && gap > kAtBottom * limit_; ++step) {
     bottom += gap * down;
     gap = reconstruction.distance(bottom);
   }
@@ -82,7 +82,7 @@ std::vector<UncoveredPlace> DentsBelow::find(const Reconstruction& reconstructio
     ClosestPoint above;
     if (-surface_.signed_distance(place.position, above) < kShallow * limit_) continue;
     const UncoveredPlace dent = bottom_below(place, above.position, reconstruction);
-    if (dent.value > kDeep * limit_) dents.push_back(dent);
+    if (dent.value > kDeeperThanLimit * limit_) dents.push_back(dent);
   }
   return worst_apart(std::move(dents), apart, surface_.bounding_box());
 }

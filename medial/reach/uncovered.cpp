@@ -14,11 +14,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // parts that one task looks at
-constexpr double kEnough =
+constexpr std::size_t kPartBlock = 64;  // parts that one task looks at
+constexpr double kEnoughReach =
     0.5;  // of the limit, or depth: nearer cells are no better at covering parts that reach farther
 
-bool is_before(const Point& a, const Point& b) {
+bool lexicographically_before(const Point& a, const Point& b) {
   return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
 }
 
@@ -26,7 +26,7 @@ bool is_before(const Point& a, const Point& b) {
 std::vector<Corners> corners_of(const std::vector<Corners>& parts) {
   std::vector<Point> points;
   for (const Corners& part : parts) points.insert(points.end(), part.begin(), part.end());
-  std::sort(points.begin(), points.end(), is_before);
+  std::sort(points.begin(), points.end(), lexicographically_before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   std::vector<Corners> corners;
   corners.reserve(points.size());
@@ -71,8 +71,8 @@ UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double re
 
 // How near a cell has to be to a place so that it is likely to cover a part that reaches `reach` from there.
 double UncoveredSearch::enough(double reach) const {
-  if (depth_ > 0) return -std::min(reach, kEnough * depth_);
-  return reach < limit_ ? limit_ - reach : kEnough * limit_;
+  if (depth_ > 0) return -std::min(reach, kEnoughReach * depth_);
+  return reach < limit_ ? limit_ - reach : kEnoughReach * limit_;
 }
 
 void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block) const {
@@ -95,7 +95,7 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block
       const double value = nearest.distance;
       // The distance from the reconstruction is 1-Lipschitz.
       if (value + reach <= limit_ || recent.cover(corners, limit_)) continue;
-      if (reach < kEnough * depth_ && surface_.distance(middle) + reach < depth_) continue;
+      if (reach < kEnoughReach * depth_ && surface_.distance(middle) + reach < depth_) continue;
       if (value > limit_) block.places.push_back({value, middle, middle});
       if (reach <= (value > limit_ ? resolution_ : detail_)) {
         block.open.push_back(corners);
@@ -111,10 +111,10 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block
 
 UncoveredSearch::Block UncoveredSearch::look_at_all(const Reconstruction& reconstruction,
                                                     const std::vector<Corners>& parts) const {
-  std::vector<Block> blocks((parts.size() + kBlock - 1) / kBlock);
+  std::vector<Block> blocks((parts.size() + kPartBlock - 1) / kPartBlock);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
-    const std::size_t begin = i * kBlock;
-    blocks[i].parts = std::span(parts).subspan(begin, std::min(kBlock, parts.size() - begin));
+    const std::size_t begin = i * kPartBlock;
+    blocks[i].parts = std::span(parts).subspan(begin, std::min(kPartBlock, parts.size() - begin));
     look_at(reconstruction, blocks[i]);
   });
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };

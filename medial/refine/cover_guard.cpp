@@ -13,9 +13,9 @@ namespace {
 
 // Makes a mesh of some cells of a complex. Only their vertices are taken, because a vertex without a cell would count
 // as a ball.
-class Part {
+class PartialMesh {
  public:
-  explicit Part(const BallComplex& complex) : complex_(complex), number_(complex.size(), kNone) {}
+  explicit PartialMesh(const BallComplex& complex) : complex_(complex), number_(complex.size(), kNone) {}
 
   void add(const std::array<Index, 2>& edge) { mesh_.edges.push_back({number(edge[0]), number(edge[1])}); }
   void add(const std::array<Index, 3>& t) { mesh_.triangles.push_back({number(t[0]), number(t[1]), number(t[2])}); }
@@ -102,7 +102,7 @@ std::vector<std::uint8_t> CoverGuard::needed(const BallComplex& complex,
   if (std::all_of(piece_of_edge.begin(), piece_of_edge.end(), [](Index piece) { return piece == kNone; }))
     return needed;
   const EdgeNumbers edge = complex.edge_numbers();
-  Part goes(complex);
+  PartialMesh goes(complex);
   for (Index e = 0; e < complex.edges.size(); ++e) {
     if (piece_of_edge[e] != kNone) goes.add(complex.edges[e]);
   }
@@ -127,7 +127,7 @@ std::vector<std::uint8_t> CoverGuard::needed(const BallComplex& complex,
   // Of the cells that stay, only those that may be in reach of these places are used.
   const Reach reach(places_, piece_near, limit_);
   if (reach.empty()) return needed;
-  Part stays(complex);
+  PartialMesh stays(complex);
   for (Index e = 0; e < complex.edges.size(); ++e) {
     if (piece_of_edge[e] == kNone && reach.holds(complex, complex.edges[e])) stays.add(complex.edges[e]);
   }

@@ -25,21 +25,21 @@
 namespace orchard::detail {
 namespace {
 
-constexpr const char* kStage = "refining the axis";
+constexpr const char* kRefiningStage = "refining the axis";
 // Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
 // which side of the level a vertex is.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;     // of reaching edges and corners: the last ones find next to nothing
-constexpr double kMinLength = 1e-3;  // diagonals: shorter edges are not divided
-constexpr std::size_t kEnough = 24;  // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpen = 1.65;       // of the border loss: places left open by more are reached for
-constexpr double kResolution = 0.1;  // spacings, of looking for these
-constexpr double kDetail = 0.15;     // of what is left open: places open by this more are not missed
-constexpr double kDentWidth = 0.5;   // of what is left open: narrower dents are missed
-constexpr int kReachPasses = 3;      // of reaching for what is left open and evening that out
-constexpr int kDentRounds = 3;       // of looking for these, once nothing is open: some stay where no ball fits
-constexpr double kApart = 0.5;       // spacings, between two that are reached for at once
-constexpr double kMinAim = 0.125;    // of the edge length asked for: no shorter ones are aimed at
+constexpr int kBorderPasses = 3;       // of reaching edges and corners: the last ones find next to nothing
+constexpr double kMinLength = 1e-3;    // diagonals: shorter edges are not divided
+constexpr std::size_t kMaxSeeds = 24;  // seeds of a vertex: coalesced ones have hundreds
+constexpr double kOpenLoss = 1.65;     // of the border loss: places left open by more are reached for
+constexpr double kResolution = 0.1;    // spacings, of looking for these
+constexpr double kDetail = 0.15;       // of what is left open: places open by this more are not missed
+constexpr double kDentWidth = 0.5;     // of what is left open: narrower dents are missed
+constexpr int kReachPasses = 3;        // of reaching for what is left open and evening that out
+constexpr int kDentRounds = 3;         // of looking for these, once nothing is open: some stay where no ball fits
+constexpr double kApart = 0.5;         // spacings, between two that are reached for at once
+constexpr double kMinAim = 0.125;      // of the edge length asked for: no shorter ones are aimed at
 constexpr int kEvenRounds = 6;
 constexpr std::size_t kFineMesh = 2;  // vertices for each surface point: with more, the points stand for them
 constexpr double kDegree = std::numbers::pi / 180;
@@ -67,7 +67,7 @@ void check(const RefineOptions& options) {
 
 // In diagonals.
 double left_open_by_borders(const RefineOptions& options) {
-  return kOpen * std::max(options.border_loss, options.tolerance);
+  return kOpenLoss * std::max(options.border_loss, options.tolerance);
 }
 
 FeatureEdges features_of(const Surface& surface, const RefineOptions& options, double diagonal) {
@@ -100,16 +100,16 @@ void Refiner::refine(FoundBalls* found) {
   report_.vertices_before = axis_.size();
   make_complex();
   find_balls(found);
-  report_progress(progress_, kStage, 0.1);
+  report_progress(progress_, kRefiningStage, 0.1);
   drop_folded();
   report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);
   report_.small_pieces = drop_small_pieces(complex_, &guard_);
   report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
-  report_progress(progress_, kStage, 0.2);
+  report_progress(progress_, kRefiningStage, 0.2);
   reach_edges();
   report_.small_pieces += drop_small_pieces(complex_, &guard_);
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  report_progress(progress_, kStage, 0.3);
+  report_progress(progress_, kRefiningStage, 0.3);
 }
 
 RefinedAxis Refiner::finish() {
@@ -120,7 +120,7 @@ RefinedAxis Refiner::finish() {
   for (int pass = 0; reach() && pass < kReachPasses; ++pass) even_out();
   divide();
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  report_progress(progress_, kStage, 1);
+  report_progress(progress_, kRefiningStage, 1);
   return result();
 }
 
@@ -169,7 +169,7 @@ void Refiner::seeds_of(Index vertex, const std::vector<Index>& face_of_middle, s
   const auto add = [&](Index point) { seeds.push_back(place(point)); };
   if (vertex < axis_.size()) {
     const std::span<const Index> points = axis_.forming_points[vertex];
-    std::for_each_n(points.begin(), std::min(kEnough, points.size()), add);
+    std::for_each_n(points.begin(), std::min(kMaxSeeds, points.size()), add);
   } else {
     for (const Index point : points_of(face_of_middle[vertex - axis_.size()])) add(point);
   }
@@ -289,8 +289,8 @@ double Refiner::left_open() const { return detail::left_open(surface_, options_,
 
 Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
                          BallSolver& solver) {
-  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options(),
-                           split_options());
+  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpenLoss,
+                           border_options(), split_options());
 }
 
 // Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added

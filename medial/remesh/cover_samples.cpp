@@ -12,7 +12,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kEnough = 0.5;  // of the limit: a cell that is nearer than this is near enough
+constexpr double kNearCell = 0.5;  // of the limit: a cell that is nearer than this is near enough
 
 Sphere sphere(const SheetMesh& mesh, Index v) { return {mesh.ball(v).center, mesh.ball(v).radius}; }
 
@@ -91,7 +91,7 @@ bool CoverSamples::stay_covered(const SheetMesh& mesh, std::span<const Index> ol
         }
       };
       look_at(made);
-      if (move.distance > kEnough * limit_) {
+      if (move.distance > kNearCell * limit_) {
         if (around_.empty()) find_around(mesh, made, touched);
         look_at(around_);
       }

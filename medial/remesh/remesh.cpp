@@ -11,11 +11,11 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kCornerTurn =
-    35 * std::numbers::pi / 180;   // the turn of a border on the surface from which on a vertex is a corner
-constexpr double kOutside = 2;     // tolerances: an edge that protrudes by more leads through the outside
-constexpr double kMaxAside = 0.3;  // of an edge's length: how far its exact ball may be from its middle
-constexpr int kRings = 3;          // of neighbours of the vertices that may be changed: these may be changed, too
-constexpr int kSmoothings = 2;     // in a round
+    35 * std::numbers::pi / 180;          // the turn of a border on the surface from which on a vertex is a corner
+constexpr double kOutsideTolerances = 2;  // tolerances: an edge that protrudes by more leads through the outside
+constexpr double kMaxMidballShift = 0.3;  // of an edge's length: how far its exact ball may be from its middle
+constexpr int kRings = 3;       // of neighbours of the vertices that may be changed: these may be changed, too
+constexpr int kSmoothings = 2;  // in a round
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void Remesher::pin_corners() {
   }
   for (Index c = 0; c < mesh_.cells(); ++c) {
     const Cell& cell = mesh_.corners(c);
-    if (!is_triangle(cell) && errors_.leads_outside(cell[0], cell[1], kOutside * options_.tolerance))
+    if (!is_triangle(cell) && errors_.leads_outside(cell[0], cell[1], kOutsideTolerances * options_.tolerance))
       corners.insert(corners.end(), {cell[0], cell[1]});
   }
   for (const Index v : corners) mesh_.pin(v);
@@ -108,7 +108,7 @@ ExactBall Remesher::middle(Index a, Index b) {
     if (sharp_.nearest(straight, 0.5 * length(a, b), place)) return ball_on_edge(place);
   }
   const ExactBall exact = solver_.between(mesh_.ball(a), mesh_.ball(b), 0.5);
-  const bool near = (exact.center - straight).norm() <= kMaxAside * length(a, b);
+  const bool near = (exact.center - straight).norm() <= kMaxMidballShift * length(a, b);
   return (near && surface_.inside(exact.center)) || !surface_.inside(straight) ? exact : solver_.at(straight);
 }
 

@@ -8,7 +8,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kAside = 0.5;          // of a step: how far the exact ball may be from the place aimed at
-constexpr double kSlack = 0.1;          // of the length aimed at: it may be this far in any case
+constexpr double kAlwaysNear = 0.1;     // of the length aimed at: it may be this far in any case
 constexpr double kNothing = 0.01;       // of that length: shorter steps change nothing
 constexpr std::array kParts{1.0, 0.4};  // parts of a step that are tried
 
@@ -148,7 +148,7 @@ bool Remesher::move(Index v, const Vector& step, const Vector* normal) {
   return std::any_of(kParts.begin(), kParts.end(), [&](double part) {
     const Point start = from + part * step;
     const ExactBall found = solver_.solve(start, contacts);
-    const bool near = found.exact && (found.center - start).norm() <= kAside * part * size + kSlack * target_[v];
+    const bool near = found.exact && (found.center - start).norm() <= kAside * part * size + kAlwaysNear * target_[v];
     if (found.count < contacts_wanted(v)) return false;
     return near && surface_.inside(found.center) && put(v, found);
   });

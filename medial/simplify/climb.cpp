@@ -11,7 +11,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kHalvings = 3;         // lengths of the step, each half of the one before
-constexpr int kSteps = 2;            // at most of each length
+constexpr int kStepsOfLength = 2;    // at most of each length
 constexpr double kOnePlace = 0.125;  // of the first step: places so near to each other are one
 
 class Climber {
@@ -21,7 +21,7 @@ class Climber {
   void climb(FitSample& sample, double step) const {
     Foot foot = finder_.find(sample.position);
     for (int halving = 0; halving < kHalvings; ++halving, step /= 2) {
-      for (int k = 0; k < kSteps && climb_once(sample, foot, step); ++k) continue;
+      for (int k = 0; k < kStepsOfLength && climb_once(sample, foot, step); ++k) continue;
     }
   }
 

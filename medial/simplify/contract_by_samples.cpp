@@ -28,10 +28,10 @@ constexpr double kExpected = 0.5;   // of an edge's earlier cost: it is evaluate
 constexpr double kToMiddle = 1e-3;  // of the trace: weight of the term that draws the ball to the middle of the edge
 // A part of the largest distance at the beginning. A triangle without area counts as if a part of the surface, which is
 // as large as one triangle's share of all, were off by this.
-constexpr double kBadTriangle = 0.5;
+constexpr double kDegenerateCost = 0.5;
 
 // The ball to which an edge may be contracted, and what that costs.
-struct Candidate {
+struct ContractionCandidate {
   double cost = 0;
   Ball4 ball = Ball4::Zero();
 };
@@ -46,7 +46,7 @@ class SampledContraction {
         error_(feet.max),
         feet_(mesh, samples, feet),
         shape_(mesh),
-        shape_weight_(options.keeps_shape ? fourth(kBadTriangle * feet.max) : 0),
+        shape_weight_(options.keeps_shape ? fourth(kDegenerateCost * feet.max) : 0),
         protrusion_(surface, mesh, LookOptions(surface, samples[0].weight), kNegligible * feet.max),
         blocked_(mesh.size()) {
     stamp_.assign(mesh.size(), 0);
@@ -71,7 +71,7 @@ class SampledContraction {
         blocked_[b].push_back(a);
         offer_opened(a, b, cost);
       } else if (kind == Kind::of_samples) {
-        const Candidate found = candidate(a, b);
+        const ContractionCandidate found = candidate(a, b);
         double& added = offered_[key(a, b)].cost;
         added = added_cost(a, b, found.ball);
         turns_.emplace(found.cost + added, a, b, stamp, Kind::whole);
@@ -132,7 +132,7 @@ class SampledContraction {
     turns_.emplace(candidate(p, q).cost + kExpected * std::max(0.0, offered.cost), p, q, stamp, Kind::of_samples);
   }
 
-  Candidate candidate(Index a, Index b) const {
+  ContractionCandidate candidate(Index a, Index b) const {
     const std::vector<Index> seen = feet_.at_either(a, b);
     const Ball4 middle = 0.5 * (mesh_.ball(a) + mesh_.ball(b));
     std::vector<Part> parts;
@@ -142,7 +142,7 @@ class SampledContraction {
       parts.push_back(part(i, a, b));
       before += feet_.sample(i).weight * fourth(feet_.foot(i).value);
     }
-    Candidate best{.cost = std::numeric_limits<double>::infinity()};
+    ContractionCandidate best{.cost = std::numeric_limits<double>::infinity()};
     const auto allowed = [&](const Ball4& ball) { return medial_ ? medial_ball(surface_, ball, error_) : ball; };
     for (const Ball4& ball : {allowed(optimum(parts, middle)), allowed(middle), mesh_.ball(a), mesh_.ball(b)}) {
       double cost = -before;
@@ -181,7 +181,7 @@ class SampledContraction {
     for (const auto& [i, foot] : moved) cost -= feet_.sample(i).weight * fourth(foot.value);
     move_feet(moved);
     for (const auto& [i, foot] : moved) cost += feet_.sample(i).weight * fourth(feet_.foot(i).value);
-    const Candidate found = candidate(a, b);
+    const ContractionCandidate found = candidate(a, b);
     cost += found.cost + added_cost(a, b, found.ball);
     undo(mesh_, *collapses);
     for (const auto& [i, foot] : moved) feet_.set_foot(i, foot);

@@ -7,7 +7,7 @@
 namespace orchard::detail {
 namespace {
 
-bool holds(const ContractibleMesh::Triangle& triangle, Index vertex) {
+bool has_corner(const ContractibleMesh::Triangle& triangle, Index vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
@@ -50,13 +50,13 @@ bool ContractibleMesh::adjacent(Index a, Index b) const {
 void ContractibleMesh::opposite(Index a, Index b, std::vector<Index>& out) const {
   out.clear();
   for (const Index t : triangles_at_[a]) {
-    if (holds(triangles_[t], b)) out.push_back(third(triangles_[t], a, b));
+    if (has_corner(triangles_[t], b)) out.push_back(third(triangles_[t], a, b));
   }
 }
 
 Index ContractibleMesh::count_triangles_at(Index a, Index b) const {
   Index count = 0;
-  for (const Index t : triangles_at_[a]) count += holds(triangles_[t], b) ? 1 : 0;
+  for (const Index t : triangles_at_[a]) count += has_corner(triangles_[t], b) ? 1 : 0;
   return count;
 }
 
@@ -69,7 +69,7 @@ bool ContractibleMesh::may_contract(Index a, Index b) const {
   // If a and b both form a triangle with the same edge of common neighbours, the two triangles would become one.
   for (const Index t : triangles_at_[a]) {
     const Triangle& triangle = triangles_[t];
-    if (holds(triangle, b)) continue;
+    if (has_corner(triangle, b)) continue;
     std::array<Index, 2> far{};
     std::size_t count = 0;
     for (const Index corner : triangle) {
@@ -77,7 +77,7 @@ bool ContractibleMesh::may_contract(Index a, Index b) const {
     }
     if (!is_common(far[0]) || !is_common(far[1])) continue;
     const bool twice = std::any_of(triangles_at_[b].begin(), triangles_at_[b].end(), [&](Index other) {
-      return holds(triangles_[other], far[0]) && holds(triangles_[other], far[1]);
+      return has_corner(triangles_[other], far[0]) && has_corner(triangles_[other], far[1]);
     });
     if (twice) return false;
   }
@@ -88,7 +88,7 @@ void ContractibleMesh::contract(Index a, Index b, const Ball4& ball) {
   const std::vector<Index> around = triangles_at_[b];
   for (const Index t : around) {
     Triangle& triangle = triangles_[t];
-    if (holds(triangle, a)) {
+    if (has_corner(triangle, a)) {
       remove_triangle(t);
       continue;
     }
@@ -113,7 +113,7 @@ Index ContractibleMesh::divide(Index a, Index b, const Ball4& ball) {
   const Index middle = add_vertex(ball);
   std::vector<Index> at_edge;
   for (const Index t : triangles_at_[a]) {
-    if (holds(triangles_[t], b)) at_edge.push_back(t);
+    if (has_corner(triangles_[t], b)) at_edge.push_back(t);
   }
   for (const Index t : at_edge) {
     const Index c = third(triangles_[t], a, b);
@@ -140,8 +140,8 @@ Index ContractibleMesh::extend(Index a, Index b, const Ball4& ball) {
 }
 
 Index ContractibleMesh::collapse(Index a, Index b) {
-  const auto at =
-      std::find_if(triangles_at_[a].begin(), triangles_at_[a].end(), [&](Index t) { return holds(triangles_[t], b); });
+  const auto at = std::find_if(triangles_at_[a].begin(), triangles_at_[a].end(),
+                               [&](Index t) { return has_corner(triangles_[t], b); });
   const Index c = third(triangles_[*at], a, b);
   remove_triangle(*at);
   part(a, b);

@@ -15,10 +15,10 @@
 namespace orchard {
 namespace {
 
-constexpr double kSlack = 1e-9;       // above what rounding can do to a bound
-constexpr double kFromEnd = 1e-4;     // of a grid edge: no vertex is nearer to its ends, so that none coincide
-constexpr int kRootSteps = 40;        // of the search for a vertex
-constexpr double kOnEnvelope = 1e-9;  // cells
+constexpr double kEnvelopeSlack = 1e-9;  // above what rounding can do to a bound
+constexpr double kFromEnd = 1e-4;        // of a grid edge: no vertex is nearer to its ends, so that none coincide
+constexpr int kRootSteps = 40;           // of the search for a vertex
+constexpr double kOnEnvelope = 1e-9;     // cells
 
 using Lattice = std::array<std::uint32_t, 3>;
 
@@ -75,7 +75,8 @@ class Marching {
   void find_cubes() {
     cubes_ = {0};
     for (int level = levels_; level >= 0; --level) {
-      const double half = 0.5 * cell_ * static_cast<double>(1u << level), reach = (1 + kSlack) * half * std::sqrt(3.0);
+      const double half = 0.5 * cell_ * static_cast<double>(1u << level),
+                   reach = (1 + kEnvelopeSlack) * half * std::sqrt(3.0);
       std::vector<std::uint8_t> met(cubes_.size());
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cubes_.size(), 64), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {

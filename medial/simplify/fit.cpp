@@ -14,13 +14,13 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
-constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
-constexpr double kExact = 0.5;       // of the largest distance: smaller ones need not be exact
-constexpr double kHardly = 0.02;     // of the largest distance: balls that protrude by no more are left alone
-constexpr double kVolume = 0.01;     // of the solid's volume: what may be missing, or too much
-constexpr double kVolumeWeight = 1;  // of all other costs at the beginning: what that much counts
-constexpr double kInside = 1e-7;     // bounding radii: so far inside the surface centres are put that were outside
-constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
+constexpr std::size_t kInTurn = 64;      // samples that one task takes, one after the other
+constexpr double kExact = 0.5;           // of the largest distance: smaller ones need not be exact
+constexpr double kHardly = 0.02;         // of the largest distance: balls that protrude by no more are left alone
+constexpr double kVolume = 0.01;         // of the solid's volume: what may be missing, or too much
+constexpr double kVolumeWeight = 1;      // of all other costs at the beginning: what that much counts
+constexpr double kInsideSurface = 1e-7;  // bounding radii: so far inside the surface centres are put that were outside
+constexpr double kFloor = 1e-3;          // share of the weight that small distances keep at high powers
 
 LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
   LookOptions look(surface, samples[0].weight);
@@ -238,7 +238,7 @@ Ball4 medial_ball(const Surface& surface, const Ball4& ball, double error) {
   Ball4 result = ball;
   double depth = -surface.signed_distance(ball.head<3>(), nearest);
   if (depth < 0) {
-    const double least = kInside * surface.bounding_radius();
+    const double least = kInsideSurface * surface.bounding_radius();
     result.head<3>() = nearest.position - least * surface.pseudonormal(nearest.triangle, nearest.feature);
     depth = 0;
   }

@@ -9,9 +9,10 @@ namespace orchard {
 namespace {
 
 constexpr Index kStarts = 8;
-constexpr double kTouching = 1e-7;  // of the radius: places this much farther than the nearest one also stop the ball
-constexpr double kMinStep = 1e-9;   // of the radius
-constexpr int kMaxSteps = 400;
+constexpr double kTouchingSurface =
+    1e-7;                          // of the radius: places this much farther than the nearest one also stop the ball
+constexpr double kMinStep = 1e-9;  // of the radius
+constexpr int kMaxClimbSteps = 400;
 constexpr int kHullSteps = 200;
 
 // The direction in which a centre moves away from all places of the surface within `reach` at once: the shortest vector
@@ -39,8 +40,8 @@ Vector uphill(const Surface& surface, const Point& center, double reach, std::ve
 Sphere climb(const Surface& surface, Sphere ball) {
   std::vector<Index> near;
   double length = 0.1 * ball.radius;
-  for (int i = 0; i < kMaxSteps && length > kMinStep * ball.radius; ++i) {
-    const Vector way = uphill(surface, ball.center, ball.radius * (1 + kTouching) + 0.5 * length, near);
+  for (int i = 0; i < kMaxClimbSteps && length > kMinStep * ball.radius; ++i) {
+    const Vector way = uphill(surface, ball.center, ball.radius * (1 + kTouchingSurface) + 0.5 * length, near);
     if (!(way.norm() > 1e-9)) {
       length /= 4;
       continue;

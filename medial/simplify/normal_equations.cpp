@@ -6,8 +6,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxSteps = 60;    // of conjugate gradients: what remains is left to the next step of the fit
-constexpr double kSmall = 1e-4;  // of the first residual: smaller ones end the steps
+constexpr int kMaxGradientSteps = 60;  // of conjugate gradients: what remains is left to the next step of the fit
+constexpr double kSmall = 1e-4;        // of the first residual: smaller ones end the steps
 
 }  // namespace
 
@@ -95,7 +95,7 @@ std::vector<Ball4> NormalEquations::solve(double damping, const std::vector<std:
   direction = preconditioned;
   double product = dot(residual, preconditioned);
   const double first = product;
-  for (int step = 0; step < kMaxSteps && product > kSmall * kSmall * first && product > 0; ++step) {
+  for (int step = 0; step < kMaxGradientSteps && product > kSmall * kSmall * first && product > 0; ++step) {
     const double along = factor_ > 0 ? factor_ * dot(vector_, direction) : 0;
     for (Index i = 0; i < count; ++i) {
       Ball4 sum = added[i].cwiseProduct(direction[i]) + along * vector_[i];

@@ -18,7 +18,7 @@ using detail::ContractibleMesh;
 using detail::Descent;
 using detail::Stage;
 
-constexpr const char* kStage = "simplifying the axis";
+constexpr const char* kSimplifyingStage = "simplifying the axis";
 
 void check(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options) {
   if (!surface.solid()) {
@@ -91,7 +91,7 @@ class FewestWithin {
     // From few to many at first: few take less time.
     Index next = std::min<Index>(high, kFirst);
     while (low <= high && !(best && high - low < low / kFiftieth)) {
-      report_progress(progress_, kStage, progress_of(low, high));
+      report_progress(progress_, kSimplifyingStage, progress_of(low, high));
       SimplifiedMedialMesh result = finish(surface_, mesh_, descent_, stage_of(next));
       min = std::min(min, result.report.upper);
       if (result.report.upper <= options_.error) {
@@ -150,7 +150,7 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
     if (!(options.error > 0)) throw InputError("simplifying: a number of vertices, or an error above 0");
     return FewestWithin(surface, mesh, options, progress).run();
   }
-  report_progress(progress, kStage, 0);
+  report_progress(progress, kSimplifyingStage, 0);
   const Descent descent(surface, mesh, options, progress);
   std::optional<SimplifiedMedialMesh> best;
   Index reached = mesh.size();
@@ -167,7 +167,7 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
     }
   }
   if (!best) throw InputError(too_few(options.vertices, reached, detail::least_vertices(mesh)));
-  report_progress(progress, kStage, 1);
+  report_progress(progress, kSimplifyingStage, 1);
   return std::move(*best);
 }
 
@@ -182,7 +182,7 @@ std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const
   for (const SimplifiedBalls contracted : all_ways) {
     Stage stage = descent.start(contracted);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      report_progress(progress, kStage, done++ / static_cast<double>(all_ways.size() * vertices.size()));
+      report_progress(progress, kSimplifyingStage, done++ / static_cast<double>(all_ways.size() * vertices.size()));
       descent.go_down(stage, vertices[i]);
       if (stage.mesh.living() > vertices[i]) break;
       SimplifiedMedialMesh result = finish(surface, mesh, descent, stage);
@@ -194,7 +194,7 @@ std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const
     }
   }
   for (std::size_t i = results.size(); i-- > 1;) results[i - 1] = nearer(std::move(results[i - 1]), results[i]);
-  report_progress(progress, kStage, 1);
+  report_progress(progress, kSimplifyingStage, 1);
   return results;
 }
 

@@ -21,10 +21,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kPull = 1e-4;    // of the trace: weight of the middle of the edge, for directions without a plane
-constexpr double kSpread = 1e-6;  // weight of the length of an edge, so that shorter ones come first among equals
-constexpr double kBorder = 1.0;   // weight of the square over a border edge
-constexpr double kAsWhole = 2.0;  // a result within this many errors of the whole mesh is as good as the whole
+constexpr double kPull = 1e-4;  // of the trace: weight of the middle of the edge, for directions without a plane
+constexpr double kLengthWeight = 1e-6;  // weight of the length of an edge, so that shorter ones come first among equals
+constexpr double kBorder = 1.0;         // weight of the square over a border edge
+constexpr double kAsWhole = 2.0;        // a result within this many errors of the whole mesh is as good as the whole
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr std::size_t kGuards = 4;  // one of so many samples is a guard, which suffices for slabs
 constexpr double kFarthest = 2.0;   // the largest distance of a new ball from the middle of its edge, in edge lengths
@@ -161,7 +161,7 @@ class Contraction {
         found = other;
       }
     }
-    return {found, cost + kSpread * length * length * length * length};
+    return {found, cost + kLengthWeight * length * length * length * length};
   }
 
   // Offers the waiting edges again, with a higher limit. Returns false if there are none.

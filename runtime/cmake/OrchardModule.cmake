@@ -85,21 +85,19 @@ function(orchard_precompile_once target name)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# orchard_unite(target [BY_FOLDER] [APART ..]): with ORCHARD_UNITY, files are compiled eight at a time, in the order in which
-# they are listed, or BY_FOLDER those of a folder, and all NAME_cgal.cpp at once: what they instantiate of CGAL takes longer
-# than all else. Files with options of their own are compiled by themselves, and so are those APART, which have names of
-# their own in unnamed namespaces that others have as well. A build without ORCHARD_UNITY compiles less after a change.
+# orchard_unite(target [BY_FOLDER]): with ORCHARD_UNITY, files are compiled eight at a time, in the order in which they are
+# listed, or BY_FOLDER those of a folder, and all NAME_cgal.cpp at once: what they instantiate of CGAL takes longer than all
+# else. So a name in an unnamed namespace is unique in its target. Files with options of their own are compiled by
+# themselves. A build without ORCHARD_UNITY compiles less after a change.
 function(orchard_unite target)
-  cmake_parse_arguments(ARG "BY_FOLDER" "" "APART" ${ARGN})
+  cmake_parse_arguments(ARG "BY_FOLDER" "" "" ${ARGN})
   if(NOT ORCHARD_UNITY)
     return()
   endif()
   get_target_property(sources ${target} SOURCES)
   set(count 0)
   foreach(source IN LISTS sources)
-    if(source IN_LIST ARG_APART)
-      continue()
-    elseif(source MATCHES "_cgal\\.cpp$")
+    if(source MATCHES "_cgal\\.cpp$")
       set(group cgal)
     elseif(ARG_BY_FOLDER)
       cmake_path(GET source PARENT_PATH folder)
@@ -116,10 +114,10 @@ function(orchard_unite target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# orchard_add_module(name COMPONENT component SOURCES .. [APART ..] [PUBLIC ..] [PRIVATE ..])
+# orchard_add_module(name COMPONENT component SOURCES .. [PUBLIC ..] [PRIVATE ..])
 # makes the library orchard::name with its own include root, so that an arrow that is not declared does not compile.
 function(orchard_add_module name)
-  cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;APART;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target orchard_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(orchard::${name} ALIAS ${target})
@@ -138,7 +136,7 @@ function(orchard_add_module name)
   else()
     orchard_precompile_once(${target} construction PIC LINK Eigen3::Eigen TBB::tbb
       HEADERS ${ORCHARD_CONSTRUCTION_HEADERS} ${ORCHARD_TBB_HEADERS})
-    orchard_unite(${target} APART ${ARG_APART})
+    orchard_unite(${target})
   endif()
   # Until 1.0.0 a minor version may change an interface, so two of them are two libraries.
   set(interface ${PROJECT_VERSION_MAJOR})

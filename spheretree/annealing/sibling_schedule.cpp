@@ -9,7 +9,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::uint64_t kStage = 400;  // of the random numbers
+constexpr std::uint64_t kScheduleStage = 400;  // of the random numbers
 // A child that has become redundant would shrink for ever.
 constexpr double kMinRadius = 1e-3;  // of its parent's radius
 
@@ -23,7 +23,7 @@ SiblingSchedule::SiblingSchedule(SphereTree& tree, Index parent, const Surface& 
       options_(options),
       cover_(cover),
       report_(report),
-      random_(options.seed, kStage + parent_.level, parent) {
+      random_(options.seed, kScheduleStage + parent_.level, parent) {
   for (Index k = 0; k < parent_.child_count; ++k) energies_.push_back(energy_of(child(k).sphere));
   energy_ = energy_of_set();
 }

@@ -15,7 +15,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kRounds = 14;
+constexpr int kMergeClosingRounds = 14;
 
 class Closer {
  public:
@@ -37,7 +37,7 @@ class Closer {
     ClosingReport report;
     Coverage coverage;
     std::vector<Sphere> changed;
-    for (; report.rounds < kRounds; ++report.rounds) {
+    for (; report.rounds < kMergeClosingRounds; ++report.rounds) {
       const std::vector<PathBall> balls = path_balls(tree_);
       const std::vector<Index> triangles = report.rounds == 0
                                                ? triangles_to_check(surface_, balls)

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "infinity.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kEvaluations = 10;
-constexpr int kRounds = 6;  // of dividing and fitting, at first
-constexpr int kRoundsOfExchange = 5;
+constexpr int kSiblingEvaluations = 10;
+constexpr int kDividingRounds = 6;  // of dividing and fitting, at first
+constexpr int kExchangeRounds = 5;
 constexpr int kMaxExchanges = 24;  // for eight siblings; more for more
 constexpr int kVictims = 7;        // that an exchange tries to do without, the cheapest first
 
@@ -41,7 +41,7 @@ class Fit {
     best_state_ = {};
     best_ = kInfinity;
     Siblings state{start, std::vector<Index>(points_.size(), 0)};
-    improve(state, kRounds, true);
+    improve(state, kDividingRounds, true);
     while (best_state_.balls.size() > wanted) lose_cheapest();
   }
 
@@ -72,7 +72,7 @@ class Fit {
     for (Index b = 0; b < state.balls.size(); ++b) {
       if (own_[b].empty()) continue;
       FittedBall ball = state.balls[b];
-      if (marked[b]) ball = fitter_.fit(own_[b], ball, kEvaluations);
+      if (marked[b]) ball = fitter_.fit(own_[b], ball, kSiblingEvaluations);
       place[b] = count;
       state.balls[count++] = ball;
     }
@@ -132,7 +132,7 @@ class Fit {
     Siblings state = best_state_;
     split(state, loosest_of(state.balls));
     const std::size_t before = best_state_.balls.size();
-    improve(state, kRoundsOfExchange, false);
+    improve(state, kExchangeRounds, false);
     return best_state_.balls.size() > before;
   }
 
@@ -170,7 +170,7 @@ class Fit {
     state.balls[cheapest_to_lose(state)[0]].center_distance = kInfinity;  // gets no points
     best_state_ = {};
     best_ = kInfinity;
-    improve(state, kRoundsOfExchange, false);
+    improve(state, kExchangeRounds, false);
   }
 
   void exchange() {
@@ -189,7 +189,7 @@ class Fit {
       Siblings state = best_state_;
       split(state, loosest);
       state.balls[lost].center_distance = kInfinity;
-      if (improve(state, kRoundsOfExchange, false)) return true;
+      if (improve(state, kExchangeRounds, false)) return true;
     }
     return false;
   }

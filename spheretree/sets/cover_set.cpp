@@ -30,14 +30,15 @@ struct Search {
   std::uint64_t seed = 0;  // in addition to that of the options
 };
 
-constexpr Index kFew = 32;  // spheres
+constexpr Index kFewSpheres = 32;  // spheres
 // Numbers of surface points; more points do not improve the sets.
-constexpr Index kFewestSamples = 2000, kFewSamplesPerBall = 100;  // with low effort
+constexpr Index kLowEffortSamples = 2000, kLowEffortSamplesPerBall = 100;  // with low effort
 constexpr Index kSomeSamples = 2400, kSomeSamplesPerBall = 120;
 
 // Several short searches with different objectives find better sets of few spheres than one long search, in less time.
 std::vector<Search> searches_for(Index spheres, Effort effort) {
-  if (effort == Effort::low || (effort == Effort::standard && spheres > kFew)) return {{Objective::balanced, effort}};
+  if (effort == Effort::low || (effort == Effort::standard && spheres > kFewSpheres))
+    return {{Objective::balanced, effort}};
   constexpr Objective kAll[] = {Objective::balanced, Objective::volume, Objective::mean, Objective::maximum};
   std::vector<Search> searches;
   for (const Objective objective : kAll) searches.push_back({objective, Effort::low});
@@ -50,7 +51,8 @@ std::vector<Search> searches_for(Index spheres, Effort effort) {
 
 Index samples_for_cover(const SphereSetOptions& options) {
   const bool few = options.effort == Effort::low;
-  const Index least = few ? kFewestSamples : kSomeSamples, per_ball = few ? kFewSamplesPerBall : kSomeSamplesPerBall;
+  const Index least = few ? kLowEffortSamples : kSomeSamples,
+              per_ball = few ? kLowEffortSamplesPerBall : kSomeSamplesPerBall;
   return std::min(samples_needed(TightenOptions{.spheres = {options.spheres}}),
                   std::max(least, per_ball * options.spheres));
 }

@@ -16,26 +16,26 @@ namespace {
 
 // Radii are smaller than the distance to the surface by this much per unit of coordinate, which is more than rounding
 // errors.
-constexpr double kRounding = 0x1p-44;
-constexpr std::uint64_t kStage = 6600;  // the stream of the random numbers
+constexpr double kRadiusRounding = 0x1p-44;
+constexpr std::uint64_t kFillingStage = 6600;  // the stream of the random numbers
 constexpr Index kLeastCandidates = 2000, kCandidatesPerBall = 4;
 constexpr std::size_t kLeastPoints = 40'000, kPointsPerBall = 150;
 // A part of the box's longest side: points are spread this far beyond the box, and balls that protrude farther are not
 // tried.
-constexpr double kMargin = 0.08;
-constexpr int kSweeps = 24;                       // of all balls, each followed by an adjustment of the weight
-constexpr int kTrialsPerSweep = 12;               // for each ball
-constexpr double kFirstStep = 0.25;               // of the radius
-constexpr double kLeastStep = 0.002;              // likewise
-constexpr double kLonger = 1.6, kShorter = 0.88;  // of the step after a success and after a failure
-constexpr int kInsertions = 24;                   // candidates that are tried as new places for a ball
+constexpr double kBoxMargin = 0.08;
+constexpr int kFillingSweeps = 24;           // of all balls, each followed by an adjustment of the weight
+constexpr int kTrialsPerSweep = 12;          // for each ball
+constexpr double kFirstFillingStep = 0.25;   // of the radius
+constexpr double kLeastFillingStep = 0.002;  // likewise
+constexpr double kLongerFilling = 1.6, kShorterFilling = 0.88;  // of the step after a success and after a failure
+constexpr int kInsertions = 24;                                 // candidates that are tried as new places for a ball
 constexpr double kWeightGain = 4;  // growth of the outside weight's logarithm per part of the volume that is too much
 constexpr int kVolumeSteps = 20;   // of Newton's iteration; a union's volume grows by its area
 constexpr Index kAreaSamples = 20'000;
 constexpr double kVolumeTolerance = 1e-3;  // of the solid's volume: ends the last adjustment of radii
 
 int sweeps_for(Effort effort) {
-  return effort == Effort::low ? kSweeps / 2 : effort == Effort::high ? 4 * kSweeps : kSweeps;
+  return effort == Effort::low ? kFillingSweeps / 2 : effort == Effort::high ? 4 * kFillingSweeps : kFillingSweeps;
 }
 
 std::size_t points_for(const SphereSetOptions& options) {
@@ -50,7 +50,7 @@ class Filling {
         options_(options),
         progress_(progress),
         inside_(options.fit == SphereFit::inside),
-        points_(surface, points_for(options), inside_ ? 0 : kMargin, WeightField(surface, options.weights)),
+        points_(surface, points_for(options), inside_ ? 0 : kBoxMargin, WeightField(surface, options.weights)),
         candidates_(
             inscribed_balls(surface, std::max(kLeastCandidates, kCandidatesPerBall * options.spheres), options.seed)) {
     if (inside_)
@@ -61,7 +61,7 @@ class Filling {
 
   std::vector<Sphere> run() {
     seed();
-    steps_.assign(balls_.size(), kFirstStep);
+    steps_.assign(balls_.size(), kFirstFillingStep);
     const int sweeps = sweeps_for(options_.effort);
     for (sweep_ = 0; sweep_ < sweeps; ++sweep_) {
       report_progress(progress_, "filling", static_cast<double>(sweep_) / sweeps);
@@ -105,14 +105,14 @@ class Filling {
 
   void improve() {
     for (Index b = 0; b < balls_.size(); ++b) {
-      Random random(options_.seed, kStage + static_cast<std::uint64_t>(sweep_), b);
+      Random random(options_.seed, kFillingStage + static_cast<std::uint64_t>(sweep_), b);
       for (int trial = 0; trial < kTrialsPerSweep; ++trial) {
         const Sphere to = moved(balls_[b], steps_[b], random);
         if (is_allowed(to) && points_.gain_of_change(balls_[b], to) > 0) {
           replace(b, to);
-          steps_[b] = std::min(1.0, kLonger * steps_[b]);
+          steps_[b] = std::min(1.0, kLongerFilling * steps_[b]);
         } else {
-          steps_[b] = std::max(kLeastStep, kShorter * steps_[b]);
+          steps_[b] = std::max(kLeastFillingStep, kShorterFilling * steps_[b]);
         }
       }
     }
@@ -150,7 +150,7 @@ class Filling {
     for (Index k = 0; k < std::min<Index>(moves, static_cast<Index>(order.size())); ++k) {
       const Index b = order[k];
       const double loss = points_.loss_of(balls_[b]);
-      Random random(options_.seed, kStage + 500 + static_cast<std::uint64_t>(sweep_), b);
+      Random random(options_.seed, kFillingStage + 500 + static_cast<std::uint64_t>(sweep_), b);
       double most = loss;
       Index best = kNone;
       for (int i = 0; i < kInsertions; ++i) {
@@ -160,7 +160,7 @@ class Filling {
       }
       if (best == kNone) continue;
       replace(b, candidates_[best]);
-      steps_[b] = kFirstStep;
+      steps_[b] = kFirstFillingStep;
     }
   }
 
@@ -207,7 +207,7 @@ class Filling {
 }  // namespace
 
 Sphere inscribed_ball(const Surface& surface, const Point& center) {
-  const double rounding = kRounding * (center.norm() + surface.bounding_radius());
+  const double rounding = kRadiusRounding * (center.norm() + surface.bounding_radius());
   return {center, -surface.signed_distance(center) - rounding};
 }
 

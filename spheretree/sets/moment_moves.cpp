@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t kMostBalls = 64, kMostPlaces = 1000;
 constexpr double kWorthIt = 0.999;  // of the excess before
 
-using Matrix = Eigen::Matrix3d;
-
 // Sums of first and second moments of the centres about the wanted centre of mass.
 class CenterSums {
  public:
   CenterSums(const std::vector<Point>& centers, double radius, const PackingMoments& moments)
-      : moments_(moments), own_(radius * radius / 5 * Matrix::Identity()), wanted_(second_moment(moments.body)) {
+      : moments_(moments),
+        own_(radius * radius / 5 * Eigen::Matrix3d::Identity()),
+        wanted_(second_moment(moments.body)) {
     count_ = static_cast<double>(centers.size());
     for (const Point& center : centers) change(center, 1);
     size_ = inertia_of(wanted_).norm();
@@ -35,7 +35,7 @@ class CenterSums {
 
   double excess() const {
     const Vector mean = first_ / count_;
-    const Matrix spread = second_ / count_ - mean * mean.transpose() + own_;
+    const Eigen::Matrix3d spread = second_ / count_ - mean * mean.transpose() + own_;
     return std::max(mean.norm() / moments_.center_error,
                     inertia_of(spread - wanted_).norm() / (size_ * moments_.inertia_error));
   }
@@ -48,10 +48,12 @@ class CenterSums {
   }
 
  private:
-  static Matrix inertia_of(const Matrix& second) { return second.trace() * Matrix::Identity() - second; }
+  static Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second) {
+    return second.trace() * Eigen::Matrix3d::Identity() - second;
+  }
 
   const PackingMoments& moments_;
-  Matrix own_, wanted_, second_ = Matrix::Zero();
+  Eigen::Matrix3d own_, wanted_, second_ = Eigen::Matrix3d::Zero();
   Vector first_ = Vector::Zero();
   double count_ = 0, size_ = 0;
 };

@@ -14,7 +14,7 @@ using Square = Eigen::Matrix<double, kRows, kRows>;
 
 // The regularization of the dual problem. It is so small that the moments are met as nearly as doubles allow.
 constexpr double kMissed = 1e-10;
-constexpr int kMaxSteps = 200, kMaxHalvings = 40;
+constexpr int kMaxSteps = 200, kMaxStepHalvings = 40;
 constexpr double kConverged = 1e-13;
 
 // For each ball, per weight: the moments about the body's centre, minus the body's own, so that their weighted sums are
@@ -51,7 +51,7 @@ class Dual {
       const Row direction = -jacobian(x).ldlt().solve(slope);
       const double before = value(x), fall = slope.dot(direction);
       double length = 1;
-      for (int k = 0; k < kMaxHalvings && value(x + length * direction) > before + 1e-4 * length * fall; ++k)
+      for (int k = 0; k < kMaxStepHalvings && value(x + length * direction) > before + 1e-4 * length * fall; ++k)
         length /= 2;
       x += length * direction;
     }

@@ -15,11 +15,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kRounds = 60;      // of growing
-constexpr int kPushes = 80;      // at most, in each round
-constexpr int kPairsAge = 8;     // pushes after which the near pairs are searched again
-constexpr double kNear = 1.25;   // contact distances: pairs up to this far apart are near
-constexpr double kApart = 5e-4;  // of the radius: pushes end when balls overlap or protrude by less
+constexpr int kGrowingRounds = 60;  // of growing
+constexpr int kPushes = 80;         // at most, in each round
+constexpr int kPairsAge = 8;        // pushes after which the near pairs are searched again
+constexpr double kNear = 1.25;      // contact distances: pairs up to this far apart are near
+constexpr double kApart = 5e-4;     // of the radius: pushes end when balls overlap or protrude by less
 constexpr double kFirstGrowth = 0.06, kLeastGrowth = 1e-3;
 constexpr double kShrinking = 0.93, kLeastShrunk = 0.35;  // of the radius, in the search for the moments
 constexpr double kWorthMoving = 1.02;                     // a ball is moved if its room grows by more than this factor
@@ -28,10 +28,8 @@ constexpr double kTowards = 0.3;   // the part of the way to the wanted moments 
 constexpr double kWithin = 0.7;    // of the allowed errors: moments with smaller errors are left alone
 constexpr double kUnmoved = 1e-9;  // of the size: the least spread of centres that a map can stretch
 
-using Matrix = Eigen::Matrix3d;
-
-Matrix root_of(const Matrix& matrix, double least) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(matrix);
+Eigen::Matrix3d root_of(const Eigen::Matrix3d& matrix, double least) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).cwiseSqrt().asDiagonal() *
          solver.eigenvectors().transpose();
 }
@@ -42,7 +40,7 @@ class EqualBalls {
       : surface_(surface),
         moments_(moments),
         contact_(std::max(1e-3, contact_distance(1, 1, options.overlap))),
-        rounds_(kRounds * options.rounds) {}
+        rounds_(kGrowingRounds * options.rounds) {}
 
   std::vector<Sphere> run(const std::vector<Sphere>& places, Index count, const Progress& progress) {
     place(places, count);
@@ -208,12 +206,12 @@ class EqualBalls {
     const double n = static_cast<double>(centers.size());
     Vector mean = Vector::Zero();
     for (const Point& center : centers) mean += center / n;
-    Matrix spread = Matrix::Zero();
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Point& center : centers) spread += (center - mean) * (center - mean).transpose() / n;
-    const Matrix body = second_moment(moments_->body);
+    const Eigen::Matrix3d body = second_moment(moments_->body);
     const double least = kUnmoved * body.trace();
-    const Matrix wanted = root_of(body - radius * radius / 5 * Matrix::Identity(), least);
-    const Matrix map = wanted * root_of(wanted * spread * wanted, least * least).inverse() * wanted;
+    const Eigen::Matrix3d wanted = root_of(body - radius * radius / 5 * Eigen::Matrix3d::Identity(), least);
+    const Eigen::Matrix3d map = wanted * root_of(wanted * spread * wanted, least * least).inverse() * wanted;
     for (Point& center : centers) {
       const Point there = moments_->body.center + map * (center - mean);
       center += kTowards * (there - center);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filling.h"
+#include "golden_steps.h"
 #include "orchard/geometry/random.h"
 #include "overlap.h"
 #include "packing.h"
@@ -11,16 +12,12 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::uint64_t kStage = 6700;  // the stream of the random numbers
+constexpr std::uint64_t kPackingStage = 6700;  // the stream of the random numbers
 constexpr std::size_t kLeastPlaces = 6000, kPlacesPerBall = 25;
 constexpr std::size_t kMostTried = 40;  // points of the box tried for each wanted place, however thin the solid is
-// The first three powers of 1 / 1.2207.., as in VolumePoints.
-constexpr double kStepX = 0.8191725133961645, kStepY = 0.6710436067037893, kStepZ = 0.5497004779019703;
 constexpr int kFirstTrials = 24, kLaterTrials = 12;  // for each ball: when it is placed, and in each later sweep
-constexpr int kSweeps = 6;
-constexpr double kFirstStep = 0.3, kLeastStep = 1e-3, kShorter = 0.8;  // of the radius
-
-double fraction(double x) { return x - std::floor(x); }
+constexpr int kPackingSweeps = 6;
+constexpr double kFirstClimbStep = 0.3, kLeastClimbStep = 1e-3, kShorterClimb = 0.8;  // of the radius
 
 // Whether a ball overlaps no other by more than is allowed. limit() alone does not ensure that if overlaps are allowed:
 // a ball that was made smaller because of one neighbour may then overlap an earlier one by too large a share of itself.
@@ -38,10 +35,10 @@ void limit(Sphere& place, const Sphere& ball, double overlap) {
     place.radius = allowed_radius(distance, ball.radius, overlap, place.radius);
 }
 
-class LargestFirst {
+class LargestFirstPacker {
  public:
-  LargestFirst(const Surface& surface, const std::vector<Sphere>& places, double cap, const PackingOptions& options,
-               const Progress& progress)
+  LargestFirstPacker(const Surface& surface, const std::vector<Sphere>& places, double cap,
+                     const PackingOptions& options, const Progress& progress)
       : surface_(surface), cap_(cap), options_(options), progress_(progress), places_(places) {
     for (Sphere& place : places_) place.radius = std::min(place.radius, cap);
   }
@@ -49,11 +46,12 @@ class LargestFirst {
   std::vector<Sphere> run() {
     while (balls_.size() < options_.balls && place_one())
       report_progress(progress_, "packing", 0.5 * static_cast<double>(balls_.size()) / options_.balls);
-    const int sweeps = kSweeps * options_.rounds;
+    const int sweeps = kPackingSweeps * options_.rounds;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       report_progress(progress_, "packing", 0.5 + 0.5 * sweep / sweeps);
       for (Index b = 0; b < balls_.size(); ++b)
-        climb(balls_[b], b, kLaterTrials, Random(options_.seed, kStage + 1 + static_cast<std::uint64_t>(sweep), b));
+        climb(balls_[b], b, kLaterTrials,
+              Random(options_.seed, kPackingStage + 1 + static_cast<std::uint64_t>(sweep), b));
     }
     return balls_;
   }
@@ -64,7 +62,7 @@ class LargestFirst {
                                           [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
     if (largest == places_.end() || !(largest->radius > 0) || largest->radius < options_.least_radius) return false;
     Sphere ball = *largest;
-    climb(ball, kNone, kFirstTrials, Random(options_.seed, kStage, balls_.size()));
+    climb(ball, kNone, kFirstTrials, Random(options_.seed, kPackingStage, balls_.size()));
     balls_.push_back(ball);
     tbb::parallel_for(std::size_t{0}, places_.size(),
                       [&](std::size_t i) { limit(places_[i], ball, options_.overlap); });
@@ -73,7 +71,7 @@ class LargestFirst {
 
   // Moves a ball by random steps to places where it can be larger. `own`: its number if it is in the set, else kNone.
   void climb(Sphere& ball, Index own, int trials, Random random) const {
-    double step = kFirstStep;
+    double step = kFirstClimbStep;
     for (int trial = 0; trial < trials && ball.radius < cap_; ++trial) {
       const Vector by(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       Sphere to = inscribed_ball(surface_, ball.center + step * ball.radius * by);
@@ -83,7 +81,7 @@ class LargestFirst {
       if (to.radius > ball.radius && keeps_apart(to, own, options_.overlap, balls_))
         ball = to;
       else
-        step = std::max(kLeastStep, kShorter * step);
+        step = std::max(kLeastClimbStep, kShorterClimb * step);
     }
   }
 
@@ -103,9 +101,7 @@ std::vector<Sphere> places_in(const Surface& surface, const PackingOptions& opti
   for (std::size_t tried = 0; places.size() < wanted && tried < kMostTried * wanted;) {
     std::vector<Sphere> some(wanted);
     tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
-      const double n = static_cast<double>(tried + i);
-      const Vector at(fraction(0.5 + n * kStepX), fraction(0.5 + n * kStepY), fraction(0.5 + n * kStepZ));
-      const Point point = box.min() + box.sizes().cwiseProduct(at);
+      const Point point = box.min() + box.sizes().cwiseProduct(golden_place(static_cast<double>(tried + i)));
       if (surface.winding_number(point) > 0) some[i] = inscribed_ball(surface, point);
     });
     for (const Sphere& place : some)
@@ -119,7 +115,7 @@ std::vector<Sphere> places_in(const Surface& surface, const PackingOptions& opti
 
 std::vector<Sphere> pack_largest(const Surface& surface, const std::vector<Sphere>& places, double cap,
                                  const PackingOptions& options, const Progress& progress) {
-  return LargestFirst(surface, places, cap, options, progress).run();
+  return LargestFirstPacker(surface, places, cap, options, progress).run();
 }
 
 void grow_in_place(const Surface& surface, const PackingOptions& options, std::vector<Sphere>& balls) {

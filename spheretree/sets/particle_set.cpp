@@ -18,7 +18,7 @@ namespace {
 using detail::ParticleSet;
 
 // Balls are made smaller by this part, so that what rounding may do to distances is far from what is allowed.
-constexpr double kMargin = 1e-11;
+constexpr double kShrinkage = 1e-11;
 // The largest radius of a set, over that of the largest ball in the solid: all are tried for few balls, and in this
 // order until the moments fit for more.
 constexpr double kCaps[] = {1, 0.8, 0.65, 0.5, 0.35, 0.22, 0.13, 0.07};
@@ -45,7 +45,7 @@ class ParticleSearch {
         progress_(progress),
         solid_(union_volume(surface, std::vector<Sphere>{surface.bounding_ball()}).of_solid),
         diagonal_(surface.bounding_box().diagonal().norm()),
-        least_radius_(options.min_radius * (1 + 2 * kMargin)),
+        least_radius_(options.min_radius * (1 + 2 * kShrinkage)),
         packing_{.balls = options.spheres,
                  .overlap = options.particles.overlap,
                  .least_radius = least_radius_,
@@ -127,7 +127,7 @@ class ParticleSearch {
   }
 
   void consider(std::vector<Sphere> balls) {
-    for (Sphere& ball : balls) ball.radius *= 1 - kMargin;
+    for (Sphere& ball : balls) ball.radius *= 1 - kShrinkage;
     if (balls.empty() || !(balls.front().radius > 0)) return;
     std::stable_sort(balls.begin(), balls.end(), [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; });
     ParticleSet set;

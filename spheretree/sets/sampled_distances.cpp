@@ -4,23 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
+#include "infinity.h"
 #include "orchard/geometry/random.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGoldenAngle = 2.39996322972865332;  // radians
 // A point that lies less deep in another ball than this part of the largest radius is on the boundary: roundings.
 constexpr double kOnBoundary = 1e-12;
 constexpr Index kLeastSamples = 32;          // of a ball, however small it is beside the others
 constexpr Index kCuroboSphereSamples = 200;  // on each ball, as cuRobo takes them
 constexpr double kCuroboPercentile = 0.95;
-constexpr std::uint64_t kStage = 6500;  // of the random numbers
+constexpr std::uint64_t kSampleStage = 6500;  // of the random numbers
 
 // Area-stratified random points of a surface.
 std::vector<Point> surface_points(const Surface& surface, Index count, std::uint64_t seed) {
@@ -30,7 +29,7 @@ std::vector<Point> surface_points(const Surface& surface, Index count, std::uint
   for (Index t = 0; t < triangles; ++t) until[t] = area += surface.area(t);
   std::vector<Point> points(count);
   for (Index i = 0; i < count; ++i) {
-    Random random(seed, kStage, i);
+    Random random(seed, kSampleStage, i);
     const double at = area * (i + random.uniform()) / count;
     const auto found = std::min(std::upper_bound(until.begin(), until.end(), at), until.end() - 1);
     const auto [a, b, c] = surface.corners(static_cast<Index>(found - until.begin()));

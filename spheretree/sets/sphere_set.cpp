@@ -14,10 +14,10 @@ namespace orchard {
 namespace {
 
 // Roundings of a signed distance and of a radius' sum, per unit of coordinate.
-constexpr double kRounding = 0x1p-45;
+constexpr double kInsideRounding = 0x1p-45;
 
 bool lies_inside(const Surface& surface, const Sphere& ball) {
-  const double rounding = kRounding * (ball.center.norm() + surface.bounding_radius());
+  const double rounding = kInsideRounding * (ball.center.norm() + surface.bounding_radius());
   return surface.signed_distance(ball.center) + ball.radius + rounding <= 0;
 }
 

@@ -7,21 +7,20 @@
 #include <cmath>
 #include <vector>
 
+#include "golden_steps.h"
 #include "orchard/geometry/error.h"
 #include "parallel_rays.h"
 
 namespace orchard {
 namespace {
 
-using detail::ByRay, detail::Crossing, detail::Interval, detail::ParallelRays;
+using detail::ByRay, detail::Crossing, detail::fraction, detail::Interval, detail::ParallelRays;
 
 constexpr int kSets = 8;  // of rays
 // The exact volume is used if the rays' volume agrees with it within so many standard errors or within this part of it.
 constexpr double kAgreeingErrors = 6, kAgreeingPart = 2e-3;
 // 2^(1/2) - 1 and 3^(1/2) - 1: multiples of these shift the sets along the two axes, and keep them well apart.
 constexpr double kShiftX = 0.41421356237309515, kShiftY = 0.7320508075688772;
-
-double fraction(double x) { return x - std::floor(x); }
 
 // The integrals of 1, x and x x^T over a body. All bodies have the same origin.
 struct Moments {

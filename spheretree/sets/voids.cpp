@@ -11,7 +11,7 @@ namespace {
 
 // Corners within this part of the largest radius of a sphere may be on either side of it.
 constexpr double kUnsure = 1e-9;
-constexpr int kMaxRounds = 50;  // of growing
+constexpr int kMaxGrowthRounds = 50;  // of growing
 
 struct Corner {
   Point at;
@@ -105,7 +105,7 @@ std::vector<std::vector<Point>> detail::voids_of(const Surface& surface, std::sp
 // Balls are convex, and a void lies in the convex hull of its corners: a ball that holds these holds it.
 void detail::close_voids(const Surface& surface, std::vector<Sphere>& balls) {
   const double margin = tolerance::kCoverMargin * surface.bounding_radius();
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxGrowthRounds; ++round) {
     const auto voids = voids_of(surface, balls);
     if (voids.empty()) return;
     for (const std::vector<Point>& corners : voids) {

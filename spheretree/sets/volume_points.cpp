@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "golden_steps.h"
+
 namespace orchard::detail {
 namespace {
 
-// Powers of 1 / 1.2207.., the root of x^4 = x + 1: the three-dimensional golden ratio (Roberts 2018).
-constexpr double kStepX = 0.8191725133961645, kStepY = 0.6710436067037893, kStepZ = 0.5497004779019703;
 constexpr double kPointsPerCell = 6;
 // However thin the solid is in its box, no more points than this many times those wanted inside.
 constexpr double kMostPerInside = 12;
-
-double fraction(double x) { return x - std::floor(x); }
 
 double squared(double x) { return x * x; }
 
@@ -30,9 +28,7 @@ VolumePoints::VolumePoints(const Surface& surface, std::size_t inside, double ma
   std::vector<Point> points(count);
   std::vector<char> is_inside(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    const double n = static_cast<double>(i);
-    const Vector at(fraction(0.5 + n * kStepX), fraction(0.5 + n * kStepY), fraction(0.5 + n * kStepZ));
-    points[i] = box_.min() + box_.sizes().cwiseProduct(at);
+    points[i] = box_.min() + box_.sizes().cwiseProduct(golden_place(static_cast<double>(i)));
     is_inside[i] = surface.bounding_box().contains(points[i]) && surface.winding_number(points[i]) > 0;
   });
   sort_into_cells(points, is_inside);

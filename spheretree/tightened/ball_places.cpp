@@ -10,7 +10,7 @@ namespace orchard::detail {
 namespace {
 
 // What distances may be off by, as a part of them, with a lot to spare.
-constexpr double kRoundings = 1e-9;
+constexpr double kPlaceRounding = 1e-9;
 
 }  // namespace
 
@@ -42,7 +42,7 @@ inline void BallPlaces::gather(const Query& query) const {
     const Four& four = fours_[block];
     const Lanes dx = four.x - x, dy = four.y - y, dz = four.z - z;
     const Lanes squared = dx * dx + (dy * dy + dz * dz), reach = limit + four.half_radius;
-    const auto in_reach = (squared <= reach * reach * (1 + kRoundings)) & (reach >= 0.0);
+    const auto in_reach = (squared <= reach * reach * (1 + kPlaceRounding)) & (reach >= 0.0);
     if ((in_reach[0] | in_reach[1] | in_reach[2] | in_reach[3]) == 0) continue;
     for (std::size_t k = 0; k < kLanes; ++k) {
       const auto ball = static_cast<Index>(kLanes * block + k);
@@ -55,7 +55,7 @@ inline void BallPlaces::gather(const Query& query) const {
       least.insert(std::upper_bound(least.begin(), least.end(), apart), apart);
       if (least.size() < query.count) continue;
       const double last = least.back();
-      limit = std::min(limit, (last > 0 ? last * query.spread : last / query.spread) + kRoundings * largest);
+      limit = std::min(limit, (last > 0 ? last * query.spread : last / query.spread) + kPlaceRounding * largest);
     }
   }
   std::erase_if(query.near, [&](const Near& near) { return near.apart > limit; });

@@ -9,10 +9,10 @@ namespace orchard::detail {
 namespace {
 
 // What is told apart by distance alone may be wrong by a few roundings.
-constexpr double kSurely = 1 + 1e-9;
+constexpr double kReachFactor = 1 + 1e-9;
 
 bool apart(const Sphere& ball, const Point& center, double reach) {
-  const double limit = (ball.radius + reach) * kSurely;
+  const double limit = (ball.radius + reach) * kReachFactor;
   return (ball.center - center).squaredNorm() > limit * limit;
 }
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <numeric>
 
+#include "infinity.h"
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/octree.h"
@@ -61,7 +61,6 @@ Index OctreeReference::deepest_within(Index balls) const {
 }
 
 LevelTightness OctreeReference::bound(Index balls) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   LevelTightness least{kInfinity, kInfinity};
   for (Index level = 1; level <= deepest_within(balls); ++level) {
     LevelTightness& own = measured_[level];

@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "infinity.h"
 #include "orchard/geometry/random.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 8;  // of Lloyd's iteration
+constexpr int kLloydRounds = 8;  // of Lloyd's iteration
 constexpr int kStartEvaluations = 8;
 
 // Finds the largest of numbers, the first if there are several, that never rise: a heap of what they once were.
@@ -80,7 +79,7 @@ class LevelStart {
 
  private:
   std::vector<LevelBall> relaxed() {
-    for (int round = 0; round < kRounds; ++round) lloyd_round();
+    for (int round = 0; round < kLloydRounds; ++round) lloyd_round();
     std::erase_if(balls_, [](const LevelBall& ball) { return ball.samples.empty(); });
     for (LevelBall& ball : balls_) ball.samples.clear();
     return std::move(balls_);

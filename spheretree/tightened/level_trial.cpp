@@ -4,25 +4,25 @@
 #include <cmath>
 #include <limits>
 
+#include "infinity.h"
 #include "wide.h"
 
 // The numbers below were tuned on four models of 700 to 2000 triangles; none of them matters much.
 namespace orchard::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kBarred = std::numeric_limits<float>::infinity();  // what a ball may not own gets it no less loose
-constexpr int kRounds = 2, kRoundsOfFew = 3;                       // of sharing out
+constexpr int kSharingRounds = 2, kSharingRoundsOfFew = 3;         // of sharing out
 constexpr int kFirstEvaluations = 5, kLastEvaluations = 12;
 constexpr double kWantedShare = 0.7;  // of trials that begin where the caller wants; the others at any loose ball
 constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
 constexpr double kStayShare = 0.3,
                  kOneRestartShare = 0.45;  // of the others, in which none or one ball starts over, not two
 constexpr double kAllAnewShare = 0.3,
-                 kEachRestartShare = 0.4;  // of very few balls, all start over, or each does
-constexpr Index kFewForMoves = 8;          // balls, up to which there is no such move
-constexpr Index kFew = 128;                // balls, up to which more is put at stake at a time
-constexpr double kWorthwhile = 1e-6;       // part of the cost that must go
+                 kEachRestartShare = 0.4;   // of very few balls, all start over, or each does
+constexpr Index kFewForMoves = 8;           // balls, up to which there is no such move
+constexpr Index kFewAtStake = 128;          // balls, up to which more is put at stake at a time
+constexpr double kWorthwhileSaving = 1e-6;  // part of the cost that must go
 // By what part of its looseness a ball may still get tighter in the last round: an estimate.
 constexpr double kHoped = 0.3;
 
@@ -140,7 +140,7 @@ class Proposal {
       if (!is_chosen(near[i].second)) trial_.chosen.push_back(near[i].second);
   }
 
-  bool few() const { return balls_.size() <= kFew; }
+  bool few() const { return balls_.size() <= kFewAtStake; }
   // With so few balls the search gets stuck in a local minimum unless most of them change at a time.
   bool very_few() const { return balls_.size() <= kFewForMoves; }
 
@@ -156,7 +156,7 @@ class Proposal {
       static_cast<FittedBall&>(copy) = balls_[b];
       copy.path_region = balls_[b].path_region;
     }
-    trial_.max_cost = cost * (1 - kWorthwhile);
+    trial_.max_cost = cost * (1 - kWorthwhileSaving);
   }
 
   void start_some_anew() {
@@ -193,7 +193,7 @@ class Proposal {
   bool share_out() {
     trial_.needs.resize(trial_.balls.size());
     gather_freed();
-    const int rounds = few() ? kRoundsOfFew : kRounds;
+    const int rounds = few() ? kSharingRoundsOfFew : kSharingRounds;
     for (int round = 1; round <= rounds; ++round)
       if (!divide_freed() || !fit_all(round == rounds)) return false;
     return std::none_of(trial_.needs.begin(), trial_.needs.end(), [](const auto& list) { return list.empty(); });

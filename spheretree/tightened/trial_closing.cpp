@@ -9,8 +9,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kEvaluations = 10;
-constexpr int kRounds = 8;
+constexpr int kClosingEvaluations = 10;
+constexpr int kTrialClosingRounds = 8;
 // What breaks ties between balls that would not get looser at all, as a fraction of the radius.
 constexpr double kTie = 1e-12;
 
@@ -44,7 +44,7 @@ class TrialCloser {
 
   // False: after some rounds something is still open, or the trial is not worthwhile any more.
   bool close() {
-    for (int round = 1; round <= kRounds; ++round) {
+    for (int round = 1; round <= kTrialClosingRounds; ++round) {
       arcs_.clear();
       for (const Sphere& sphere : where_) cover_.open_arcs(resting_, sphere, {trial_.chosen, added_}, scratch_, arcs_);
       if (arcs_.empty()) return true;
@@ -56,7 +56,7 @@ class TrialCloser {
         grown[candidate] = 1;
       }
       for (std::size_t i = 0; i < added_.size(); ++i)
-        if (grown[i]) put(i, fitter_.fit(trial_.needs[i], trial_.balls[i], kEvaluations), round);
+        if (grown[i]) put(i, fitter_.fit(trial_.needs[i], trial_.balls[i], kClosingEvaluations), round);
       if (!worthwhile()) return false;
     }
     return false;
@@ -70,7 +70,7 @@ class TrialCloser {
       arcs_.clear();
       cover_.open_arcs(resting_, added_[i].sphere, {trial_.chosen, others}, scratch_, arcs_);
       if (arcs_.empty()) continue;
-      const FittedBall fitted = fitter_.fit(ends_of(arcs_), trial_.balls[i], kEvaluations);
+      const FittedBall fitted = fitter_.fit(ends_of(arcs_), trial_.balls[i], kClosingEvaluations);
       if (fitted.looseness() + margin_ <= trial_.balls[i].looseness() * (1 - kWorthwhileTightening)) put(i, fitted, 1);
     }
   }

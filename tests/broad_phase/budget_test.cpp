@@ -6,6 +6,7 @@
 
 #include "any_broad_phase.h"
 #include "oracles.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Steps that a budget interrupts: what is reported is right, what is not yet known is said to be, and every budget gets
@@ -13,7 +14,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 std::vector<Motion> resting(std::size_t n, double ball, std::uint64_t seed) {
   test::Draw draw(seed);

@@ -6,6 +6,7 @@
 #include "../runtime/allocation.h"
 #include "orchard/runtime/broad_queries.h"
 #include "orchard/runtime/orchard_broad_phase.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // The broad phase in C: says what it says in C++, refuses what it refuses, and lets no exception out.
@@ -13,7 +14,7 @@ namespace {
 
 using namespace orchard::runtime;
 
-constexpr double kStep = 0.01;
+using orchard::runtime::test::kStep;
 
 orchard_motion in_c(const Motion& m) {
   orchard_motion motion = orchard_default_motion();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "orchard/runtime/broad_queries.h"
+#include "runtime/numbers.h"
 #include "runtime/split_mix.h"
 #include "support/effort.h"
 
@@ -11,7 +12,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 using Pairs = std::set<std::pair<BodyIndex, BodyIndex>>;
 
 Pairs pairs_of(const Advance& now) {

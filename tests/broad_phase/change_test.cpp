@@ -5,18 +5,19 @@
 
 #include "any_broad_phase.h"
 #include "runtime/every_machine.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 // An application that keeps values, moves bodies itself and now and then breaks its own word.
-class Application {
+class ChangingApplication {
  public:
   // period > 0: all bounds hold for so many steps, and up to the same ones.
-  Application(std::uint64_t seed, const test::AnyOptions& options, int bodies = 20, int period = 0)
+  ChangingApplication(std::uint64_t seed, const test::AnyOptions& options, int bodies = 20, int period = 0)
       : draw_(seed),
         ball_(15 * std::cbrt(bodies / 20.0)),
         period_(period),
@@ -126,7 +127,7 @@ TEST_P(Changes, TakePartFromTheNextStep) {
     test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep}};
     if (seed % 2 == 1) options.rebuild = test::Rebuild::everything;
     if (seed % 3 == 1) options.common.window = static_cast<std::uint32_t>(1 + seed % 30);
-    Application application(seed, options);
+    ChangingApplication application(seed, options);
     for (int step = 0; step < 150; ++step) {
       application.frame(step);
       if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
@@ -139,7 +140,7 @@ TEST(BroadPhase, ChangesAroundACommonExpiryTakePart) {
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const int period = 3 + static_cast<int>(seed % 9), bodies = seed % 3 == 0 ? 300 : seed % 3 == 1 ? 189 : 60;
     const auto machine = test::on_portable_machine(seed % 5 == 0);
-    Application application(seed, {.common = {.time_step = kStep}}, bodies, period);
+    ChangingApplication application(seed, {.common = {.time_step = kStep}}, bodies, period);
     for (int step = 0; step < 60; ++step) {
       application.frame(step);
       if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;

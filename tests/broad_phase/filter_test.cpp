@@ -1,13 +1,14 @@
 #include <gtest/gtest.h>
 
 #include "any_broad_phase.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Pairs that are none. (sequence_test.cpp has all changes of filters, by every method, against comparing all.)
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 TEST(BodyFilters, GoByCategoriesMasksAndGroups) {
   const BodyFilter all{}, player{2, 1 | 4}, wall{1, 2}, ghost{8, 0};

@@ -4,15 +4,16 @@
 
 #include "any_broad_phase.h"
 #include "runtime/every_machine.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Values that are none: refused, and said to be.
 namespace orchard::runtime {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kStep = 0.01;
+using test::kInfinity;
+using test::kNaN;
+using test::kStep;
 
 std::vector<BodyIndex> refused_by(const Advance& now) { return {now.refused.begin(), now.refused.end()}; }
 

@@ -3,13 +3,14 @@
 #include <set>
 
 #include "any_broad_phase.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Which bodies there are: ids, and worlds that are emptied and filled again.
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 TEST(BodyIds, OfBodiesRemovedAreRefusedForGood) {
   BroadPhase world({}, {});

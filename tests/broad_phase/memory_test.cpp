@@ -2,26 +2,27 @@
 
 #include "../runtime/allocation.h"
 #include "any_broad_phase.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Without memory at any moment: a call that throws has changed nothing, or the world says that it is no more.
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
-constexpr int kSteps = 40;
+using test::kStep;
+constexpr int kStepsOfWorlds = 40;
 constexpr std::size_t kMaxCount = 60;
 
 // An application all of whose calls go through attempt(), which makes one allocation of the library's fail.
-class Application {
+class FailingApplication {
  public:
-  Application(const test::AnyOptions& options, std::uint64_t seed, std::size_t failing)
+  FailingApplication(const test::AnyOptions& options, std::uint64_t seed, std::size_t failing)
       : draw_(seed), left_(failing), values_(kMaxCount), known_(kMaxCount) {
     world_.emplace(test::make_broad_phase(values_of(values_), options));
   }
 
   void run() {
-    for (int step = 0; step < kSteps && world_->valid(); ++step) {
+    for (int step = 0; step < kStepsOfWorlds && world_->valid(); ++step) {
       for (BodyIndex i = 0; i < kMaxCount; ++i) {
         if (known_[i].alive && !known_[i].fixed)
           values_[i].position = values_[i].position + kStep * values_[i].velocity;
@@ -160,7 +161,8 @@ TEST_P(WithoutMemory, NothingIsChangedOrAllIsRefused) {
   int kept = 0, lost = 0;
   // The others allocate in their search, thousands of times.
   for (std::size_t failing = 1;; failing += events ? 1 : 1 + failing / 10) {
-    Application application({.method = GetParam(), .common = {.time_step = kStep}}, events ? failing : 3, failing);
+    FailingApplication application({.method = GetParam(), .common = {.time_step = kStep}}, events ? failing : 3,
+                                   failing);
     application.run();
     if (testing::Test::HasFatalFailure()) FAIL() << "the allocation number " << failing;
     if (!application.failed()) break;

@@ -12,7 +12,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 1.0 / 60, kHorizon = 0.1;
+constexpr double kSamplePeriod = 1.0 / 60, kHorizon = 0.1;
 constexpr std::size_t kFine = 12;  // parts of a step in which a path is simulated
 
 std::size_t fine(int step) { return static_cast<std::size_t>(step) * kFine; }
@@ -26,7 +26,7 @@ class Noise : public test::Draw {
 
 // A path whose acceleration is a random walk, at `kFine` times a step.
 std::vector<Vec3> random_walk(const MotionFilterOptions& options, int steps, Noise& noise) {
-  const double h = kStep / kFine;
+  const double h = kSamplePeriod / kFine;
   Vec3 x{}, v = noise.vector(options.max_speed), a = noise.vector(options.max_acceleration);
   std::vector<Vec3> path{x};
   for (std::size_t i = 0; i < fine(steps); ++i) {
@@ -50,18 +50,19 @@ double share_kept(const MotionFilterOptions& options, double lost, int trials) {
   int kept = 0;
   for (int trial = 0; trial < trials; ++trial) {
     Noise noise(static_cast<std::uint64_t>(trial) + 1);
-    const int asked = 3 + static_cast<int>(noise.uniform(0, 30)), end = asked + static_cast<int>(kHorizon / kStep);
+    const int asked = 3 + static_cast<int>(noise.uniform(0, 30)),
+              end = asked + static_cast<int>(kHorizon / kSamplePeriod);
     const auto path = random_walk(options, end, noise);
     MotionFilter filter(options);
     for (int i = 0; i <= asked; ++i) {
       const Vec3 sample = path[fine(i)] + noise.vector(options.noise);
       if (i > 0 && noise.uniform(0, 1) < lost) continue;
-      EXPECT_TRUE(filter.add(i * kStep, sample));
+      EXPECT_TRUE(filter.add(i * kSamplePeriod, sample));
     }
-    const Motion motion = filter.motion(0, asked * kStep, kHorizon);
+    const Motion motion = filter.motion(0, asked * kSamplePeriod, kHorizon);
     bool holding = true;
     for (std::size_t i = fine(asked); i <= fine(end); ++i)
-      holding = holding && holds(motion, static_cast<double>(i - fine(asked)) * kStep / kFine, path[i]);
+      holding = holding && holds(motion, static_cast<double>(i - fine(asked)) * kSamplePeriod / kFine, path[i]);
     kept += holding;
   }
   return static_cast<double>(kept) / trials;
@@ -85,8 +86,8 @@ TEST(MotionFilter, BreaksBoundsWhereTheMotionIsWilderThanStated) {
   MotionFilter filter(calm);
   int broken = 0;
   for (int i = 0; i < 110; ++i) {
-    filter.add(i * kStep, path[fine(i)] + noise.vector(calm.noise));
-    broken += !holds(filter.motion(0, i * kStep, kHorizon), 6 * kStep, path[fine(i + 6)]);
+    filter.add(i * kSamplePeriod, path[fine(i)] + noise.vector(calm.noise));
+    broken += !holds(filter.motion(0, i * kSamplePeriod, kHorizon), 6 * kSamplePeriod, path[fine(i + 6)]);
   }
   EXPECT_GT(broken, 50);
 }
@@ -95,7 +96,7 @@ TEST(MotionFilter, FindsAConstantAccelerationAndItsHalfSpace) {
   const Vec3 acceleration{0, -9.81, 0};
   MotionFilter filter({.noise = 1e-6, .jerk_density = 1e-6, .max_speed = 10, .max_acceleration = 100});
   for (int i = 0; i <= 60; ++i) {
-    const double t = i * kStep;
+    const double t = i * kSamplePeriod;
     filter.add(t, (t * t / 2) * acceleration + Vec3{3 * t, 0, 1});
   }
   const Motion motion = filter.motion(0.25, 1, kHorizon);
@@ -110,11 +111,12 @@ TEST(MotionFilter, FindsAConstantAccelerationAndItsHalfSpace) {
 TEST(MotionFilter, WidensItsBoundsWhileSamplesAreMissingAndWithTheConfidence) {
   const auto bound = [](double confidence, double late) {
     MotionFilter filter({.noise = 1e-3, .jerk_density = 10, .confidence = confidence});
-    for (int i = 0; i < 30; ++i) filter.add(i * kStep, {0.01 * i, 0, 0});
-    return filter.motion(0, 29 * kStep + late, kHorizon);
+    for (int i = 0; i < 30; ++i) filter.add(i * kSamplePeriod, {0.01 * i, 0, 0});
+    return filter.motion(0, 29 * kSamplePeriod + late, kHorizon);
   };
   for (int i = 0; i < 10; ++i) {
-    const Motion now = bound(0.9, i * kStep), later = bound(0.9, (i + 1) * kStep), surer = bound(0.999, i * kStep);
+    const Motion now = bound(0.9, i * kSamplePeriod), later = bound(0.9, (i + 1) * kSamplePeriod),
+                 surer = bound(0.999, i * kSamplePeriod);
     EXPECT_GT(later.radius, now.radius);
     EXPECT_GT(later.drift, now.drift);
     EXPECT_GT(surer.radius, now.radius);

@@ -16,7 +16,7 @@ using namespace detail;
 
 constexpr double kResolution = 1e-3;
 
-// Pairs close to each other and far apart, at rest and fast, with and without each of the bounds.
+// BoundedPairs close to each other and far apart, at rest and fast, with and without each of the bounds.
 Motion any_motion(test::Draw& draw, double scale) {
   const auto mostly = [&](double x) { return draw.uniform(0, 1) < 0.3 ? 0 : x; };
   Motion m;
@@ -29,13 +29,13 @@ Motion any_motion(test::Draw& draw, double scale) {
   return m;
 }
 
-struct Pairs {
+struct BoundedPairs {
   std::vector<Motion> motions;
   std::vector<double> limits;
 };
 
-Pairs any_pairs(test::Draw& draw) {
-  Pairs pairs;
+BoundedPairs any_pairs(test::Draw& draw) {
+  BoundedPairs pairs;
   const double scale = std::ldexp(1, static_cast<int>(draw.bits() % 80) - 40);
   pairs.limits.resize(1 + draw.bits() % kPairsAtOnce);
   for (double& limit : pairs.limits) {
@@ -46,7 +46,7 @@ Pairs any_pairs(test::Draw& draw) {
   return pairs;
 }
 
-bool at_once(const Pairs& pairs, double slack, PairTimes& times) {
+bool at_once(const BoundedPairs& pairs, double slack, PairTimes& times) {
   return find_pair_times_at_once(pairs.motions, pairs.limits, kResolution, slack, times);
 }
 
@@ -55,7 +55,7 @@ TEST(PairTimes, AreTheSameForFourAtOnceAsOneByOne) {
     test::Draw draw(orchard::test::first_seed());
     int at_all = 0;
     for (std::uint64_t round = 0; round < 2000 * orchard::test::more(); ++round) {
-      const Pairs pairs = any_pairs(draw);
+      const BoundedPairs pairs = any_pairs(draw);
       const double slack = draw.uniform(0, 1) < 0.5 ? 0 : draw.uniform(0, 0.1);
       PairTimes times{};
       if (!at_once(pairs, slack, times)) continue;
@@ -80,7 +80,7 @@ TEST(PairTimes, AreNotTakenOfMotionsThatAreNotValid) {
   test::on_every_machine([] {
     test::Draw draw(5);
     for (int round = 0; round < 2000; ++round) {
-      Pairs pairs = any_pairs(draw);
+      BoundedPairs pairs = any_pairs(draw);
       Motion& bad = pairs.motions[draw.bits() % pairs.motions.size()];
       const double wrong = std::array{kNaN, kInfinite, -kInfinite, 1e101, -1e101}[draw.bits() % 5];
       switch (draw.bits() % 7) {

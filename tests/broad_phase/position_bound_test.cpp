@@ -5,18 +5,20 @@
 #include <vector>
 
 #include "orchard/runtime/broad_phase.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01, kPeriod = 0.1;
-constexpr std::size_t kBodies = 24, kSteps = 60, kPeriods = 7;
+using test::kStep;
+constexpr double kPeriod = 0.1;
+constexpr std::size_t kJumpingBodies = 24, kBoundSteps = 60, kPeriods = 7;
 
 // Half of the bodies jump at will in a place that they leave for another one every kPeriod; the others fly straight.
-struct World {
-  explicit World(std::uint64_t seed) : draw(seed) {
-    for (std::size_t i = 0; i < kBodies; ++i) {
+struct JumpingBodies {
+  explicit JumpingBodies(std::uint64_t seed) : draw(seed) {
+    for (std::size_t i = 0; i < kJumpingBodies; ++i) {
       radii.push_back(draw.uniform(0.1, 0.5));
       reaches.push_back(draw.uniform(0.1, 1));
       starts.push_back(draw.in_ball(5));
@@ -52,20 +54,20 @@ struct World {
 TEST(PositionBounds, MissNoContactOfBodiesThatJumpWithinTheirPlaces) {
   std::size_t contacts = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    World world(seed);
+    JumpingBodies world(seed);
     BroadPhase broad_phase(
         [&](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
           const auto step = static_cast<std::size_t>(std::lround(time / kStep));
           for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = world.motion(bodies[i], step);
         },
         {.time_step = kStep});
-    for (std::size_t i = 0; i < kBodies; ++i) broad_phase.add();
-    for (std::size_t step = 0; step < kSteps; ++step) {
+    for (std::size_t i = 0; i < kJumpingBodies; ++i) broad_phase.add();
+    for (std::size_t step = 0; step < kBoundSteps; ++step) {
       const Advance now = broad_phase.advance(static_cast<double>(step) * kStep);
       std::vector<Vec3> positions;
-      for (std::size_t i = 0; i < kBodies; ++i) positions.push_back(world.position(i, step));
-      for (BodyIndex i = 0; i < kBodies; ++i)
-        for (BodyIndex j = i + 1; j < kBodies; ++j) {
+      for (std::size_t i = 0; i < kJumpingBodies; ++i) positions.push_back(world.position(i, step));
+      for (BodyIndex i = 0; i < kJumpingBodies; ++i)
+        for (BodyIndex j = i + 1; j < kJumpingBodies; ++j) {
           if (length(positions[i] - positions[j]) > world.radii[i] + world.radii[j]) continue;
           ++contacts;
           ASSERT_TRUE(std::find(now.pairs.begin(), now.pairs.end(), BodyPair{i, j}) != now.pairs.end())

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "query_judge.h"
+#include "runtime/numbers.h"
 
 // Queries in worlds and with values that are not like others.
 namespace orchard::runtime {
@@ -11,9 +12,9 @@ namespace {
 using test::ask_everything;
 using test::Judge;
 
-constexpr double kStep = 0.01;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
+using test::kNaN;
+using test::kStep;
 
 // Clusters, a body far away, sizes from points to more than the world: what the grid cannot hold.
 TEST(QueryCases, FindWhatTheGridCannotHold) {

@@ -5,6 +5,7 @@
 #include "../support/effort.h"
 #include "any_broad_phase.h"
 #include "query_judge.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Rays, segments, spheres, boxes and nearest bodies against asking every body, in more digits.
@@ -14,7 +15,7 @@ namespace {
 using test::ask_everything;
 using test::Judge;
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 class Queries : public testing::TestWithParam<test::AnyMethod> {};
 INSTANTIATE_TEST_SUITE_P(BroadPhase, Queries, testing::ValuesIn(test::kMethods));
@@ -65,9 +66,9 @@ TEST_P(Queries, AreAnsweredAsByAskingEveryBody) {
 
 // An application that adds, removes, teleports, cancels, filters and gives motions that are none, within budgets or
 // not, and asks at any moment.
-class Application {
+class AskingApplication {
  public:
-  Application(std::uint64_t seed, const test::AnyOptions& options, std::size_t crowd)
+  AskingApplication(std::uint64_t seed, const test::AnyOptions& options, std::size_t crowd)
       : draw_(seed),
         crowd_(crowd),
         world_(test::make_broad_phase(values_of(values_), options)),
@@ -174,7 +175,7 @@ TEST_P(Queries, KeepUpWithAllChanges) {
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
     test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep}};
     if (seed % 3 == 1) options.common.window = static_cast<std::uint32_t>(1 + seed % 30);
-    Application application(seed, options, events ? (seed % 2 == 0 ? 300 : 150) : 12);
+    AskingApplication application(seed, options, events ? (seed % 2 == 0 ? 300 : 150) : 12);
     application.run(60);
     if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
   }

@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "orchard/runtime/broad_phase.h"
+#include "runtime/numbers.h"
 
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 // A lattice in which neighbours overlap: few bodies, and so many that they are in the grid.
 TEST(BroadPhase, AsksBodiesAtRestOnceUntilTheyAreCancelled) {

@@ -9,14 +9,14 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr std::size_t kBodies = 1000;
+constexpr std::size_t kSceneBodies = 1000;
 
-using Reports = std::vector<std::vector<BodyPair>>;  // by step
+using SceneReports = std::vector<std::vector<BodyPair>>;  // by step
 
 std::vector<test::SceneSpec> small_scenes() {
   std::vector<test::SceneSpec> scenes;
   for (test::SceneSpec spec : test::table_scenes(10000)) {
-    spec.bodies = kBodies;
+    spec.bodies = kSceneBodies;
     const bool twice = std::any_of(scenes.begin(), scenes.end(), [&](const test::SceneSpec& other) {
       return other.kind == spec.kind && other.share == spec.share;
     });
@@ -25,9 +25,9 @@ std::vector<test::SceneSpec> small_scenes() {
   return scenes;
 }
 
-Reports expected(const test::SceneSpec& spec, int steps) {
+SceneReports expected(const test::SceneSpec& spec, int steps) {
   test::TableScene scene(spec, 1);
-  Reports reports;
+  SceneReports reports;
   std::vector<Motion> motions(scene.size());
   for (int step = 0; step < steps; ++step, scene.next_step()) {
     for (BodyIndex i = 0; i < scene.size(); ++i) motions[i] = scene.motion(i);
@@ -36,7 +36,7 @@ Reports expected(const test::SceneSpec& spec, int steps) {
   return reports;
 }
 
-void expect_reports(const test::SceneSpec& spec, const test::AnyOptions& options, const Reports& reports) {
+void expect_reports(const test::SceneSpec& spec, const test::AnyOptions& options, const SceneReports& reports) {
   test::TableScene scene(spec, 1);
   test::SceneWorld world(scene, test::make_broad_phase(scene.source(), options));
   for (std::size_t step = 0; step < reports.size(); ++step, scene.next_step()) {
@@ -70,20 +70,20 @@ TEST_P(EveryScene, IsWhatBruteForceSaysOfFewBodies) {
   for (const std::size_t bodies : {3u, 70u, 180u}) {
     test::SceneSpec few = GetParam();
     few.bodies = bodies;
-    const Reports reports = expected(few, steps());
+    const SceneReports reports = expected(few, steps());
     test::on_every_machine([&] { expect_reports(few, {}, reports); });
   }
 }
 
 TEST_P(EveryScene, IsWhatBruteForceSaysOnEveryMachine) {
-  const Reports reports = expected(GetParam(), steps());
+  const SceneReports reports = expected(GetParam(), steps());
   test::on_every_machine([&] { expect_reports(GetParam(), {}, reports); });
   expect_reports(GetParam(), {.common = {.window = 20}}, reports);
 }
 
 // The dissertation's methods look at everything at each step where bodies overlap: few steps.
 TEST_P(EveryScene, IsWhatBruteForceSaysByEveryMethod) {
-  const Reports reports = expected(GetParam(), 3);
+  const SceneReports reports = expected(GetParam(), 3);
   for (const test::AnyMethod method : test::kMethods) expect_reports(GetParam(), {.method = method}, reports);
 }
 

@@ -5,6 +5,7 @@
 #include "../support/effort.h"
 #include "any_broad_phase.h"
 #include "runtime/every_machine.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Random sequences of everything an application can do, hostile values included, against comparing all bodies.
@@ -12,9 +13,9 @@ namespace orchard::runtime {
 namespace {
 
 constexpr std::uint64_t kSeeds = 150, kSeedsOfOthers = 12;
-constexpr double kStep = 0.01;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
+using test::kNaN;
+using test::kStep;
 
 class Sequence {
  public:

@@ -8,14 +8,15 @@
 #include "../support/effort.h"
 #include "oracles.h"
 #include "orchard/runtime/broad_queries.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Worlds in which no bound lasts for longer than a step.
 namespace orchard::runtime {
 namespace {
 
-constexpr std::uint64_t kSeeds = 40;
-constexpr double kStep = 0.01;
+constexpr std::uint64_t kSphereSeeds = 40;
+using test::kStep;
 
 struct Shape {
   const char* name;
@@ -58,7 +59,7 @@ std::vector<BodyPair> sorted(std::span<const BodyPair> pairs) {
 TEST(SortedSpheres, FindEachPairThatTouchesOnceOnEveryMachine) {
   const std::uint64_t first = orchard::test::first_seed();
   for (const Shape& shape : kShapes) {
-    for (std::uint64_t seed = first; seed < first + kSeeds * orchard::test::more(); ++seed) {
+    for (std::uint64_t seed = first; seed < first + kSphereSeeds * orchard::test::more(); ++seed) {
       test::Draw draw(seed);
       detail::SortedSpheres spheres;
       for (int step = 0; step < 3; ++step) {  // the cells of the first one stay

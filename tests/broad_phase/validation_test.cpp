@@ -7,13 +7,14 @@
 #include "../support/effort.h"
 #include "any_broad_phase.h"
 #include "orchard/runtime/motion_helpers.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 // Promises that are not kept are found while a program is being written.
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 TEST(MotionBoundExcess, SaysWhichBoundIsBrokenByHowMuch) {
   const Motion bound{.position = {1, 2, 3},
@@ -60,7 +61,7 @@ TEST(MotionBoundExcess, SaysWhichBoundIsBrokenByHowMuch) {
   EXPECT_TRUE(motion_bound_excess(bound, 1, moved({0, position + 1e-3, 0}, {}), 1 + kSeconds, 1e-3).none());
 }
 
-std::vector<BodyPair> pairs_of(const Advance& now) { return {now.pairs.begin(), now.pairs.end()}; }
+std::vector<BodyPair> pair_list(const Advance& now) { return {now.pairs.begin(), now.pairs.end()}; }
 
 class Validation : public testing::TestWithParam<test::AnyMethod> {};
 INSTANTIATE_TEST_SUITE_P(BroadPhase, Validation, testing::ValuesIn(test::kMethods));
@@ -93,7 +94,7 @@ TEST_P(Validation, FindsNothingWherePromisesAreKept) {
       const double t = k * frame;
       for (;;) {
         const Advance now = plain.advance(t), same = checked.advance(t);
-        ASSERT_EQ(pairs_of(same), pairs_of(now));
+        ASSERT_EQ(pair_list(same), pair_list(now));
         ASSERT_EQ(same.time, now.time);
         if (now.pairs.empty()) break;
       }
@@ -129,7 +130,7 @@ TEST(Validation, FindsValuesThatAreOfTheFrameAndNotOfTheStep) {
       for (BodyIndex i = 0; i < bodies.size(); ++i) values[i] = bodies.motion(i, t);
       std::map<int, std::vector<BodyPair>> found;
       for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) {
-        found[static_cast<int>(std::lround(now.time / kStep))] = pairs_of(now);
+        found[static_cast<int>(std::lround(now.time / kStep))] = pair_list(now);
       }
       for (; step * kStep <= t; ++step) {
         const auto right = bodies.touching(step * kStep);

@@ -7,10 +7,13 @@
 
 #include "any_broad_phase.h"
 #include "runtime/every_machine.h"
+#include "runtime/numbers.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
 namespace {
+
+using test::kStep;
 
 using test::MovingBodies;
 using test::WorldShape;
@@ -255,7 +258,7 @@ void expect_right(const MotionSource& source, std::size_t n, const test::AnyOpti
 TEST(BroadPhase, WorksFromSpeedBoundsAlone) {  // 8.2: bodies that turn at will, in no time
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     test::Draw draw(seed);
-    constexpr double kSpeed = 6, kStep = 0.01;
+    constexpr double kSpeed = 6;
     constexpr std::size_t kSteps = 80, kBodies = 25;
     std::vector<std::vector<Vec3>> paths(kBodies);
     for (auto& path : paths) {

@@ -5,6 +5,7 @@
 
 #include "orchard/runtime/broad_phase.h"
 #include "orchard/runtime/motion.h"
+#include "runtime/numbers.h"
 #include "split_mix.h"
 #include "support/effort.h"
 #include "thread_pool.h"
@@ -14,7 +15,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 constexpr std::size_t kBodies = 20000;
 
 // Straight paths, known in closed form, so that sources of all threads only read.

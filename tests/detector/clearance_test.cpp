@@ -5,6 +5,7 @@
 #include <set>
 
 #include "detector/simple_pair.h"
+#include "runtime/numbers.h"
 #include "scene_run.h"
 #include "support.h"
 #include "support/effort.h"
@@ -13,7 +14,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 struct Actor {
   std::vector<BodyPart> parts;

@@ -11,7 +11,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.02;
+constexpr double kImpactStep = 0.02;
 
 struct Shot {
   Frame frame;
@@ -22,7 +22,7 @@ struct Shot {
 std::vector<PairEvent> shoot(const PackedSphereTree& target, const Pose& target_pose, double radius, const Vec3& from,
                              const Vec3& to, double speed, bool half_space = false) {
   std::vector<BodyState> states(4);
-  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+  Detector detector(states_of(states), {.time_step = kImpactStep, .watch = false});
   const ShapeId bullet = detector.add_sphere(radius), tree = detector.add_shape(target);
   const BodyId id = detector.add_body({{bullet, {}}}, {.continuous_speed = speed});
   if (half_space) {
@@ -36,7 +36,7 @@ std::vector<PairEvent> shoot(const PackedSphereTree& target, const Pose& target_
   for (int step = 0; step < 3; ++step) {
     states[id.index].pose.translation = places[step];
     if (step == 2) detector.teleport(id);
-    const Frame frame = detector.step(step * kStep);
+    const Frame frame = detector.step(step * kImpactStep);
     events.insert(events.end(), frame.events.begin(), frame.events.end());
   }
   return events;
@@ -45,14 +45,14 @@ std::vector<PairEvent> shoot(const PackedSphereTree& target, const Pose& target_
 TEST(Continuous, ABulletDoesNotTunnelThroughAThinWall) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
   const Vec3 from = {0.3, 0.2, 7}, to = {-0.4, 0.1, -9};
-  const double speed = std::sqrt(dot(to - from, to - from)) / kStep * 1.01;
+  const double speed = std::sqrt(dot(to - from, to - from)) / kImpactStep * 1.01;
   EXPECT_TRUE(shoot(wall, {}, 0.01, from, to, 0).empty());  // at the steps nothing is to be seen
   const auto events = shoot(wall, {}, 0.01, from, to, speed);
   ASSERT_EQ(events.size(), 2u);
   EXPECT_EQ(events[0].change, PairChange::begin);
   EXPECT_EQ(events[1].change, PairChange::end);
   // The ball's front is 0.011 above the middle of the wall at first.
-  const double impact = kStep * (7 - 0.011) / 16;
+  const double impact = kImpactStep * (7 - 0.011) / 16;
   EXPECT_LE(events[0].impact_from, impact + 1e-9);
   EXPECT_GE(events[0].impact_to, impact - 1e-9);
   EXPECT_NEAR(events[0].impact_from, impact, 1e-5);
@@ -64,7 +64,7 @@ TEST(Continuous, ABulletDoesNotTunnelThroughAHalfSpaceThatItLeavesAgain) {
   const auto events = shoot({}, {}, 0.1, {0, 0, 5}, {3, 0, -2}, 400, true);
   ASSERT_GE(events.size(), 1u);
   EXPECT_EQ(events[0].change, PairChange::begin);
-  EXPECT_NEAR(events[0].impact_from, kStep * 4.9 / 7, 1e-6);
+  EXPECT_NEAR(events[0].impact_from, kImpactStep * 4.9 / 7, 1e-6);
 }
 
 // Random shots through random bodies against dense sampling.
@@ -87,7 +87,7 @@ TEST(Continuous, HitsWhereSamplingDoesAndMissesElsewhere) {
         least = std::min(least, test::point_distance({at[0], at[1], at[2]}, t) - static_cast<long double>(radius));
       }
     }
-    const auto events = shoot(tree, pose, radius, from, to, way / kStep * 1.01);
+    const auto events = shoot(tree, pose, radius, from, to, way / kImpactStep * 1.01);
     const bool hit = !events.empty() && events[0].change == PairChange::begin;
     if (least <= 0) {
       EXPECT_TRUE(hit) << shot;
@@ -106,7 +106,7 @@ TEST(Continuous, TreesThatTurnAreSweptAsWell) {
   const PackedSphereTree blade = test::build_tree(test::box({-2, -0.05, -0.05}, {2, 0.05, 0.05}));
   const PackedSphereTree post = test::build_tree(test::box({-0.1, -0.1, -1}, {0.1, 0.1, 1}));
   std::vector<BodyState> states(2);
-  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+  Detector detector(states_of(states), {.time_step = kImpactStep, .watch = false});
   const ShapeId shape = detector.add_shape(blade);
   const BodyId id = detector.add_body({{shape, {}}}, {.continuous_speed = 1});
   detector.add_static({{detector.add_shape(post), {}}}, {.translation = {1.5, 0, 0}});
@@ -117,13 +117,13 @@ TEST(Continuous, TreesThatTurnAreSweptAsWell) {
   states[id.index].pose = turned(-0.5);
   EXPECT_TRUE(detector.step(0).events.empty());
   states[id.index].pose = turned(0.5);
-  const Frame frame = detector.step(kStep);
+  const Frame frame = detector.step(kImpactStep);
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::begin);
-  EXPECT_GT(frame.events[0].impact_from, 0.5 * kStep * 0.5);
-  EXPECT_LT(frame.events[0].impact_to, 0.5 * kStep);
+  EXPECT_GT(frame.events[0].impact_from, 0.5 * kImpactStep * 0.5);
+  EXPECT_LT(frame.events[0].impact_to, 0.5 * kImpactStep);
   states[id.index].pose = turned(0.7);
-  const Frame after = detector.step(2 * kStep);
+  const Frame after = detector.step(2 * kImpactStep);
   ASSERT_EQ(after.events.size(), 1u);
   EXPECT_EQ(after.events[0].change, PairChange::end);
 }
@@ -144,7 +144,7 @@ TEST(Continuous, JointsThatMoveBetweenTwoStepsAreSweptLikeBodies) {
     const Pose from = any_pose(), to = any_pose();
     const auto events_of = [&](bool by_joint, double speed) {
       std::vector<BodyState> states(2);
-      Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+      Detector detector(states_of(states), {.time_step = kImpactStep, .watch = false});
       const BodyId id = detector.add_body({{detector.add_shape(blade), {}}}, {.continuous_speed = speed, .reach = 5});
       detector.add_static({{detector.add_shape(post), {}}}, {});
       states[id.index].expiry = 0;
@@ -157,19 +157,19 @@ TEST(Continuous, JointsThatMoveBetweenTwoStepsAreSweptLikeBodies) {
         } else {
           states[id.index].pose = pose;
         }
-        const Frame frame = detector.step(step++ * kStep);
+        const Frame frame = detector.step(step++ * kImpactStep);
         events.insert(events.end(), frame.events.begin(), frame.events.end());
       }
       return events;
     };
-    const double speed = 5 / kStep;
+    const double speed = 5 / kImpactStep;
     const auto by_body = events_of(false, speed), by_joint = events_of(true, speed);
     ASSERT_EQ(by_joint.size(), by_body.size()) << i;
     for (std::size_t k = 0; k < by_body.size(); ++k) {
       ASSERT_EQ(by_joint[k].change, by_body[k].change) << i;
       ASSERT_EQ(std::isnan(by_joint[k].impact_to), std::isnan(by_body[k].impact_to)) << i;
       if (std::isnan(by_body[k].impact_to)) continue;
-      ASSERT_NEAR(by_joint[k].impact_to, by_body[k].impact_to, 1e-4 * kStep) << i;
+      ASSERT_NEAR(by_joint[k].impact_to, by_body[k].impact_to, 1e-4 * kImpactStep) << i;
     }
     if (by_joint.size() > events_of(true, 0).size()) ++hits;
   }
@@ -183,14 +183,14 @@ TEST(Continuous, APartThatIsStretchedIntoTheUnknownIsPossible) {
     for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = BodyState{};
     ++asked;
   };
-  Detector detector(at_rest, {.time_step = kStep, .watch = false});
+  Detector detector(at_rest, {.time_step = kImpactStep, .watch = false});
   const BodyId id = detector.add_body({{detector.add_sphere(0.1), {}}}, {.continuous_speed = 1});
   detector.add_static({{detector.add_sphere(0.5), {}}}, {.translation = {0, 0, 3}});
   int step = 0;
-  for (; step < 4; ++step) EXPECT_TRUE(detector.step(step * kStep).events.empty());
+  for (; step < 4; ++step) EXPECT_TRUE(detector.step(step * kImpactStep).events.empty());
   ASSERT_EQ(asked, 1);
   EXPECT_TRUE(detector.set_local(id, 0, {.translation = {0, 0, 6}}));
-  const Frame frame = detector.step(step * kStep);
+  const Frame frame = detector.step(step * kImpactStep);
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::possible);
 }
@@ -198,7 +198,7 @@ TEST(Continuous, APartThatIsStretchedIntoTheUnknownIsPossible) {
 TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
   const PackedSphereTree wall = test::build_tree(test::torus(30, 16, 1, 0.3));
   std::vector<BodyState> states(40);
-  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+  Detector detector(states_of(states), {.time_step = kImpactStep, .watch = false});
   const ShapeId shape = detector.add_shape(wall);
   detector.add_static({{shape, {}}}, {});
   std::vector<BodyId> ids(20);
@@ -212,7 +212,7 @@ TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
                                                  step % 2 == 0 ? 2.0 : -2.0};
       }
       static int time = 0;
-      const Frame frame = detector.step(time++ * kStep, {.work = work});
+      const Frame frame = detector.step(time++ * kImpactStep, {.work = work});
       EXPECT_LT(frame.work, work + kMaxOvershoot + 2 * kMotionWork);
       for (const PairEvent& event : frame.events) possible += event.change == PairChange::possible;
     }
@@ -226,7 +226,7 @@ TEST(Continuous, ABodyThatIsNewNearABulletIsAnsweredForAtOnce) {
   std::size_t touches = 0;
   for (std::uint64_t i = 0; i < 100 * orchard::test::more(); ++i) {
     test::Draw draw(orchard::test::first_seed() + i);
-    Detector world({.time_step = kStep, .watch = false});
+    Detector world({.time_step = kImpactStep, .watch = false});
     const ShapeId ball = world.add_sphere(0.5);
     std::vector<std::pair<BodyId, double>> all;  // and where its ball is on the x axis
     const auto add = [&](double x, double off) {
@@ -237,7 +237,7 @@ TEST(Continuous, ABodyThatIsNewNearABulletIsAnsweredForAtOnce) {
     for (int step = 0; step < 6; ++step) {
       add(draw.uniform(-4, 4), draw.uniform(-3, 3));
       std::set<std::pair<BodyIndex, BodyIndex>> found, truth;
-      for (const PairEvent& event : world.step(step * kStep).events) {
+      for (const PairEvent& event : world.step(step * kImpactStep).events) {
         ASSERT_NE(event.change, PairChange::possible) << i << " " << step;
         found.insert({event.a.index, event.b.index});
       }

@@ -6,22 +6,23 @@
 #include <cmath>
 
 #include "runtime/allocation.h"
+#include "runtime/numbers.h"
 #include "support.h"
 
 // What the header of the detector says about bodies, shapes and events, one by one.
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 // A detector with states that the test writes.
-struct World {
+struct WrittenWorld {
   std::vector<BodyState> states = std::vector<BodyState>(64);
   PackedSphereTree torus = test::build_tree(test::torus(12, 6, 0.75, 0.25));
   Detector detector;
   int steps = 0;
 
-  explicit World(const DetectorOptions& options = {}) : detector(make(options)) {}
+  explicit WrittenWorld(const DetectorOptions& options = {}) : detector(make(options)) {}
   Detector make(DetectorOptions options) {
     options.time_step = kStep;
     options.watch = options.watch.value_or(false);
@@ -43,7 +44,7 @@ struct World {
 };
 
 TEST(DetectorShapes, AreRefusedWhereTheyMakeNoSense) {
-  World w;
+  WrittenWorld w;
   PackedSphereTree broken = w.torus;
   broken.blocks[0].link[0] = 0x7fffffff;
   EXPECT_EQ(w.detector.add_shape(broken), kNoShape);
@@ -61,7 +62,7 @@ TEST(DetectorBodies, TellWhatTheBroadPhaseReliesOn) {
   std::vector<std::pair<double, Motion>> told;
   DetectorOptions options;
   options.bound_given = [&](double time, BodyIndex, const Motion& bound) { told.push_back({time, bound}); };
-  World w(options);
+  WrittenWorld w(options);
   const BodyId body = w.detector.add_body({{w.detector.add_sphere(2)}});
   w.states[body.index].acceleration = 3;
   w.states[body.index].expiry = INFINITY;
@@ -78,7 +79,7 @@ TEST(DetectorBodies, TellWhatTheBroadPhaseReliesOn) {
 }
 
 TEST(DetectorBodies, AreRefusedWhereTheyMakeNoSense) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   EXPECT_EQ(w.detector.add_body(std::span<const BodyPart>{}), kNoBody);
   EXPECT_EQ(w.detector.add_body({{ball + 1, {}}}), kNoBody);
@@ -105,7 +106,7 @@ TEST(DetectorBodies, OptionsAndTimesThatMakeNoSenseAreRefused) {
   EXPECT_EQ(detector.add_sphere(1), 0u);
   EXPECT_EQ(detector.add_static({{0, {}}}, {}), kNoBody);
   EXPECT_TRUE(detector.step(0).time_refused);
-  World w;
+  WrittenWorld w;
   EXPECT_TRUE(w.detector.step(NAN).time_refused);
   EXPECT_TRUE(w.detector.step(1e300).time_refused);
   EXPECT_FALSE(w.step().time_refused);
@@ -121,7 +122,7 @@ TEST(DetectorShapes, OfEveryKindTouchWhereTheyMeet) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
       for (const double off : {-2.5e-4, 2.5e-4}) {
-        World w;
+        WrittenWorld w;
         const ShapeId shapes[] = {w.detector.add_sphere(0.5), w.detector.add_capsule({-1, 0, 0}, {1, 0, 0}, 0.5),
                                   w.detector.add_box({0.25, 1, 1}), w.detector.add_shape(w.torus)};
         const BodyId a = w.detector.add_body({{shapes[i], {}}}), b = w.detector.add_body({{shapes[j], {}}});
@@ -142,7 +143,7 @@ TEST(DetectorShapes, OfEveryKindTouchWhereTheyMeet) {
 TEST(DetectorShapes, OfEveryKindTouchAHalfSpaceWhereTheyMeetIt) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (const double off : {-2.5e-4, 2.5e-4}) {
-      World w;
+      WrittenWorld w;
       const ShapeId shapes[] = {w.detector.add_sphere(0.5), w.detector.add_capsule({-1, 0, 0}, {1, 0, 0}, 0.5),
                                 w.detector.add_box({0.25, 1, 1}), w.detector.add_shape(w.torus)};
       const double half[] = {0.5, 1.5, 0.25, 1.0};
@@ -166,7 +167,7 @@ TEST(DetectorShapes, OfEveryKindTouchAHalfSpaceWhereTheyMeetIt) {
 TEST(DetectorShapes, OfEveryKindComeApartAsTheManifoldSays) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 5; ++j) {
-      World w;
+      WrittenWorld w;
       const ShapeId shapes[] = {w.detector.add_sphere(0.5), w.detector.add_capsule({-1, 0, 0}, {1, 0, 0}, 0.5),
                                 w.detector.add_box({0.25, 1, 1}), w.detector.add_shape(w.torus)};
       const double half[] = {0.5, 1.5, 0.25, 1.0};
@@ -199,7 +200,7 @@ TEST(DetectorShapes, OfEveryKindComeApartAsTheManifoldSays) {
 }
 
 TEST(DetectorShapes, BoxesAreSolid) {
-  World w;
+  WrittenWorld w;
   const ShapeId box = w.detector.add_box({5, 5, 5}), ball = w.detector.add_sphere(0.5);
   const ShapeId tree = w.detector.add_shape(w.torus), small = w.detector.add_box({1, 1, 1});
   for (const ShapeId inner : {ball, tree, small}) {
@@ -212,7 +213,7 @@ TEST(DetectorShapes, BoxesAreSolid) {
 }
 
 TEST(DetectorEvents, BeginOnceStayAndEndOnce) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   const BodyId a = w.detector.add_body({{ball, {}}}), b = w.detector.add_body({{ball, {}}});
   const double apart[] = {3, 2.1, 1.9, 1.5, 1.9, 2.1, 1.9, 5};
@@ -230,7 +231,7 @@ TEST(DetectorEvents, BeginOnceStayAndEndOnce) {
 }
 
 TEST(DetectorEvents, EndAfterAsManyCertainNosAsAskedFor) {
-  World w({.steps_to_end = 3});
+  WrittenWorld w({.steps_to_end = 3});
   const ShapeId ball = w.detector.add_sphere(1);
   w.detector.add_body({{ball, {}}});
   const BodyId b = w.detector.add_body({{ball, {}}});
@@ -249,7 +250,7 @@ TEST(DetectorEvents, EndAfterAsManyCertainNosAsAskedFor) {
 
 // Two links of a chain, which only their triangles can tell apart: nothing is certain within a small budget.
 TEST(DetectorEvents, ArePossibleWhileTheBudgetDoesNotReach) {
-  World w;
+  WrittenWorld w;
   const ShapeId torus = w.detector.add_shape(w.torus);
   const BodyId a = w.detector.add_body({{torus, {}}}), b = w.detector.add_body({{torus, {}}});
   w.put(a, {0, 0, 0}), w.put(b, {9, 0, 0});
@@ -275,7 +276,7 @@ TEST(DetectorEvents, ArePossibleWhileTheBudgetDoesNotReach) {
 }
 
 TEST(DetectorPairs, GoByGroupsMasksAndTheFilter) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   const BodyId a = w.detector.add_body({{ball, {}}}, {.filter = {.category = 1, .mask = 2}});
   const BodyId b = w.detector.add_body({{ball, {}}}, {.filter = {.category = 2, .mask = 4}});
@@ -298,7 +299,7 @@ TEST(DetectorPairs, GoByGroupsMasksAndTheFilter) {
 }
 
 TEST(DetectorPairs, GoByTheGroupBeforeTheMasks) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   const BodyId a = w.detector.add_body({{ball, {}}}, {.filter = {.mask = 0, .group = 3}});
   const BodyId b = w.detector.add_body({{ball, {}}}, {.filter = {.mask = 0, .group = 3}});
@@ -310,7 +311,7 @@ TEST(DetectorPairs, GoByTheGroupBeforeTheMasks) {
 }
 
 TEST(DetectorPairs, LeaveOutWhatIsStaticWhereTheFilterSaysSo) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   const BodyId body = w.detector.add_body({{ball, {}}}, {.filter = {.ignores_static = true}});
   w.detector.add_static({{ball, {}}}, {.translation = {0.5, 0, 0}});
@@ -321,14 +322,14 @@ TEST(DetectorPairs, LeaveOutWhatIsStaticWhereTheFilterSaysSo) {
 }
 
 TEST(DetectorPairs, PartsOfOneBodyAreNone) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   w.detector.add_body({{ball, {}}, {ball, {.translation = {0.5, 0, 0}}}});
   EXPECT_TRUE(w.silent());
 }
 
 TEST(DetectorPairs, NameThePartsThatTouchAndFollowTheJoints) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(0.5);
   const BodyId arm =
       w.detector.add_body({{ball, {}}, {ball, {.translation = {2, 0, 0}}}, {ball, {.translation = {4, 0, 0}}}});
@@ -349,7 +350,7 @@ TEST(DetectorPairs, NameThePartsThatTouchAndFollowTheJoints) {
 }
 
 TEST(DetectorPairs, OfStaticBodiesAreNone) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   const BodyId wall = w.detector.add_static({{ball, {}}}, {});
   const BodyId other = w.detector.add_static({{ball, {}}}, {.translation = {1, 0, 0}});
@@ -367,7 +368,7 @@ TEST(DetectorPairs, OfStaticBodiesAreNone) {
 }
 
 TEST(DetectorPairs, AreOfScaledBodies) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1), tree = w.detector.add_shape(w.torus);
   const BodyId a = w.detector.add_body({{ball, {.scale = 2}}}), b = w.detector.add_body({{tree, {}}});
   w.put(a, {0, 0, 0}, 3);  // 6
@@ -378,7 +379,7 @@ TEST(DetectorPairs, AreOfScaledBodies) {
 }
 
 TEST(DetectorBodies, AsleepAreAskedOnceAndCostNothing) {
-  World w;
+  WrittenWorld w;
   const ShapeId tree = w.detector.add_shape(w.torus);
   const BodyId a = w.detector.add_body({{tree, {}}}), b = w.detector.add_body({{tree, {}}});
   w.put(a, {0, 0, 0}), w.put(b, {1, 0, 0});
@@ -398,7 +399,7 @@ TEST(DetectorBodies, AsleepAreAskedOnceAndCostNothing) {
 }
 
 TEST(DetectorBodies, RemovedOrTeleportedEndTheirTouches) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   const BodyId a = w.detector.add_body({{ball, {}}});
   const BodyId b = w.detector.add_body({{ball, {}}});
@@ -420,7 +421,7 @@ TEST(DetectorBodies, RemovedOrTeleportedEndTheirTouches) {
 }
 
 TEST(DetectorBodies, WithStatesThatAreNotValidAreRefusedAndTheOthersAnswered) {
-  World w;
+  WrittenWorld w;
   const ShapeId ball = w.detector.add_sphere(1);
   BodyId bodies[4];
   for (BodyId& body : bodies) body = w.detector.add_body({{ball, {}}});
@@ -454,7 +455,7 @@ TEST(Detector, AnswersEachStepWhenItIsAskedFarFromTimeZero) {
 
 TEST(Detector, SaysWhenThereIsNoMemory) {
   for (const bool in_step : {false, true}) {
-    World w;
+    WrittenWorld w;
     const ShapeId ball = w.detector.add_sphere(1);
     BodyId first = w.detector.add_body({{ball, {}}});
     for (int i = 1; in_step && i < 60; ++i) w.detector.add_body({{ball, {}}});
@@ -501,7 +502,7 @@ TEST(Detector, SleepsWhileNothingCanTouch) {
 
 // A class that matters more is certain first, and within a class no pair starves.
 TEST(DetectorBudget, GoesToTheMoreImportantFirstAndThenRound) {
-  World w;
+  WrittenWorld w;
   const ShapeId torus = w.detector.add_shape(w.torus);
   std::vector<BodyId> bodies;
   for (int i = 0; i < 20; ++i) {
@@ -526,7 +527,7 @@ TEST(DetectorBudget, GoesToTheMoreImportantFirstAndThenRound) {
 }
 
 TEST(DetectorBudget, WhatTheLastStepFoundCostsNextToNothing) {
-  World w;
+  WrittenWorld w;
   const ShapeId torus = w.detector.add_shape(w.torus);
   std::vector<BodyId> bodies;
   for (int i = 0; i < 24; ++i) {
@@ -546,7 +547,7 @@ TEST(DetectorBudget, WhatTheLastStepFoundCostsNextToNothing) {
 }
 
 TEST(DetectorBudget, InTimeAnswersWhatItReachesAndTellsTheRest) {
-  World w;
+  WrittenWorld w;
   const ShapeId torus = w.detector.add_shape(w.torus);
   for (int i = 0; i < 40; ++i) w.put(w.detector.add_body({{torus, {}}}), {0.3 * i, 0, 0});
   const Frame late = w.step({.time = std::chrono::nanoseconds(1)});

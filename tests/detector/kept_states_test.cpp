@@ -6,6 +6,7 @@
 #include <set>
 
 #include "orchard/runtime/detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -13,9 +14,9 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
-struct Ball {
+struct KeptBall {
   BodyId id;
   Vec3 place{}, velocity{};
   double radius = 0, since = 0;
@@ -26,11 +27,11 @@ struct Ball {
 void play(std::uint64_t seed, bool watch) {
   test::Draw draw(seed);
   Detector world({.time_step = kStep, .watch = watch});
-  std::vector<Ball> balls(12);
+  std::vector<KeptBall> balls(12);
   const auto anywhere = [&](double size) {
     return Vec3{draw.uniform(-size, size), draw.uniform(-size, size), draw.uniform(-size, size)};
   };
-  for (Ball& ball : balls) {
+  for (KeptBall& ball : balls) {
     ball.place = anywhere(3), ball.velocity = anywhere(20), ball.radius = draw.uniform(0.2, 0.8);
     const ShapeId shape = world.add_sphere(ball.radius);
     EXPECT_EQ(world.reach(shape), ball.radius * (1 + 1e-15) * (1 + 1e-15));
@@ -53,7 +54,7 @@ void play(std::uint64_t seed, bool watch) {
         touches += gap < 0;
       }
     }
-    for (Ball& ball : balls) {
+    for (KeptBall& ball : balls) {
       const Vec3 place = world.state(ball.id).pose.translation;
       for (std::size_t d = 0; d < 3; ++d) ASSERT_NEAR(place[d], ball.at(time)[d], 1e-12);
       if (draw.uniform(0, 1) > 0.1) continue;

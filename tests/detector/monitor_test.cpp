@@ -5,13 +5,14 @@
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/frame_pacer.h"
 #include "orchard/runtime/motion_monitor.h"
+#include "runtime/numbers.h"
 #include "support.h"
 
 namespace orchard::runtime {
 namespace {
 
 using Duration = FramePacer::Duration;
-constexpr double kStep = 0.01;
+using test::kStep;
 
 Motion bounded(const Vec3& place, const Vec3& velocity, double acceleration, const Vec3& half_space = {},
                double drift = 0) {

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/flexible_tree.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/shape_query.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 using test::Draw;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kNaN;
 
 Pose at(double x, double y = 0, double z = 0) {
   Pose pose;
@@ -26,8 +26,8 @@ Pose at(double x, double y = 0, double z = 0) {
   return pose;
 }
 
-constexpr double kStep = 0.01;
-double when(int step) { return step * kStep; }
+using test::kStep;
+using test::time_at;
 
 TEST(OddBodies, AreNeverPairsOfThemselvesOrOfWhatIsGone) {
   for (const double drift : {1e3, 1e9, 1e12}) {
@@ -47,7 +47,7 @@ TEST(OddBodies, AreNeverPairsOfThemselvesOrOfWhatIsGone) {
     states[1].drift = drift;
     world.cancel(ids[1]);
     asked.clear();
-    for (int k = 1; k < 4; ++k) EXPECT_TRUE(world.step(when(k)).events.empty()) << drift;
+    for (int k = 1; k < 4; ++k) EXPECT_TRUE(world.step(time_at(k)).events.empty()) << drift;
     EXPECT_FALSE(asked.contains(0)) << drift;
   }
 }
@@ -61,7 +61,7 @@ TEST(OddBodies, AreMetOnTheWayInTheStepInWhichTheyWake) {
     world.step(0);
     if (who == 1 || who == 3) world.sleep(bullet);
     if (who == 2) world.sleep(wall);
-    for (int k = 1; k < 6; ++k) world.step(when(k));
+    for (int k = 1; k < 6; ++k) world.step(time_at(k));
     if (who == 1) world.wake(bullet);
     if (who == 2) world.wake(wall);
     if (who == 3) {
@@ -69,10 +69,10 @@ TEST(OddBodies, AreMetOnTheWayInTheStepInWhichTheyWake) {
     } else {
       world.set_velocity(bullet, {60, 0, 0});
     }
-    const Frame frame = world.step(when(6));
+    const Frame frame = world.step(time_at(6));
     ASSERT_EQ(frame.events.size(), 1u) << who;
     EXPECT_EQ(frame.events[0].verdict.answer, Answer::yes) << who;
-    EXPECT_GT(frame.events[0].impact_from, when(5)) << who;
+    EXPECT_GT(frame.events[0].impact_from, time_at(5)) << who;
   }
 }
 
@@ -93,7 +93,7 @@ TEST(OddBodies, TouchNoMoreOnceTeleportedHoweverLongATouchLasts) {
   ASSERT_EQ(world.step(0).events.size(), 1u);
   world.teleport(first);
   states[0].pose = at(100);
-  const Frame frame = world.step(when(1));
+  const Frame frame = world.step(time_at(1));
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::end);
 }
@@ -102,12 +102,12 @@ TEST(OddBodies, TouchAgainOnceTheirStatesAreValidAgain) {
   TwoThatTouch two;
   auto& [states, world, first] = two;
   world.step(0);
-  states[0].velocity = {kNan, 0, 0};
+  states[0].velocity = {kNaN, 0, 0};
   world.cancel(first);
-  EXPECT_EQ(world.step(when(1)).refused.size(), 1u);
+  EXPECT_EQ(world.step(time_at(1)).refused.size(), 1u);
   states[0].velocity = {};
   for (int k = 2; k < 8; ++k) {
-    const Frame frame = world.step(when(k));
+    const Frame frame = world.step(time_at(k));
     ASSERT_EQ(frame.events.size(), 1u);
     EXPECT_EQ(frame.events[0].verdict.answer, Answer::yes) << k;
   }
@@ -128,10 +128,10 @@ TEST(OddBodies, AreSolidWhereverFlexibleTreesHaveGone) {
   for (auto& point : moved) point[0] += 0.95;
   ASSERT_TRUE(flexible.move(vertices, moved));
   world.shape_changed(bag);
-  ASSERT_EQ(world.step(when(1)).events.size(), 1u);  // wholly inside
+  ASSERT_EQ(world.step(time_at(1)).events.size(), 1u);  // wholly inside
   ASSERT_TRUE(flexible.move(vertices, rest));
   world.shape_changed(bag);
-  const Frame frame = world.step(when(2));
+  const Frame frame = world.step(time_at(2));
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::end);
 }
@@ -147,7 +147,7 @@ TEST(OddBodies, AreAsFarOffAsTheSlackSays) {
     world.step(0);
     states[0].pose = at(0, 0, 1.005 - slack);
     for (int k = 1; k < 20; ++k) {
-      const Frame frame = world.step(when(k));
+      const Frame frame = world.step(time_at(k));
       EXPECT_EQ(frame.events.size(), 1u) << watch << k;
       EXPECT_TRUE(frame.broken.empty()) << k;
     }
@@ -163,8 +163,8 @@ TEST(OddBodies, KeepWhatIsSuggestedForThemAboveAHalfSpace) {
     if (above) world.add_half_space({0, 0, 1}, 0);
     std::size_t broken = 0;
     for (int k = 0; k < 400; ++k) {
-      states[0].pose = at(0, 0, 1000 - 5 * when(k) * when(k));
-      broken += world.step(when(k)).broken.size();
+      states[0].pose = at(0, 0, 1000 - 5 * time_at(k) * time_at(k));
+      broken += world.step(time_at(k)).broken.size();
     }
     EXPECT_LT(broken, 10u) << above;
   }
@@ -178,13 +178,13 @@ TEST(OddBodies, AreLeftAloneByWhatIsRefused) {
   world.step(0);
   EXPECT_FALSE(world.set_local(fixed, 1, at(1e150)));
   EXPECT_TRUE(world.set_local(fixed, 1, at(50)));
-  EXPECT_EQ(world.step(when(1)).events.size(), 1u);
-  EXPECT_FALSE(world.set_velocity(free, {kNan, 0, 0}));
+  EXPECT_EQ(world.step(time_at(1)).events.size(), 1u);
+  EXPECT_FALSE(world.set_velocity(free, {kNaN, 0, 0}));
   EXPECT_FALSE(world.set_state(free, {.pose = {.scale = 0}}));
   EXPECT_FALSE(world.set_state(free, {.acceleration = -1}));
   EXPECT_EQ(world.add_body(ball, BodyState{.acceleration = -1}), kNoBody);
-  EXPECT_EQ(world.add_half_space({0, 0, 1}, 0, {.continuous_speed = kNan}), kNoBody);
-  EXPECT_EQ(world.step(when(2)).events.size(), 1u);
+  EXPECT_EQ(world.add_half_space({0, 0, 1}, 0, {.continuous_speed = kNaN}), kNoBody);
+  EXPECT_EQ(world.step(time_at(2)).events.size(), 1u);
   EXPECT_EQ(world.state(free).pose.translation, at(50).translation);
 }
 
@@ -196,7 +196,7 @@ TEST(OddBodies, AreSweptWhicheverOfTwoIsContinuous) {
   world.add_static({{world.add_box({0.01, 1, 1})}}, at(0), {.continuous_speed = 100});
   world.step(0);
   states[0].pose = at(0.2);
-  EXPECT_EQ(world.step(when(1)).events.size(), 1u);
+  EXPECT_EQ(world.step(time_at(1)).events.size(), 1u);
 }
 
 TEST(OddBodies, AreMissedNeitherForTheirSizeNorForANormals) {
@@ -275,7 +275,7 @@ TEST(OddBodies, InReusedSlotsHaveBrokenNothing) {
   Detector world(states_of(states), {.time_step = kStep, .watch = true});
   const ShapeId ball = world.add_sphere(1);
   const BodyId first = world.add_body({{ball}});
-  for (int k = 0; k < 6; ++k) states[0].pose = at(k), world.step(when(k));
+  for (int k = 0; k < 6; ++k) states[0].pose = at(k), world.step(time_at(k));
   EXPECT_GT(world.motion_bound_violations(first), 0u);
   world.remove(first);
   EXPECT_EQ(world.motion_bound_violations(world.add_body({{ball}})), 0u);

@@ -5,6 +5,7 @@
 
 #include "detector/static_spheres.h"
 #include "orchard/runtime/detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -14,7 +15,7 @@ namespace {
 using test::Draw;
 using Touching = std::set<std::pair<std::size_t, std::size_t>>;
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 // Sizes from crumbs to what holds all others, some in one place, and some that are nowhere in particular.
 detail::FloatSphere drawn_sphere(Draw& draw) {
@@ -95,7 +96,7 @@ struct Thing {
   BodyId id = kNoBody;
 };
 
-std::vector<ShapeId> add_shapes(Detector& world) {
+std::vector<ShapeId> add_small_shapes(Detector& world) {
   static const PackedSphereTree beam = test::build_tree(test::box({0, -0.1, -0.1}, {2, 0.1, 0.1}));
   static const PackedSphereTree corner = test::build_tree(test::scaled(test::l_shape(), 0.3));
   return {world.add_shape(beam), world.add_shape(corner), world.add_capsule({0, 0, 0}, {2, 0.2, 0}, 0.1),
@@ -107,7 +108,7 @@ Touching judge(const std::vector<Thing>& things) {
   std::vector<BodyState> states;
   std::vector<std::size_t> owner;
   Detector own(states_of(states), {.time_step = kStep, .watch = false});
-  add_shapes(own);
+  add_small_shapes(own);
   for (std::size_t i = 0; i < things.size(); ++i) {
     if (things[i].id == kNoBody) continue;
     for (const BodyPart& part : things[i].parts) {
@@ -135,7 +136,7 @@ class Factory {
     states_.resize(1000);
     if (seed % 5 > 2) unit_ = std::pow(10, draw_.uniform(-3, 4));
     if (seed % 5 == 4) middle_ = unit_ * draw_.uniform(0, 1000) * Vec3(draw_.direction());
-    shapes_ = add_shapes(world_);
+    shapes_ = add_small_shapes(world_);
     const auto arms = static_cast<std::size_t>(draw_.uniform(1, 4));
     for (std::size_t i = 0; i < arms; ++i) add_arm();
     for (int k = static_cast<int>(draw_.uniform(30, 350)); k > 0; --k) add_static();

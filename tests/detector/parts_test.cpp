@@ -4,6 +4,7 @@
 #include <set>
 
 #include "orchard/runtime/detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -13,7 +14,7 @@ namespace {
 using test::Draw;
 using Touching = std::set<std::pair<std::size_t, std::size_t>>;
 
-constexpr double kStep = 0.01;
+using test::kStep;
 
 struct Part {
   std::size_t shape;

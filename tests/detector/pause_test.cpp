@@ -5,6 +5,7 @@
 #include <set>
 
 #include "orchard/runtime/detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -12,7 +13,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 using Pairs = std::set<std::pair<BodyIndex, BodyIndex>>;
 
 // Balls on circles, so that where each is at any time, and what can be promised of it, is known in closed form.

@@ -7,6 +7,7 @@
 
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/orchard_detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -14,7 +15,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+using test::kStep;
 using Pairs = std::set<std::pair<BodyIndex, BodyIndex>>;
 
 // Balls and one box that a solver of the application's own moves, each judged in long double.

@@ -18,8 +18,8 @@ using test::Touching;
 
 // ORCHARD_MORE: 2.5 million pairs of bodies at a step, instead of 120,000.
 const bool kMore = orchard::test::more() > 1;
-const std::size_t kBodies = kMore ? 60 : 30;
-const int kSteps = kMore ? 200 : 40;
+const std::size_t kSceneBodies = kMore ? 60 : 30;
+const int kSceneSteps = kMore ? 200 : 40;
 
 struct Case {
   const Scene* scene;
@@ -28,7 +28,8 @@ struct Case {
 
 // Once for all tests: the oracle is what takes time.
 const std::vector<Case>& cases() {
-  static const std::vector<Scene> scenes = test::every_scene(kBodies, kSteps, 1 + orchard::test::first_seed());
+  static const std::vector<Scene> scenes =
+      test::every_scene(kSceneBodies, kSceneSteps, 1 + orchard::test::first_seed());
   static const std::vector<Case> made = [] {
     std::vector<Case> result;
     for (const Scene& scene : scenes) {

@@ -17,19 +17,18 @@ namespace {
 
 using test::Draw;
 
-constexpr double kStep = 1.0 / 120;
+constexpr double kStackStep = 1.0 / 120;
 
 Vec3 cross_of(const Vec3& p, const Vec3& q) {
   return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
 }
-double size_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
 // Cubes of edge 1 and mass 1 on top of each other, with sequential impulses.
 class Stack {
  public:
   Stack(std::size_t count, bool on_half_space) : states_(count + 2), velocity_(count + 2), spin_(count + 2) {
     for (BodyState& state : states_) state.expiry = 0;
-    world_ = std::make_unique<Detector>(states_of(states_), DetectorOptions{.time_step = kStep});
+    world_ = std::make_unique<Detector>(states_of(states_), DetectorOptions{.time_step = kStackStep});
     const ShapeId cube = world_->add_box({0.5, 0.5, 0.5});
     for (std::size_t i = 0; i < count; ++i) {
       const BodyId id = world_->add_body({{cube, {}}});
@@ -47,11 +46,11 @@ class Stack {
   double step() {
     double fastest = 0;
     for (const BodyIndex cube : cubes_) {
-      velocity_[cube][2] -= 9.81 * kStep;
+      velocity_[cube][2] -= 9.81 * kStackStep;
       move(cube);
-      fastest = std::max(fastest, size_of(velocity_[cube]));
+      fastest = std::max(fastest, length(velocity_[cube]));
     }
-    now_ += kStep;
+    now_ += kStackStep;
     contacts_.clear();
     for (const PairEvent& event : world_->step(now_).events) add_contact(event);
     constexpr int kPasses = 60;
@@ -73,10 +72,10 @@ class Stack {
 
   void move(BodyIndex cube) {
     Pose& pose = states_[cube].pose;
-    pose.translation = Vec3(pose.translation) + kStep * velocity_[cube];
-    const double angle = size_of(spin_[cube]) * kStep;
+    pose.translation = Vec3(pose.translation) + kStackStep * velocity_[cube];
+    const double angle = length(spin_[cube]) * kStackStep;
     if (!(angle > 0)) return;
-    const Vec3 axis = (std::sin(angle / 2) / size_of(spin_[cube])) * spin_[cube];
+    const Vec3 axis = (std::sin(angle / 2) / length(spin_[cube])) * spin_[cube];
     const Pose turn = *pose_from_quaternion({std::cos(angle / 2), axis[0], axis[1], axis[2]}, {0, 0, 0});
     pose.rotation = made_rigid(compose(turn, Pose{.rotation = pose.rotation}))->rotation;
   }
@@ -86,7 +85,7 @@ class Stack {
     constexpr double kSlop = 1e-3, kShare = 0.2, kFastest = 0.5;
     const Manifold manifold = world_->manifold(event);
     const bool b_moves = world_->moves(event.b);
-    const double bias = std::min(kFastest, kShare / kStep * std::max(0.0, manifold.depth - kSlop));
+    const double bias = std::min(kFastest, kShare / kStackStep * std::max(0.0, manifold.depth - kSlop));
     for (std::uint32_t i = 0; i < manifold.count; ++i) {
       const Vec3 place = manifold.points[i].place;
       contacts_.push_back({event.a.index, event.b.index, b_moves, manifold.normal,
@@ -101,11 +100,11 @@ class Stack {
     c.pushed = std::max(0.0, before + (c.bias - dot(slip(c), c.normal)) / ease(c, c.normal));
     apply(c, (c.pushed - before) * c.normal);
     const Vec3 way = slip(c) - dot(slip(c), c.normal) * c.normal;
-    if (!(size_of(way) > 0)) return;
+    if (!(length(way) > 0)) return;
     const Vec3 rubbed = c.rubbed;
-    c.rubbed = rubbed - (1 / ease(c, (1 / size_of(way)) * way)) * way;
+    c.rubbed = rubbed - (1 / ease(c, (1 / length(way)) * way)) * way;
     const double most = kFriction * c.pushed;
-    if (size_of(c.rubbed) > most) c.rubbed = (most / size_of(c.rubbed)) * c.rubbed;
+    if (length(c.rubbed) > most) c.rubbed = (most / length(c.rubbed)) * c.rubbed;
     apply(c, c.rubbed - rubbed);
   }
 

@@ -12,7 +12,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.02;
+constexpr double kSweepStep = 0.02;
 
 // A surface, which is solid if it is a box's, or a segment with a radius around it.
 struct Form {
@@ -132,23 +132,23 @@ struct Met {
 Met sweep(const Form& a, const Way& way_a, const Form& b, const Way& way_b, const Budget& budget = {}) {
   std::vector<BodyState> states(2);
   for (BodyState& state : states) state.expiry = 0;
-  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+  Detector detector(states_of(states), {.time_step = kSweepStep, .watch = false});
   const double speed = 1.01 *
                        (length(way_a.velocity) + length(way_b.velocity) + way_a.angle * length(way_a.center) * 4 +
                         way_b.angle * length(way_b.center) * 4) /
-                       kStep;
+                       kSweepStep;
   const BodyId first = detector.add_body({{a.add_to(detector), {}}}, {.continuous_speed = speed});
   const BodyId second = detector.add_body({{b.add_to(detector), {}}});
   Met met;
   for (int step = 0; step < 2; ++step) {
     states[first.index].pose = way_a.at(step), states[second.index].pose = way_b.at(step);
-    const Frame frame = detector.step(step * kStep, step == 0 ? Budget{} : budget);
+    const Frame frame = detector.step(step * kSweepStep, step == 0 ? Budget{} : budget);
     if (step == 0) continue;
     for (const PairEvent& event : frame.events) {
       if (event.change == PairChange::end) continue;
       met.possible = event.verdict.answer == Answer::maybe;
       met.touched = event.verdict.answer == Answer::yes;
-      met.from = event.impact_from / kStep, met.to = event.impact_to / kStep;
+      met.from = event.impact_from / kSweepStep, met.to = event.impact_to / kSweepStep;
     }
   }
   return met;
@@ -267,19 +267,19 @@ TEST(Sweeps, FindTheFirstCornerOnAHalfSpace) {
     for (int i = 0; i <= 20'000 && first > 1; ++i) first = height(i / 20'000.0) <= 0 ? i / 20'000.0 : 2;
     std::vector<BodyState> states(1);
     states[0].expiry = 0;
-    Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+    Detector detector(states_of(states), {.time_step = kSweepStep, .watch = false});
     detector.add_body({{detector.add_box(half), {}}}, {.continuous_speed = 1e3});
     detector.add_half_space({0, 0, 1}, 0);
     states[0].pose = way.at(0);
     detector.step(0);
     states[0].pose = way.at(1);
-    const Frame frame = detector.step(kStep);
+    const Frame frame = detector.step(kSweepStep);
     ASSERT_EQ(frame.events.empty(), first > 1) << seed;
     if (frame.events.empty()) continue;
     EXPECT_EQ(frame.events[0].verdict.answer, Answer::yes) << seed;
-    EXPECT_NEAR(frame.events[0].impact_from / kStep, first, 1e-4) << seed;
-    EXPECT_LE(frame.events[0].impact_from / kStep, first) << seed;
-    EXPECT_GE(frame.events[0].impact_to / kStep, first - 1e-4) << seed;
+    EXPECT_NEAR(frame.events[0].impact_from / kSweepStep, first, 1e-4) << seed;
+    EXPECT_LE(frame.events[0].impact_from / kSweepStep, first) << seed;
+    EXPECT_GE(frame.events[0].impact_to / kSweepStep, first - 1e-4) << seed;
   }
 }
 
@@ -307,7 +307,7 @@ TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
   std::vector<BodyState> states(101);
   for (BodyState& state : states) state.expiry = 0;
-  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+  Detector detector(states_of(states), {.time_step = kSweepStep, .watch = false});
   const BodyId id = detector.add_static({{detector.add_shape(wall), {}}}, {});
   const ShapeId ball = detector.add_sphere(0.01);
   for (int i = 0; i < 100; ++i) detector.add_body({{ball, {}}}, {.continuous_speed = 110});
@@ -315,7 +315,7 @@ TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
     for (std::size_t i = 0; i < states.size(); ++i) {
       states[i].pose.translation = {0.08 * double(i) - 4, 0, step < 2 ? 1.0 : -1.0};
     }
-    const Frame frame = detector.step(step * kStep, {.work = step < 2 ? 1 : Budget{}.work});
+    const Frame frame = detector.step(step * kSweepStep, {.work = step < 2 ? 1 : Budget{}.work});
     if (step < 2) {
       EXPECT_NE(frame.incomplete_from, kNoClass);
       continue;
@@ -333,18 +333,18 @@ TEST(Sweeps, SeeTheLastStepBeforeSleep) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
   std::vector<BodyState> states(2);
   for (BodyState& state : states) state.expiry = 0;
-  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
+  Detector detector(states_of(states), {.time_step = kSweepStep, .watch = false});
   detector.add_static({{detector.add_shape(wall), {}}}, {});
   const BodyId bullet = detector.add_body({{detector.add_sphere(0.01), {}}}, {.continuous_speed = 200});
   states[bullet.index].pose.translation = {0, 0, 1};
   EXPECT_TRUE(detector.step(0).events.empty());
   states[bullet.index].pose.translation = {0, 0, -1};
   detector.sleep(bullet);
-  const Frame frame = detector.step(kStep);
+  const Frame frame = detector.step(kSweepStep);
   ASSERT_EQ(frame.events.size(), 1u);
   EXPECT_EQ(frame.events[0].change, PairChange::begin);
-  EXPECT_NEAR(frame.events[0].impact_from, kStep * (1 - 0.011) / 2, 1e-6);
-  const Frame after = detector.step(2 * kStep);
+  EXPECT_NEAR(frame.events[0].impact_from, kSweepStep * (1 - 0.011) / 2, 1e-6);
+  const Frame after = detector.step(2 * kSweepStep);
   ASSERT_EQ(after.events.size(), 1u);
   EXPECT_EQ(after.events[0].change, PairChange::end);
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "orchard/runtime/detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -14,9 +15,9 @@ namespace {
 
 using test::Draw;
 
-constexpr double kStep = 0.01;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-double when(int step) { return step * kStep; }
+using test::kInfinity;
+using test::kStep;
+using test::time_at;
 
 Pose turned(const Vec3& axis, double angle, const Vec3& place) {
   const double s = std::sin(angle / 2);
@@ -79,7 +80,8 @@ TEST(Turning, IsKnownOfStatesThatTheDetectorKeeps) {
   ASSERT_NE(wall, kNoBody);
   for (int k = 1; k <= 40; ++k) {  // until the head is where the wall is
     world.set_state(id, BodyState{.pose = turned({0, 0, 1}, k * std::acos(-1.0) / 80, {})});
-    EXPECT_EQ(world.step(when(k)).events.empty(), k * std::acos(-1.0) / 80 < std::acos(-1.0) / 2 - 2 * std::asin(0.25));
+    EXPECT_EQ(world.step(time_at(k)).events.empty(),
+              k * std::acos(-1.0) / 80 < std::acos(-1.0) / 2 - 2 * std::asin(0.25));
   }
 }
 
@@ -92,7 +94,7 @@ TEST(Turning, ThatIsNoSpeedIsRefused) {
     hammer.states[1].pose.translation = {3, 0, 0};
     EXPECT_EQ(hammer.world.step(0).refused.size(), 1u) << wrong;
     hammer.states[0].angular_speed = 0;
-    EXPECT_EQ(hammer.world.step(when(1)).events.size(), 1u) << wrong;
+    EXPECT_EQ(hammer.world.step(time_at(1)).events.size(), 1u) << wrong;
     Detector keeps({.time_step = kStep});
     EXPECT_EQ(keeps.add_body(keeps.add_sphere(1), BodyState{.angular_speed = wrong}), kNoBody);
   }
@@ -107,7 +109,7 @@ TEST(Turning, FasterThanPromisedIsTold) {
   for (int k = 0; k <= 40; ++k) {
     const double angle = k < 20 ? 1e-3 * k : 0.01 + std::min(1.6, 0.3 * (k - 20));
     hammer.states[0].pose = turned({0, 0, 1}, angle, {});
-    const Frame frame = hammer.world.step(when(k));
+    const Frame frame = hammer.world.step(time_at(k));
     broken += frame.broken.size();
     EXPECT_TRUE(k >= 20 || broken == 0) << k;
     touching += !frame.events.empty();
@@ -126,8 +128,8 @@ TEST(Turning, MayBePromisedNowAndThen) {  // the middle one step, the origin the
       hammer.states[0].pose = turned({0, 0, 1}, 0.01 * k, {0, 0.02 * k, 0});
       hammer.states[0].velocity = {0, 2, 0};
       hammer.states[0].angular_speed = k % 3 == 0 ? kInfinity : 1.0;
-      hammer.states[0].expiry = when(k + k % 4);
-      EXPECT_TRUE(hammer.world.step(when(k)).broken.empty()) << watch << k;
+      hammer.states[0].expiry = time_at(k + k % 4);
+      EXPECT_TRUE(hammer.world.step(time_at(k)).broken.empty()) << watch << k;
     }
   }
 }
@@ -142,7 +144,7 @@ TEST(Turning, IsWatchedWhateverIsPromisedNext) {
     std::size_t broken = 0, touching = 0;
     for (int k = 0; k <= 200; ++k) {
       hammer.states[0].pose = turned({0, 0, 1}, 0.01 * k, {});
-      const Frame frame = hammer.world.step(when(k));
+      const Frame frame = hammer.world.step(time_at(k));
       hammer.states[0].angular_speed = next;
       broken += frame.broken.size();
       const double angle = std::fabs(0.01 * k - std::acos(-1.0) / 2), reach = 2 * std::asin(1.0 / 3);
@@ -165,10 +167,10 @@ TEST(Turning, ThatIsNoSpeedIsRefusedAtOnceWhereItIsWatched) {
     if (place) hammer.states[0].velocity = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
     if (!place) hammer.states[0].angular_speed = -1;
     hammer.states[0].pose.translation = {49, 0, 0};
-    for (int k = 1; k < 4; ++k) EXPECT_EQ(hammer.world.step(when(k)).refused.size(), 1u) << place << k;
+    for (int k = 1; k < 4; ++k) EXPECT_EQ(hammer.world.step(time_at(k)).refused.size(), 1u) << place << k;
     hammer.states[0].velocity = {};
     hammer.states[0].angular_speed = 1;
-    EXPECT_EQ(hammer.world.step(when(4)).events.size(), 1u) << place;
+    EXPECT_EQ(hammer.world.step(time_at(4)).events.size(), 1u) << place;
   }
 }
 
@@ -180,13 +182,13 @@ TEST(OddStates, AreRefusedThoughAnEarlierPromiseHoldsOn) {  // and what touches 
     hammer.states[1].pose.translation = {touching ? 1.0 : 1.95, 0, 0};
     EXPECT_EQ(hammer.world.step(0).events.size(), 1u);
     hammer.states[0].velocity = {0, std::numeric_limits<double>::quiet_NaN(), 0};
-    const Frame frame = hammer.world.step(when(1));
+    const Frame frame = hammer.world.step(time_at(1));
     ASSERT_EQ(frame.refused.size(), 1u);
     EXPECT_EQ(frame.refused[0], 0u);
     ASSERT_EQ(frame.events.size(), 1u);
     EXPECT_EQ(frame.events[0].verdict.answer, Answer::maybe);
     hammer.states[0].velocity = {};
-    const Frame next = hammer.world.step(when(2));
+    const Frame next = hammer.world.step(time_at(2));
     EXPECT_TRUE(next.refused.empty());
     ASSERT_EQ(next.events.size(), 1u);
     EXPECT_EQ(next.events[0].verdict.answer, Answer::yes);
@@ -206,7 +208,7 @@ TEST(Turning, PromisesOfMiddlesNearTheWorldsOriginAreKept) {
     state.velocity = way;
     state.angular_speed = 0;
     ASSERT_NE(world.add_body(head, state), kNoBody);
-    for (int k = 0; k < 100; ++k) EXPECT_TRUE(world.step(when(k)).broken.empty()) << i << ' ' << k;
+    for (int k = 0; k < 100; ++k) EXPECT_TRUE(world.step(time_at(k)).broken.empty()) << i << ' ' << k;
   }
 }
 
@@ -220,7 +222,7 @@ TEST(Turning, OfPartsThatMoveIsNoPromise) {
     hammer.states[other.index].pose.translation = {-3, 0, 0};
     EXPECT_TRUE(hammer.world.step(0).events.empty());
     ASSERT_TRUE(hammer.world.set_local(id, 1, turned({0, 0, 1}, 0, {-3, 0, 0})));
-    EXPECT_EQ(hammer.world.step(when(1)).events.size(), 1u) << at_rest;
+    EXPECT_EQ(hammer.world.step(time_at(1)).events.size(), 1u) << at_rest;
     EXPECT_TRUE(at_rest || hammer.last().position == Vec3{});
   }
 }
@@ -233,7 +235,7 @@ TEST(Turning, IsNoPromiseOnceThereAreBullets) {
   EXPECT_NEAR(hammer.last().radius, 1, 1e-9);
   hammer.world.add_body({{hammer.ball}}, {.continuous_speed = 1});
   hammer.states[1].pose.translation = {0, 0, 20};
-  hammer.world.step(when(1));
+  hammer.world.step(time_at(1));
   EXPECT_NEAR(hammer.last().radius, 4, 1e-9);
 }
 
@@ -250,7 +252,7 @@ struct Body {
   int horizon = 0;              // of promises, in steps; below 0: it promises nothing of how it turns
   bool is_static = false;
   Pose at(int step) const {
-    const double t = is_static ? 0 : when(step);
+    const double t = is_static ? 0 : time_at(step);
     return turned(axis, spin * t, place + t * velocity);
   }
 };
@@ -309,9 +311,9 @@ TEST(Turning, AsPromisedMissesNobody) {
         states[i].pose = body.at(step);
         states[i].velocity = body.velocity;
         states[i].angular_speed = body.horizon < 0 ? kInfinity : std::fabs(body.spin) * body.margin;
-        states[i].expiry = when(step + std::abs(body.horizon));
+        states[i].expiry = time_at(step + std::abs(body.horizon));
       }
-      const Frame frame = world.step(when(step));
+      const Frame frame = world.step(time_at(step));
       EXPECT_TRUE(frame.broken.empty()) << seed << ' ' << step;
       std::set<std::pair<BodyIndex, BodyIndex>> found;
       for (const PairEvent& event : frame.events) {

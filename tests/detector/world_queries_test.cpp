@@ -5,6 +5,7 @@
 #include <set>
 
 #include "orchard/runtime/detector.h"
+#include "runtime/numbers.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -12,7 +13,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 struct OracleShape {
   enum class Kind { tree, round, box } kind = Kind::tree;
@@ -31,8 +32,6 @@ struct OracleBody {
   std::uint32_t category = 1;
 };
 
-double size_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 double distance(const OracleShape& shape, const Pose& pose, const Vec3& point) {
   if (shape.kind == OracleShape::Kind::tree) {
     long double least = std::numeric_limits<long double>::infinity();
@@ -45,12 +44,12 @@ double distance(const OracleShape& shape, const Pose& pose, const Vec3& point) {
   if (shape.kind == OracleShape::Kind::box) {
     Vec3 out{};
     for (std::size_t i = 0; i < 3; ++i) out[i] = std::max(0.0, std::fabs(local[i]) - shape.p[i]);
-    return size_of(out) * pose.scale;
+    return length(out) * pose.scale;
   }
   const Vec3 axis = shape.q - shape.p;
   const double square = dot(axis, axis);
   const double share = square > 0 ? std::clamp(dot(local - shape.p, axis) / square, 0.0, 1.0) : 0;
-  return std::max(0.0, size_of(local - (shape.p + share * axis)) - shape.radius) * pose.scale;
+  return std::max(0.0, length(local - (shape.p + share * axis)) - shape.radius) * pose.scale;
 }
 
 class OracleWorld {
@@ -149,7 +148,7 @@ struct Traced {
   double along = 0;
 };
 Traced trace(const OracleWorld& world, const Ray& ray, std::uint32_t mask) {
-  const double speed = size_of(ray.direction);
+  const double speed = length(ray.direction);
   double least = kInfinity;
   Traced result;
   for (int i = 0; i < 400 && result.along <= ray.longest; ++i) {
@@ -174,7 +173,7 @@ void check_rays(OracleWorld& world, int count) {
     if (!found) continue;
     EXPECT_NEAR(found->distance, expected.along, 1e-5);
     const Vec3 place = Vec3(ray.origin) + found->distance * Vec3(ray.direction);
-    EXPECT_LT(size_of(place - found->point), 1e-9);
+    EXPECT_LT(length(place - found->point), 1e-9);
     if (found->body == world.half_) continue;
     const auto body = std::find_if(world.bodies_.begin(), world.bodies_.end(),
                                    [&](const OracleBody& b) { return b.id == found->body; });
@@ -191,7 +190,7 @@ void check_points(OracleWorld& world, int count) {
     const auto found = world.world_->nearest(point, kInfinity, {.mask = mask});
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->distance, expected, 1e-9);
-    EXPECT_NEAR(size_of(point - found->point), expected, 1e-9);
+    EXPECT_NEAR(length(point - found->point), expected, 1e-9);
     if (expected > 0) {
       EXPECT_FALSE(world.world_->nearest(point, expected * (1 - 1e-9), {.mask = mask}));
     }

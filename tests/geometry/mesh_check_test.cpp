@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "broken_meshes.h"
 #include "half_edge_mesh.h"
 #include "half_edges.h"
 #include "orchard/geometry/error.h"
@@ -28,7 +29,7 @@ struct Solid {
   double area, volume;
 };
 
-std::vector<Solid> solids() {
+std::vector<Solid> checked_solids() {
   constexpr double pi = std::numbers::pi;
   return {{"box", test::box(Point(0, 0, 0), Point(1, 2, 3)), 1, 2, 22, 6},
           {"icosphere", test::icosphere(5, 2), 1, 2, 16 * pi, 32 * pi / 3},
@@ -39,7 +40,7 @@ std::vector<Solid> solids() {
           {"touching boxes with vertices of their own", test::two_boxes(0), 2, 4, 12, 2}};
 }
 
-TriangleMesh unit_box() { return test::box(Point(0, 0, 0), Point(1, 1, 1)); }
+using test::unit_box;
 
 // Two boxes that share the vertices that coincide.
 TriangleMesh joined_boxes(const Vector& offset) {
@@ -59,7 +60,7 @@ TriangleMesh tetrahedron(const Point& a, const Point& b, const Point& c, const P
 }
 
 TEST(MeshCheck, MeasuresSolids) {
-  for (const Solid& solid : solids()) {
+  for (const Solid& solid : checked_solids()) {
     SCOPED_TRACE(solid.name);
     const MeshReport report = check_mesh(solid.mesh);
     EXPECT_TRUE(report.solid());
@@ -72,7 +73,7 @@ TEST(MeshCheck, MeasuresSolids) {
 }
 
 TEST(MeshCheck, AgreesWithTheHalfEdgesOfOpenMesh) {
-  for (const Solid& solid : solids()) {
+  for (const Solid& solid : checked_solids()) {
     EXPECT_TRUE(agrees(half_edge_mesh(solid.mesh), check_mesh(solid.mesh))) << solid.name;
   }
   EXPECT_TRUE(agrees(half_edge_mesh(test::open_box()), check_mesh(test::open_box())));
@@ -226,7 +227,7 @@ TEST(MeshCheck, FindsNeighboursWhereExactlyTwoTrianglesMeet) {
 }
 
 TEST(RequireSolid, LeavesASolidAlone) {
-  for (const Solid& solid : solids()) {
+  for (const Solid& solid : checked_solids()) {
     TriangleMesh mesh = solid.mesh;
     EXPECT_FALSE(require_solid(mesh)) << solid.name;
     EXPECT_EQ(mesh.triangles, solid.mesh.triangles) << solid.name;
@@ -234,7 +235,7 @@ TEST(RequireSolid, LeavesASolidAlone) {
 }
 
 TEST(RequireSolid, TurnsAMeshThatIsInsideOut) {
-  for (const Solid& solid : solids()) {
+  for (const Solid& solid : checked_solids()) {
     TriangleMesh mesh = test::mirrored(solid.mesh);
     EXPECT_EQ(check_mesh(mesh).faults(), "it is inside out") << solid.name;
     EXPECT_TRUE(require_solid(mesh)) << solid.name;

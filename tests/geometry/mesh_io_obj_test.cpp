@@ -10,7 +10,7 @@ namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
-TriangleMesh read(std::string_view text) { return test::read_bytes(read_obj, text, "mesh.obj"); }
+TriangleMesh read_obj_text(std::string_view text) { return test::read_bytes(read_obj, text, "mesh.obj"); }
 
 constexpr std::string_view kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -37,7 +37,7 @@ TEST(ReadObj, TakesEveryFormOfACorner) {
       {"old keyword", "fo 1 2 3"},
   };
   for (const auto& [name, face] : cases) {
-    const TriangleMesh mesh = read(std::string(kFour) + face + "\n");
+    const TriangleMesh mesh = read_obj_text(std::string(kFour) + face + "\n");
     EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}})) << name;
     EXPECT_EQ(mesh.vertices.size(), 4u) << name;
   }
@@ -66,7 +66,7 @@ TEST(ReadObj, TakesEveryFormOfAVertex) {
       {"comment", "v 1 2 3#4", {1, 2, 3}},
   };
   for (const auto& [name, vertex, point] : cases) {
-    const TriangleMesh mesh = read(vertex + "\nf 1 1 1\n");
+    const TriangleMesh mesh = read_obj_text(vertex + "\nf 1 1 1\n");
     ASSERT_EQ(mesh.vertices.size(), 1u) << name;
     EXPECT_EQ(mesh.vertices[0], point) << name << ": " << mesh.vertices[0].transpose();
   }
@@ -80,7 +80,7 @@ TEST(ReadObj, TakesEveryEndOfLine) {
         text += std::string(text.empty() ? "" : end) + std::string(line);
       }
       if (final) text += end;
-      const TriangleMesh mesh = read(text);
+      const TriangleMesh mesh = read_obj_text(text);
       EXPECT_EQ(mesh.vertices.size(), 3u);
       EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
     }
@@ -88,7 +88,7 @@ TEST(ReadObj, TakesEveryEndOfLine) {
 }
 
 TEST(ReadObj, SkipsWhatItHasNoUseFor) {
-  const TriangleMesh mesh = read(
+  const TriangleMesh mesh = read_obj_text(
       "\xef\xbb\xbf# byte order mark \\\nmtllib a.mtl\no name\ng one two\ns off\nusemtl red \\\nv 9 9 9\nvt 0 0\nvn 0 "
       "0 1\n"
       "vp 1 2\nvolume 1 2 3\nfancy 1 2\nl 1 2\np 1\ncurv 0 1 1 2\n" +
@@ -98,16 +98,16 @@ TEST(ReadObj, SkipsWhatItHasNoUseFor) {
 }
 
 TEST(ReadObj, AllowsFacesBeforeTheirVertices) {
-  EXPECT_EQ(read("f 1 2 3\nf 2 3 4\n" + std::string(kFour)).triangles, (Triangles{{0, 1, 2}, {1, 2, 3}}));
+  EXPECT_EQ(read_obj_text("f 1 2 3\nf 2 3 4\n" + std::string(kFour)).triangles, (Triangles{{0, 1, 2}, {1, 2, 3}}));
 }
 
 TEST(ReadObj, CountsNegativeIndicesFromTheFaceBackwards) {
-  EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -3 -2 -1\n").triangles,
+  EXPECT_EQ(read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -3 -2 -1\n").triangles,
             (Triangles{{0, 1, 2}, {1, 2, 3}}));
 }
 
 TEST(ReadObj, TriangulatesPolygons) {
-  EXPECT_EQ(read(std::string(kFour) + "f 1 2 3 4\n").triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(read_obj_text(std::string(kFour) + "f 1 2 3 4\n").triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(ReadObj, NamesTheLineAndTheFault) {
@@ -148,7 +148,7 @@ TEST(ReadObj, NamesTheLineAndTheFault) {
   };
   for (const auto& [text, parts] : cases) {
     for (const std::string& part : parts)
-      test::expect_input_error([&, &text = text] { read(text); }, {"mesh.obj", part});
+      test::expect_input_error([&, &text = text] { read_obj_text(text); }, {"mesh.obj", part});
   }
 }
 
@@ -161,7 +161,7 @@ TEST(ReadObj, ReadsAPolygonOfAHundredThousandCorners) {
     (text += std::to_string(std::sin(angle))) += " 0\n";
     (face += ' ') += std::to_string(i + 1);
   }
-  EXPECT_EQ(read(text + face).triangles.size(), static_cast<std::size_t>(n - 2));
+  EXPECT_EQ(read_obj_text(text + face).triangles.size(), static_cast<std::size_t>(n - 2));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
-TriangleMesh read(std::string_view bytes) { return test::read_bytes(read_ply, bytes, "mesh.ply"); }
+TriangleMesh read_ply_bytes(std::string_view bytes) { return test::read_bytes(read_ply, bytes, "mesh.ply"); }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
@@ -31,7 +31,7 @@ TEST(ReadPly, ReadsAnyTypesAndOrderInEveryEncoding) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     for (const PlyEncoding encoding : {PlyEncoding::ascii, PlyEncoding::little_endian, PlyEncoding::big_endian}) {
       const test::RandomPly file(seed, encoding);
-      const TriangleMesh mesh = read(file.bytes());
+      const TriangleMesh mesh = read_ply_bytes(file.bytes());
       ASSERT_EQ(mesh.vertices, file.mesh().vertices) << "seed " << seed << "\n" << file.bytes().substr(0, 600);
       ASSERT_EQ(mesh.triangles, file.mesh().triangles) << "seed " << seed;
     }
@@ -57,11 +57,11 @@ TEST(ReadPly, TurnsStripsSoThatAllTrianglesFaceTheSameWay) {
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
   // A tetrahedron in one strip.
-  const TriangleMesh mesh = read(text + "6 1 0 2 3 1 0\n");
+  const TriangleMesh mesh = read_ply_bytes(text + "6 1 0 2 3 1 0\n");
   EXPECT_EQ(mesh.triangles, (Triangles{{1, 0, 2}, {2, 0, 3}, {2, 3, 1}, {1, 3, 0}}));
   EXPECT_TRUE(check_mesh(mesh).solid()) << check_mesh(mesh).faults();
   // Three of its triangles in two strips.
-  EXPECT_EQ(read(text + "8 0 2 1 3 -1 2 0 3\n").triangles, (Triangles{{0, 2, 1}, {1, 2, 3}, {2, 0, 3}}));
+  EXPECT_EQ(read_ply_bytes(text + "8 0 2 1 3 -1 2 0 3\n").triangles, (Triangles{{0, 2, 1}, {1, 2, 3}, {2, 0, 3}}));
 }
 
 TEST(ReadPly, ReadsAScanInStrips) {
@@ -81,13 +81,14 @@ TEST(ReadPly, NamesTheLineOrByteOfAFaultInAStrip) {
            "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" +
            row;
   };
-  EXPECT_EQ(read(text("3 0 1 2\n")).triangles.size(), 1u);
-  test::expect_input_error([&] { read(text("3 0 1 3\n")); }, {"mesh.ply, line 13", "strip of triangles", "vertex 3"});
-  test::expect_input_error([&] { read(text("3 0 1 -2\n")); }, {"mesh.ply, line 13", "vertex -2"});
-  test::expect_input_error([&] { read(text("9 0 1 2\n")); }, {"mesh.ply, line 13", "9 items"});
-  test::expect_input_error([&] { read(text("2 0 1\n")); }, {"no faces"});
-  test::expect_input_error([&] { read(text("4 0 1 -1 2\n")); }, {"no faces"});
-  test::expect_input_error([&] { read(replaced(text("3 0 1 2\n"), "vertex_indices", "corners")); },
+  EXPECT_EQ(read_ply_bytes(text("3 0 1 2\n")).triangles.size(), 1u);
+  test::expect_input_error([&] { read_ply_bytes(text("3 0 1 3\n")); },
+                           {"mesh.ply, line 13", "strip of triangles", "vertex 3"});
+  test::expect_input_error([&] { read_ply_bytes(text("3 0 1 -2\n")); }, {"mesh.ply, line 13", "vertex -2"});
+  test::expect_input_error([&] { read_ply_bytes(text("9 0 1 2\n")); }, {"mesh.ply, line 13", "9 items"});
+  test::expect_input_error([&] { read_ply_bytes(text("2 0 1\n")); }, {"no faces"});
+  test::expect_input_error([&] { read_ply_bytes(text("4 0 1 -1 2\n")); }, {"no faces"});
+  test::expect_input_error([&] { read_ply_bytes(replaced(text("3 0 1 2\n"), "vertex_indices", "corners")); },
                            {"line 7", "no list"});
 }
 
@@ -95,7 +96,7 @@ TEST(ReadPly, RefusesARandomFileCutShort) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const std::string bytes = test::RandomPly(seed, PlyEncoding::little_endian).bytes();
     const std::size_t size = Random(seed, 3).below(bytes.size());
-    test::expect_input_error([&] { read(std::string_view(bytes).substr(0, size)); }, {"mesh.ply"});
+    test::expect_input_error([&] { read_ply_bytes(std::string_view(bytes).substr(0, size)); }, {"mesh.ply"});
   }
 }
 
@@ -111,7 +112,7 @@ TEST(ReadPly, TakesEveryEndOfLineInTheHeader) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string converted;
     for (const char c : text) converted += c == '\n' ? end : std::string(1, c);
-    EXPECT_EQ(read(converted).triangles, (Triangles{{0, 1, 2}}));
+    EXPECT_EQ(read_ply_bytes(converted).triangles, (Triangles{{0, 1, 2}}));
     // A binary body may begin with the byte that ends lines elsewhere.
     std::string binary;
     for (const char c : replaced(header("binary_big_endian"), "float x", "uchar x")) {
@@ -125,7 +126,7 @@ TEST(ReadPly, TakesEveryEndOfLineInTheHeader) {
     }
     body.put(PlyType::uint8, 3);
     for (const int i : {2, 1, 0}) body.put(PlyType::int32, i);
-    const TriangleMesh mesh = read(binary + body.bytes());
+    const TriangleMesh mesh = read_ply_bytes(binary + body.bytes());
     EXPECT_EQ(mesh.vertices[0], Point(10, 0, 0));
     EXPECT_EQ(mesh.triangles, (Triangles{{2, 1, 0}}));
   }
@@ -135,17 +136,17 @@ TEST(ReadPly, ReadsAHeaderOfAHundredThousandElements) {
   std::string elements;
   for (int i = 0; i < 100000; ++i) ((elements += "element e") += std::to_string(i)) += " 0\n";
   const std::string text = header("ascii") + kPoints + "3 0 1 2\n";
-  EXPECT_EQ(read(replaced(text, "element vertex", elements + "element vertex")).triangles.size(), 1u);
+  EXPECT_EQ(read_ply_bytes(replaced(text, "element vertex", elements + "element vertex")).triangles.size(), 1u);
 }
 
 TEST(ReadPly, TriangulatesPolygons) {
-  EXPECT_EQ(read(header("ascii", "4") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").triangles,
+  EXPECT_EQ(read_ply_bytes(header("ascii", "4") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").triangles,
             (Triangles{{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(ReadPly, NamesTheLineAndTheFaultOfAsciiFiles) {
   const std::string good = header("ascii") + kPoints + "3 0 1 2\n", three = header("ascii") + kPoints;
-  EXPECT_NO_THROW(read(good));
+  EXPECT_NO_THROW(read_ply_bytes(good));
   const struct {
     std::string text;
     std::vector<std::string> parts;
@@ -189,7 +190,7 @@ TEST(ReadPly, NamesTheLineAndTheFaultOfAsciiFiles) {
   };
   for (const auto& [text, parts] : cases) {
     for (const std::string& part : parts)
-      test::expect_input_error([&, &text = text] { read(text); }, {"mesh.ply", part});
+      test::expect_input_error([&, &text = text] { read_ply_bytes(text); }, {"mesh.ply", part});
   }
 }
 
@@ -204,16 +205,16 @@ TEST(ReadPly, NamesTheByteAndTheFaultOfBinaryFiles) {
   };
   const auto byte = [&](std::size_t offset) { return "byte " + std::to_string(head.size() + offset); };
   const std::string good = file(1, 3, 1);
-  EXPECT_NO_THROW(read(good));
-  test::expect_input_error([&] { read(file(NAN, 3, 1)); }, {byte(16), "not a finite number"});
-  test::expect_input_error([&] { read(file(-INFINITY, 3, 1)); }, {byte(16), "not a finite number"});
-  test::expect_input_error([&] { read(file(1, 2, 1)); }, {"no faces"});
-  test::expect_input_error([&] { read(file(1, 4, 1)); }, {byte(36), "4 items"});
-  test::expect_input_error([&] { read(file(1, 3, 3)); }, {byte(41), "vertex 3"});
-  test::expect_input_error([&] { read(file(1, 3, -1)); }, {byte(41), "vertex -1"});
-  test::expect_input_error([&] { read(good.substr(0, good.size() - 1)); }, {byte(36), "3 items"});
-  test::expect_input_error([&] { read(good.substr(0, good.size() - 20)); }, {"line 3", "promises 3 rows"});
-  test::expect_input_error([&] { read(replaced(good, "vertex 3", "vertex 1000000000000")); },
+  EXPECT_NO_THROW(read_ply_bytes(good));
+  test::expect_input_error([&] { read_ply_bytes(file(NAN, 3, 1)); }, {byte(16), "not a finite number"});
+  test::expect_input_error([&] { read_ply_bytes(file(-INFINITY, 3, 1)); }, {byte(16), "not a finite number"});
+  test::expect_input_error([&] { read_ply_bytes(file(1, 2, 1)); }, {"no faces"});
+  test::expect_input_error([&] { read_ply_bytes(file(1, 4, 1)); }, {byte(36), "4 items"});
+  test::expect_input_error([&] { read_ply_bytes(file(1, 3, 3)); }, {byte(41), "vertex 3"});
+  test::expect_input_error([&] { read_ply_bytes(file(1, 3, -1)); }, {byte(41), "vertex -1"});
+  test::expect_input_error([&] { read_ply_bytes(good.substr(0, good.size() - 1)); }, {byte(36), "3 items"});
+  test::expect_input_error([&] { read_ply_bytes(good.substr(0, good.size() - 20)); }, {"line 3", "promises 3 rows"});
+  test::expect_input_error([&] { read_ply_bytes(replaced(good, "vertex 3", "vertex 1000000000000")); },
                            {"promises 1000000000000"});
 }
 

@@ -13,11 +13,11 @@ namespace orchard {
 namespace {
 
 using Pairs = std::vector<std::array<Index, 2>>;
-using Triangle = std::array<Point, 3>;
+using PointTriangle = std::array<Point, 3>;
 
-TriangleMesh mesh_of(std::initializer_list<Triangle> triangles) {
+TriangleMesh mesh_of(std::initializer_list<PointTriangle> triangles) {
   TriangleMesh mesh;
-  for (const Triangle& corners : triangles) {
+  for (const PointTriangle& corners : triangles) {
     const Index first = static_cast<Index>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), corners.begin(), corners.end());
     mesh.triangles.push_back({first, first + 1, first + 2});
@@ -26,10 +26,10 @@ TriangleMesh mesh_of(std::initializer_list<Triangle> triangles) {
 }
 
 TEST(SelfIntersections, AreFoundWherePairsOfTrianglesMeetBeyondWhatTheyShare) {
-  const Triangle flat{Point(0, 0, 0), Point(2, 0, 0), Point(0, 2, 0)};
+  const PointTriangle flat{Point(0, 0, 0), Point(2, 0, 0), Point(0, 2, 0)};
   const struct {
     const char* name;
-    Triangle other;
+    PointTriangle other;
     bool meet;
   } cases[] = {
       {"apart", {Point(0, 0, 1), Point(2, 0, 1), Point(0, 2, 1)}, false},
@@ -61,7 +61,7 @@ TEST(SelfIntersections, AreAbsentFromCleanSolids) {
 }
 
 // A segment pierces a triangle; coplanar cases do not occur among random triangles.
-bool pierces(const Point& from, const Point& to, const Triangle& t) {
+bool pierces(const Point& from, const Point& to, const PointTriangle& t) {
   const auto volume = [](const Point& a, const Point& b, const Point& c, const Point& d) {
     return (b - a).cross(c - a).dot(d - a);
   };
@@ -82,13 +82,13 @@ TEST(SelfIntersections, AgreeWithAllPairsOfRandomTriangles) {
                                 0.4 * Vector(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
       mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    const auto corners = [&](Index t) -> Triangle {
+    const auto corners = [&](Index t) -> PointTriangle {
       return {mesh.vertices[3 * t], mesh.vertices[3 * t + 1], mesh.vertices[3 * t + 2]};
     };
     Pairs expected;
     for (Index a = 0; a < 120; ++a)
       for (Index b = a + 1; b < 120; ++b) {
-        const Triangle p = corners(a), q = corners(b);
+        const PointTriangle p = corners(a), q = corners(b);
         bool meet = false;
         for (std::size_t i = 0; i < 3; ++i)
           meet |= pierces(p[i], p[(i + 1) % 3], q) || pierces(q[i], q[(i + 1) % 3], p);

@@ -15,7 +15,7 @@
 namespace orchard {
 namespace {
 
-struct Case {
+struct ClosedFormCase {
   std::string name;
   test::KnownAxis known;
   double prune_degrees;              // where the mesh has shallow edges that the closed form does not have
@@ -23,9 +23,9 @@ struct Case {
   double missing_max, missing_mean;  // bounds: places of the known axis off the built one
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const ClosedFormCase& c) { return out << c.name; }
 
-std::vector<Case> cases() {
+std::vector<ClosedFormCase> closed_form_cases() {
   using namespace test;
   // What is missing is where sheets end in convex edges: the built ones end about one spacing before. Without such
   // edges nothing is. The reentrant edge of the L is where most goes astray: its points stand for a whole fan of
@@ -52,10 +52,10 @@ Distances distances(const std::vector<Point>& points, const TriangleMesh& from) 
   return found;
 }
 
-class ClosedForm : public testing::TestWithParam<Case> {};
+class ClosedForm : public testing::TestWithParam<ClosedFormCase> {};
 
 TEST_P(ClosedForm, IsWhereTheBuiltAxisLies) {
-  const Case& c = GetParam();
+  const ClosedFormCase& c = GetParam();
   const Surface surface(c.known.solid);
   double last = 0;
   for (const Index points : {1000u, 4000u}) {
@@ -80,7 +80,7 @@ TEST_P(ClosedForm, IsWhereTheBuiltAxisLies) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solids, ClosedForm, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Solids, ClosedForm, testing::ValuesIn(closed_form_cases()),
                          [](const auto& named) { return named.param.name; });
 
 }  // namespace

@@ -22,7 +22,7 @@
 namespace orchard {
 namespace {
 
-constexpr Index kParts = 1'000'000;
+constexpr Index kMaxDentParts = 1'000'000;
 
 // Reflex edges and vertices, saddles, sharp corners, flat faces in few triangles and long thin ones.
 TriangleMesh shape(std::uint64_t kind, Random& random) {
@@ -88,12 +88,13 @@ TEST(Dents, BelowTheSurfaceAreThoseThatCubesFind) {
     const MedialMesh mesh = shrunk_axis(surface, random.uniform(0, 0.1), random);
     const detail::Reconstruction reconstruction(mesh);
     const double known = 0.01 * diagonal, accuracy = 1e-3 * diagonal;
-    const auto in_cubes = detail::max_deep_dent(surface, reconstruction, known, accuracy, kParts);
+    const auto in_cubes = detail::max_deep_dent(surface, reconstruction, known, accuracy, kMaxDentParts);
     const auto within = [&](double max) { return max + std::max(accuracy, 0.02 * max) + 1e-9; };
     ASSERT_TRUE(detail::one_sided(surface));
     const double deepest = deepest_of_random_places(surface, mesh, reconstruction, random);
-    for (const auto& dent : {detail::max_shell_dent(surface, reconstruction, known, in_cubes.upper, accuracy, kParts),
-                             detail::max_dent(surface, reconstruction, known, accuracy, kParts)}) {
+    for (const auto& dent :
+         {detail::max_shell_dent(surface, reconstruction, known, in_cubes.upper, accuracy, kMaxDentParts),
+          detail::max_dent(surface, reconstruction, known, accuracy, kMaxDentParts)}) {
       EXPECT_LE(deepest, dent.upper);
       EXPECT_LE(in_cubes.max, dent.upper);
       EXPECT_LE(dent.max, in_cubes.upper);
@@ -110,7 +111,7 @@ TEST(Dents, OfAnExactBoxAreProvedToBeNone) {
   const test::KnownAxis known = test::known_box({1, 2, 3});
   const Surface box(known.solid);
   const detail::Reconstruction reconstruction(known.axis);
-  const auto dent = detail::max_dent(box, reconstruction, 0, 1e-3, kParts);
+  const auto dent = detail::max_dent(box, reconstruction, 0, 1e-3, kMaxDentParts);
   EXPECT_LT(dent.max, 1e-12);
   EXPECT_LT(dent.upper, 1.1e-3);
 }

@@ -43,19 +43,19 @@ void expect_mended(const Surface& surface, const GapRepair& repaired) {
   EXPECT_EQ(2 * test::euler_characteristic(surface, repaired.diagram), surface.report().euler_characteristic);
 }
 
-struct Case {
+struct GapCase {
   std::string name;
   TriangleMesh mesh;
   SamplingOptions sampling;
   double max_added;  // fraction of the points
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const GapCase& c) { return out << c.name; }
 
-class GapCrossing : public testing::TestWithParam<Case> {};
+class GapCrossing : public testing::TestWithParam<GapCase> {};
 
 TEST_P(GapCrossing, IsMendedWithFewPoints) {
-  const Case& c = GetParam();
+  const GapCase& c = GetParam();
   const Surface surface(c.mesh);
   ASSERT_TRUE(surface.solid()) << surface.report().faults();
   const GapRepair repaired = sampled_and_repaired(surface, c.sampling);
@@ -67,7 +67,7 @@ TEST_P(GapCrossing, IsMendedWithFewPoints) {
 
 SamplingOptions points(Index face, Index edge) { return {.face_points = face, .edge_points = edge}; }
 
-std::vector<Case> cases() {
+std::vector<GapCase> gap_cases() {
   using namespace test;
   return {
       {"Fig_6_14_ThinBridge", extruded(thin_bridge(0.06), 1), points(700, 250), 0.5},
@@ -85,7 +85,7 @@ std::vector<Case> cases() {
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(Figures, GapCrossing, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Figures, GapCrossing, testing::ValuesIn(gap_cases()),
                          [](const auto& named) { return named.param.name; });
 
 TEST(GapRepair, AddsNothingToSolidsThatNeedNothing) {

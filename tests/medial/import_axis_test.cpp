@@ -16,14 +16,14 @@ SurfaceSampling samples_of(const Surface& surface, Index points = 600) {
   return sample_surface(surface, {.face_points = points, .edge_points = points / 4});
 }
 
-MedialMesh axis_of(const Surface& surface) {
+MedialMesh mesh_of_axis(const Surface& surface) {
   return medial_mesh(build_medial_axis(surface, {.sampling = {.face_points = 800, .edge_points = 200}}).axis);
 }
 
 TEST(ImportAxis, OfOrchardsOwnAxisKeepsEveryBallAndTheTopology) {
   for (const TriangleMesh& mesh : {test::l_shape(), test::torus(24, 12), test::u_shape(0.2)}) {
     const Surface surface(mesh);
-    const MedialMesh own = axis_of(surface);
+    const MedialMesh own = mesh_of_axis(surface);
     const ImportedAxis imported = import_axis(surface, own, samples_of(surface));
     EXPECT_EQ(imported.refused, 0u);
     EXPECT_EQ(imported.axis.centers, own.centers);
@@ -36,7 +36,7 @@ TEST(ImportAxis, OfOrchardsOwnAxisKeepsEveryBallAndTheTopology) {
 TEST(ImportAxis, GivesEveryBallItsNearestPointAndEverySampleOneBall) {
   const Surface surface(test::u_shape(0.2));
   const SurfaceSampling sampling = samples_of(surface);
-  const ImportedAxis imported = import_axis(surface, axis_of(surface), sampling);
+  const ImportedAxis imported = import_axis(surface, mesh_of_axis(surface), sampling);
   const MedialAxis& axis = imported.axis;
   ASSERT_NO_THROW(validate(imported.sampling, surface));
   ASSERT_EQ(axis.points.size(), sampling.points.size() + axis.size());
@@ -79,7 +79,7 @@ TEST(ImportAxis, RefusesBallsOutsideWithTheirCellsAndCorrectsRadii) {
 
 TEST(ImportAxis, ReportsItsProgressAHundredTimesAtMostHoweverManySamples) {
   const Surface surface(test::l_shape());
-  const MedialMesh own = axis_of(surface);
+  const MedialMesh own = mesh_of_axis(surface);
   int reports = 0;
   double last = -1;
   import_axis(surface, own, samples_of(surface, 4000), [&](std::string_view, double fraction) {

@@ -19,6 +19,7 @@
 #include "reach/dents_below.h"
 #include "reach/uncovered.h"
 #include "refine/drop_degenerate.h"
+#include "support.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 
@@ -32,7 +33,7 @@ MedialBuildOptions reaching(Index points, std::uint64_t seed = 1) {
   return {.sampling = {.face_points = points - points / 5, .edge_points = points / 5, .seed = seed}, .refine = refine};
 }
 
-double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
+using test::diagonal;
 
 // A box with a blunt pyramid for a lid: its apex has no sharp edge at it, and stands out by more than an edge would.
 TriangleMesh box_with_lid(double height) {

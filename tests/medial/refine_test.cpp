@@ -25,6 +25,7 @@
 #include "orchard/medial/topology.h"
 #include "outlines.h"
 #include "quality/reconstruction.h"
+#include "support.h"
 #include "support/brute_distance.h"
 #include "support/effort.h"
 #include "support/shapes.h"
@@ -37,7 +38,7 @@ MedialBuildOptions options_for(Index points, std::uint64_t seed = 1) {
           .refine = RefineOptions{}};
 }
 
-double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
+using test::diagonal;
 
 struct Solid {
   const char* name;

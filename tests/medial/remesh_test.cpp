@@ -22,6 +22,7 @@
 #include "orchard/medial/topology.h"
 #include "outlines.h"
 #include "quality/reconstruction.h"
+#include "support.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -29,7 +30,7 @@ namespace {
 
 using Edge = std::array<Index, 2>;
 
-double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
+using test::diagonal;
 
 // 1 for a triangle with equal sides, 0 for one without area.
 double quality_of(const Point& a, const Point& b, const Point& c) {
@@ -170,7 +171,7 @@ TEST(Remesh, LeavesASheetAsItIsWhereNothingIsAskedFor) {
 
 // ---- axes of solids
 
-MedialBuildOptions options_for(Index points) {
+MedialBuildOptions remesh_options(Index points) {
   return {.sampling = {.face_points = points - points / 5, .edge_points = points / 5}, .refine = RefineOptions{}};
 }
 
@@ -184,7 +185,7 @@ MedialMesh expect_even(const TriangleMesh& solid, Index points, const Limits& li
   const Surface surface(solid);
   EXPECT_TRUE(surface.solid());
   const double length = diagonal(surface);
-  const MedialBuild build = build_medial_axis(surface, options_for(points));
+  const MedialBuild build = build_medial_axis(surface, remesh_options(points));
   EXPECT_TRUE(build.promise.kept()) << build.promise.open << " open, " << build.promise.protrusion << " sticking out";
   const MedialMesh mesh = medial_mesh(build.axis);
   EXPECT_EQ(topology(mesh), solid_topology(surface));
@@ -288,7 +289,7 @@ TEST(Remesh, OfAConeHasACurveTowardsItsApex) {
 // Taller than wide, with facets between which next to nothing is lost: a curve between two cones.
 TEST(Remesh, OfACylinderTallerThanWideHasACurve) {
   const Surface surface(test::turned({{1, 0}, {1, 4}}, 64));
-  const MedialBuild build = build_medial_axis(surface, options_for(600));
+  const MedialBuild build = build_medial_axis(surface, remesh_options(600));
   const MedialMesh mesh = medial_mesh(build.axis);
   EXPECT_TRUE(build.promise.kept());
   EXPECT_EQ(topology(mesh), (Topology{1, 0, 0}));
@@ -321,7 +322,7 @@ TEST(Remesh, OfALensIsADisc) {
 // A cylinder wider than tall, which has sheets, a seam and borders on edges.
 TEST(Remesh, IsTheSameWhateverTheThreadsAndThePowerOfTwo) {
   const TriangleMesh solid = test::turned({{2, 0}, {2, 0.8}}, 24);
-  MedialBuildOptions options = options_for(400);
+  MedialBuildOptions options = remesh_options(400);
   options.check_promise = false;
   const auto build = [&](const TriangleMesh& mesh, std::size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);

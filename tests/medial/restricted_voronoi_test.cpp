@@ -49,13 +49,13 @@ Index nearest_by_brute_force(const std::vector<Point>& points, const Point& quer
   return nearest;
 }
 
-std::vector<TriangleMesh> solids() {
+std::vector<TriangleMesh> solid_meshes() {
   return {test::box({0, 0, 0}, {1, 2, 3}), test::u_shape(0.05), test::torus(16, 8), test::two_boxes(0.01)};
 }
 
 TEST(RestrictedVoronoi, DividesEveryTriangleAmongItsNearestPoints) {
   std::uint64_t seed = 0;
-  for (const TriangleMesh& mesh : solids()) {
+  for (const TriangleMesh& mesh : solid_meshes()) {
     SCOPED_TRACE(++seed);
     const Surface surface(mesh);
     const SurfaceSampling sampling = random_sampling(surface, 300, seed);
@@ -80,7 +80,7 @@ TEST(RestrictedVoronoi, DividesEveryTriangleAmongItsNearestPoints) {
 }
 
 TEST(RestrictedVoronoi, BordersAreMutual) {
-  for (const TriangleMesh& mesh : solids()) {
+  for (const TriangleMesh& mesh : solid_meshes()) {
     const Surface surface(mesh);
     const SurfaceSampling sampling = random_sampling(surface, 200, 9);
     const VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
@@ -101,7 +101,7 @@ TEST(RestrictedVoronoi, BordersAreMutual) {
 
 TEST(RestrictedVoronoi, UpdatesToWhatItWouldHaveBeen) {
   std::uint64_t seed = 100;
-  for (const TriangleMesh& mesh : solids()) {
+  for (const TriangleMesh& mesh : solid_meshes()) {
     SCOPED_TRACE(++seed);
     const Surface surface(mesh);
     const SurfaceSampling all = random_sampling(surface, 260, seed);

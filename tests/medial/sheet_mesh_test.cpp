@@ -25,7 +25,7 @@ BallComplex balls_of(Index vertices, std::vector<std::array<Index, 3>> triangles
 BallComplex fan() { return balls_of(7, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}, {0, 1, 6}}); }
 
 // Three triangles on each of two edges 0 1 and 1 2: a seam, at which three sheets meet.
-BallComplex seam() {
+BallComplex seam_complex() {
   return balls_of(9,
                   {{0, 1, 3}, {1, 2, 3}, {1, 3, 4}, {0, 1, 5}, {1, 2, 5}, {1, 5, 6}, {0, 1, 7}, {1, 2, 7}, {1, 7, 8}});
 }
@@ -50,7 +50,7 @@ TEST(SheetMesh, TellsSeamsCurvesAndJunctions) {
 }
 
 TEST(SheetMesh, TellsAVertexInASeam) {
-  const SheetMesh mesh(seam());
+  const SheetMesh mesh(seam_complex());
   EXPECT_EQ(mesh.stratum(0, 1), Stratum::seam);
   // Its link is a theta only without the fins 1 3 4, 1 5 6 and 1 7 8, whose borders end there.
   EXPECT_EQ(mesh.stratum(1), Stratum::junction);

@@ -10,6 +10,8 @@
 
 namespace orchard::test {
 
+inline double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
+
 // The farthest that a segment between adjacent medial vertices leaves the solid, at eight points on each; a fraction of
 // the bounding radius, 0 if none does.
 inline double farthest_outside(const Surface& surface, const MedialAxis& axis) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.h"
+#include "programs.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -11,6 +12,8 @@ namespace {
 
 using nlohmann::json;
 using test::Finished;
+using test::has;
+using test::is_installed;
 using test::Workplace;
 
 const std::string kArm = ORCHARD_DATA_DIR "/desk-arm.urdf";
@@ -21,12 +24,6 @@ std::vector<std::string> quick(const std::string& urdf, const std::string& folde
                                      "low",   "--no-views", "--no-picture", "--states", "200"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-bool is_there(const char* program) {
-  return std::system(("command -v " + std::string(program) + " > /dev/null").c_str()) == 0;
 }
 
 TEST(RobotCommand, MakesClosedSpheresInEveryFormatThatAuditReads) {
@@ -53,7 +50,7 @@ TEST(RobotCommand, MakesClosedSpheresInEveryFormatThatAuditReads) {
   EXPECT_TRUE(files.contains("desk-arm-tree-upper arm.orchard"));
   EXPECT_TRUE(has(files.at("desk-arm.srdf"), "reason=\"Adjacent\""));
   EXPECT_TRUE(has(files.at("desk-arm.srdf"), "200 joint states"));
-  if (is_there("check_urdf")) {
+  if (is_installed("check_urdf")) {
     EXPECT_EQ(std::system(("check_urdf '" + folder + "/desk-arm-spheres.urdf' > /dev/null").c_str()), 0);
   }
 }

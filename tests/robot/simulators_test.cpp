@@ -6,6 +6,7 @@
 
 #include "apps/program.h"
 #include "orchard/geometry/atomic_file.h"
+#include "programs.h"
 #include "robot/bodies.h"
 #include "robot/formats.h"
 #include "robot/urdf_reader.h"
@@ -15,11 +16,8 @@ namespace orchard::robot {
 namespace {
 
 using apps::SphereGroup;
+using test::is_installed;
 using test::Workplace;
-
-bool is_there(const char* program) {
-  return std::system(("command -v " + std::string(program) + " > /dev/null").c_str()) == 0;
-}
 
 // The desk arm with three spheres to a link, and one to its wrist.
 struct Arm {
@@ -75,7 +73,7 @@ TEST(Simulators, MujocoHoldsEveryBallOfTheMjcf) {
 
 TEST(ParticleSimulators, LiggghtsTakesTheTemplates) {
   if (test::more() == 1) GTEST_SKIP() << "one of the long tests";
-  if (!is_there("liggghts")) GTEST_SKIP() << "LIGGGHTS is not installed";
+  if (!is_installed("liggghts")) GTEST_SKIP() << "LIGGGHTS is not installed";
   const Arm arm;
   const std::string include = arm.write("liggghts");
   std::string templates;
@@ -106,7 +104,7 @@ TEST(ParticleSimulators, LiggghtsTakesTheTemplates) {
 
 TEST(ParticleSimulators, LammpsTakesTheMolecules) {
   if (test::more() == 1) GTEST_SKIP() << "one of the long tests";
-  if (!is_there("lmp")) GTEST_SKIP() << "LAMMPS is not installed";
+  if (!is_installed("lmp")) GTEST_SKIP() << "LAMMPS is not installed";
   const Arm arm;
   arm.write("lammps");
   std::string script = "units si\natom_style sphere\nregion box block -5 5 -5 5 -5 5\ncreate_box 1 box\n";

@@ -6,12 +6,14 @@
 
 #include "apps/program.h"
 #include "orchard/geometry/error.h"
+#include "programs.h"
 #include "robot/mesh_search.h"
 #include "support/shapes.h"
 
 namespace orchard::robot {
 namespace {
 
+using test::has;
 using test::Workplace;
 
 std::string message_of(const std::string& file, const UrdfOptions& options = {}) {
@@ -22,8 +24,6 @@ std::string message_of(const std::string& file, const UrdfOptions& options = {})
   }
   return "no error";
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(UrdfReader, NamesFileAndLineOfEveryFault) {
   const Workplace here;

@@ -43,13 +43,13 @@ TriangleMesh bumpy(std::uint64_t seed, double unit) {
   return mesh;
 }
 
-struct Frame {
+struct TurnedFrame {
   double factor;
   Vector offset;
 };
 
 // Of another size, and up to so many of its sizes away.
-Frame any_frame(std::uint64_t seed, double sizes) {
+TurnedFrame any_frame(std::uint64_t seed, double sizes) {
   Random random(seed, 4);
   const double factor = std::pow(10, random.uniform(-6, 6));
   const auto part = [&] { return factor * random.uniform(-sizes, sizes); };
@@ -57,8 +57,8 @@ Frame any_frame(std::uint64_t seed, double sizes) {
   return {factor, Vector(x, y, z)};
 }
 
-void expect_same_but_for_the_frame(const SphereTree& tree, const SphereTree& other, const Frame& frame, double error,
-                                   const std::string& name) {
+void expect_same_but_for_the_frame(const SphereTree& tree, const SphereTree& other, const TurnedFrame& frame,
+                                   double error, const std::string& name) {
   ASSERT_EQ(tree.nodes.size(), other.nodes.size()) << name;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const Sphere &a = tree.nodes[i].sphere, &b = other.nodes[i].sphere;
@@ -74,7 +74,7 @@ TEST(EveryFrame, HasTheSameTreeButForTheLastDigits) {
     for (const TreeMethod method : {TreeMethod::tightened, TreeMethod::octree, TreeMethod::annealing}) {
       if (method == TreeMethod::annealing && seed % 4 != 1) continue;  // slow
       const TriangleMesh mesh = bumpy(seed, kUnits[seed % 4]);
-      const Frame frame = any_frame(seed, seed % 2 == 0 ? 3 : 50);
+      const TurnedFrame frame = any_frame(seed, seed % 2 == 0 ? 3 : 50);
       const SphereTreeOptions options = small_tree(method);
       const SphereTreeBuild tree = build_sphere_tree(Surface(mesh), options);
       const SphereTreeBuild other = build_sphere_tree(Surface(transformed(mesh, frame.factor, frame.offset)), options);
@@ -88,7 +88,7 @@ TEST(EveryFrame, HasTheSameTreeWithAnAxisToo) {
   SphereTreeOptions options = small_tree(TreeMethod::tightened);
   options.axis = true;
   const TriangleMesh mesh = bumpy(5, 1e-6);
-  const Frame frame{0.01, Vector(7, -5, 3)};
+  const TurnedFrame frame{0.01, Vector(7, -5, 3)};
   const SphereTreeBuild tree = build_sphere_tree(Surface(mesh), options);
   const Surface moved(transformed(mesh, frame.factor, frame.offset));
   const SphereTreeBuild other = build_sphere_tree(moved, options);
@@ -130,7 +130,7 @@ TEST(EveryFrame, HasTreesOfMeshesWhoseTrianglesAreThinnerThanTheLattice) {
     EXPECT_TRUE(detail::FramedSurface(surface).surface().solid());
     const SphereTreeBuild build = build_sphere_tree(surface, small_tree(TreeMethod::tightened));
     expect_conservative(build.tree, surface, "prism");
-    const Frame frame{3, Vector(1, 2, 3)};
+    const TurnedFrame frame{3, Vector(1, 2, 3)};
     const Surface moved(transformed(mesh, frame.factor, frame.offset));
     if (!moved.solid()) continue;
     const SphereTreeBuild other = build_sphere_tree(moved, small_tree(TreeMethod::tightened));

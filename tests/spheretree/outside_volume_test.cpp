@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "orchard/geometry/error.h"
 #include "support.h"
 
@@ -10,8 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = 3.14159265358979323846;
-double ball_volume(double radius) { return 4 * kPi / 3 * radius * radius * radius; }
+using std::numbers::pi;
 
 TEST(OutsideVolume, IsABallsVolumeLessTheSolidInIt) {
   for (const Vector& offset : {Vector(0, 0, 0), Vector(30, -4, 5)}) {
@@ -28,7 +29,7 @@ TEST(OutsideVolume, CountsWhatBallsShareOnce) {
   EXPECT_NEAR(outside_volume(surface, apart), 2 * ball_volume(1), 0.006 * ball_volume(1));
   // A distance of one radius between the centres: the lens is 5/12 of pi.
   const std::vector<Sphere> lens{{Point(10, 0, 0), 1}, {Point(10, 0, 1), 1}};
-  const double both = 2 * ball_volume(1) - 5 * kPi / 12;
+  const double both = 2 * ball_volume(1) - 5 * pi / 12;
   EXPECT_NEAR(outside_volume(surface, lens), both, 0.003 * both);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "orchard/geometry/error.h"
 #include "support.h"
@@ -13,8 +14,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = 3.14159265358979323846;
-double ball_volume(double radius) { return 4 * kPi / 3 * radius * radius * radius; }
+using std::numbers::pi;
 
 Surface unit_cube() { return Surface(box(Point(-0.5, -0.5, -0.5), Point(0.5, 0.5, 0.5))); }
 
@@ -39,7 +39,7 @@ TEST(SphereAudit, ProvesThatABallAroundACubeLeavesNothingOpen) {
   EXPECT_NEAR(beside.volume.uncovered.value, 0, 1e-12);
   EXPECT_NEAR(inertia_difference(beside.volume.of_balls, beside.volume.of_solid, true), 0.4 * radius * radius * 6 - 1,
               0.01);
-  EXPECT_NEAR(beside.mean.boundary_area, 4 * kPi * radius * radius, 1e-9);
+  EXPECT_NEAR(beside.mean.boundary_area, 4 * pi * radius * radius, 1e-9);
 }
 
 TEST(SphereAudit, BoundsTheOpenAreaAndTheGapOfABallOnAFace) {
@@ -47,7 +47,7 @@ TEST(SphereAudit, BoundsTheOpenAreaAndTheGapOfABallOnAFace) {
   const SphereAudit result = audit(cube, {{Point(0, 0, 0.5), 0.25}});
   EXPECT_FALSE(result.covered);
   EXPECT_TRUE(result.touches);
-  const double open = 6 - kPi / 16, gap = std::sqrt(1.5) - 0.25;
+  const double open = 6 - pi / 16, gap = std::sqrt(1.5) - 0.25;
   EXPECT_LE(result.open_area.lower, open);
   EXPECT_GE(result.open_area.upper, open);
   EXPECT_NEAR(result.open_area.lower, result.open_area.upper, 0.003 * open);

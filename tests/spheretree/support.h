@@ -1,6 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <vector>
 
 #include "orchard/covering/coverage.h"
@@ -13,6 +14,8 @@
 #include "support/shapes.h"
 
 namespace orchard::test {
+
+inline double ball_volume(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
 
 inline SurfaceSampling points_of(const Surface& surface, Index points = 600, std::uint64_t seed = 1) {
   return sample_surface(surface, {.face_points = points, .edge_points = points / 4, .iterations = 10, .seed = seed});

@@ -14,6 +14,7 @@
 
 #include "orchard/medial/build.h"
 #include "orchard/viz/vtk_writer.h"
+#include "read_vtk.h"
 #include "support/shapes.h"
 #include "values.h"
 
@@ -21,23 +22,7 @@ namespace orchard {
 namespace {
 
 using test::TestFolder;
-
-std::vector<double> values(vtkFieldData* data, const char* name, int component = 0) {
-  std::vector<double> result;
-  vtkDataArray* array = data->GetArray(name);
-  EXPECT_NE(array, nullptr) << name;
-  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfTuples(); ++i) {
-    result.push_back(array->GetComponent(i, component));
-  }
-  return result;
-}
-
-vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& file) {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutput();
-}
+using test::values;
 
 // A triangle, a wall beside it, and a tail.
 MedialAxis small_complex() {
@@ -111,7 +96,7 @@ TEST(MedialGrid, AndTheFilesByPartsGiveAFaceTheSameAngle) {
     std::vector<double> in_grid = values(reader->GetOutput()->GetCellData(), "contact_angle");
     ASSERT_GE(in_grid.size(), axis.faces.size());
     in_grid.resize(axis.faces.size());  // walls and lines follow
-    EXPECT_EQ(values(read(folder.path() / "axis-faces.vtp")->GetCellData(), "contact_angle"), in_grid);
+    EXPECT_EQ(values(test::read_poly_data(folder.path() / "axis-faces.vtp")->GetCellData(), "contact_angle"), in_grid);
   }
 }
 
@@ -119,7 +104,7 @@ TEST(Thickness, IsTwiceTheMedialRadius) {
   const TestFolder folder;
   const Surface surface(test::box({0, 0, 0}, {1, 1, 1}));
   write_thickness(folder.path() / "thickness.vtp", surface, {1, 2, 3, 4, 5, 6, 7, 8});
-  const auto data = read(folder.path() / "thickness.vtp");
+  const auto data = test::read_poly_data(folder.path() / "thickness.vtp");
   EXPECT_EQ(data->GetNumberOfPolys(), 12);
   EXPECT_EQ(values(data->GetPointData(), "thickness"), (std::vector<double>{2, 4, 6, 8, 10, 12, 14, 16}));
 }
@@ -129,7 +114,7 @@ TEST(SkeletonFile, HasALineForEachArc) {
   const MedialAxis axis = small_complex();
   const SkeletonGraph graph = skeleton_graph(axis);
   write_skeleton(folder.path() / "skeleton.vtp", axis, graph);
-  const auto data = read(folder.path() / "skeleton.vtp");
+  const auto data = test::read_poly_data(folder.path() / "skeleton.vtp");
   EXPECT_EQ(static_cast<std::size_t>(data->GetNumberOfLines()), graph.arcs.size());
   EXPECT_EQ(values(data->GetCellData(), "kind").size(), graph.arcs.size());
   EXPECT_EQ(values(data->GetPointData(), "radius").size(), static_cast<std::size_t>(data->GetNumberOfPoints()));

@@ -101,7 +101,7 @@ vtkSmartPointer<vtkDataSet> read_with(const fs::path& file) {
   return vtkDataSet::SafeDownCast(reader->GetOutputAsDataSet());
 }
 
-vtkSmartPointer<vtkDataSet> read(const fs::path& file) {
+vtkSmartPointer<vtkDataSet> read_data_set(const fs::path& file) {
   return file.extension() == ".vtu" ? read_with<vtkXMLUnstructuredGridReader>(file)
                                     : read_with<vtkXMLPolyDataReader>(file);
 }
@@ -125,7 +125,8 @@ Views views_of(const TestFolder& folder, double scale) {
   Views views;
   for (const auto& entry : fs::directory_iterator(where / "out")) {
     const std::string extension = entry.path().extension().string();
-    if (extension == ".vtp" || extension == ".vtu") views[entry.path().filename().string()] = read(entry.path());
+    if (extension == ".vtp" || extension == ".vtu")
+      views[entry.path().filename().string()] = read_data_set(entry.path());
   }
   return views;
 }

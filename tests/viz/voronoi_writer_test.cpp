@@ -35,7 +35,7 @@ std::vector<Point> random_points() {
   return points;
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> read(const std::filesystem::path& file) {
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
@@ -67,7 +67,7 @@ TEST(WriteVoronoiCells, IsReadBackAsTheSamePolyhedra) {
   const VoronoiCells cells(diagram);
   const Box box(Point(-0.5, -0.5, -0.5), Point(1.5, 1.5, 1.5));
   EXPECT_EQ(write_voronoi_cells(folder / "cells.vtu", diagram, {.box = box, .points = {}}), 60u);
-  const auto grid = read(folder / "cells.vtu");
+  const auto grid = read_grid(folder / "cells.vtu");
   ASSERT_EQ(grid->GetNumberOfCells(), 60);
   double sum = 0;
   for (vtkIdType c = 0; c < 60; ++c) {
@@ -87,7 +87,7 @@ TEST(WriteVoronoiCells, TakesTheInaccuracyOfEachCell) {
   const VoronoiDiagram diagram = inagaki_voronoi(lattice()).diagram;
   const std::vector<double> expected = cell_inaccuracies(diagram);
   write_voronoi_cells(folder / "cells.vtu", diagram);
-  const auto grid = read(folder / "cells.vtu");
+  const auto grid = read_grid(folder / "cells.vtu");
   double max = 0;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     EXPECT_EQ(value(grid, "inaccuracy", c), expected[static_cast<std::size_t>(value(grid, "point", c))]);
@@ -102,7 +102,7 @@ TEST(WriteVoronoiCells, ShowsTheCellsThatAreAskedForAndClipsThem) {
   const std::vector<Index> chosen{21, 3, 42};
   const Box box(Point(-0.5, -0.5, -0.5), Point(3.5, 1.5, 1.5));
   EXPECT_EQ(write_voronoi_cells(folder / "some.vtu", diagram, {.box = box, .points = chosen}), 2u) << "42 is outside";
-  const auto grid = read(folder / "some.vtu");
+  const auto grid = read_grid(folder / "some.vtu");
   ASSERT_EQ(grid->GetNumberOfCells(), 2);
   EXPECT_EQ(value(grid, "point", 0), 21);
   EXPECT_EQ(value(grid, "at_box", 0), 1);
@@ -122,7 +122,7 @@ TEST(WriteVoronoiCells, WritesTheSameBytesForTheSameDiagramAndAnEmptyFileForFlat
   };
   EXPECT_EQ(bytes("a.vtu"), bytes("b.vtu"));
   EXPECT_EQ(write_voronoi_cells(folder / "flat.vtu", highest_first_voronoi(std::vector<Point>{{0, 0, 0}}).diagram), 0u);
-  EXPECT_EQ(read(folder / "flat.vtu")->GetNumberOfCells(), 0);
+  EXPECT_EQ(read_grid(folder / "flat.vtu")->GetNumberOfCells(), 0);
 }
 
 }  // namespace

@@ -21,31 +21,14 @@
 #include <numbers>
 #include <set>
 
+#include "read_vtk.h"
 #include "values.h"
 
 namespace orchard {
 namespace {
 
 using test::TestFolder;
-
-vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& file) {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  EXPECT_EQ(reader->GetErrorCode(), 0u) << file;
-  return reader->GetOutput();
-}
-
-// All values of an array; empty if there is none of that name.
-std::vector<double> values(vtkFieldData* data, const char* name) {
-  std::vector<double> result;
-  vtkDataArray* array = data->GetArray(name);
-  EXPECT_NE(array, nullptr) << name;
-  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfTuples(); ++i) {
-    result.push_back(array->GetComponent(i, 0));
-  }
-  return result;
-}
+using test::values;
 
 std::vector<Point> points_of(vtkPolyData* data) {
   std::vector<Point> result(static_cast<std::size_t>(data->GetNumberOfPoints()));
@@ -77,7 +60,7 @@ TEST(WriteMesh, KeepsEveryBitOfTheVerticesAndEveryTriangleWithItsCluster) {
     SCOPED_TRACE(c.name);
     const Surface surface(c.mesh);
     write_mesh(folder / "mesh.vtp", surface);
-    const auto data = read(folder / "mesh.vtp");
+    const auto data = test::read_poly_data(folder / "mesh.vtp");
     EXPECT_EQ(points_of(data), surface.mesh().vertices);
     const auto triangles = cells_of(data);
     const auto clusters = values(data->GetCellData(), "cluster");
@@ -96,7 +79,7 @@ TEST(WritePoints, KeepsOriginAndTriangleOfEveryPoint) {
   const TestFolder folder;
   const SurfaceSampling sampling = test::corner_sampling(Surface(test::icosphere(1)));
   write_points(folder / "points.vtp", sampling);
-  const auto data = read(folder / "points.vtp");
+  const auto data = test::read_poly_data(folder / "points.vtp");
   EXPECT_EQ(points_of(data), sampling.points);
   const auto origins = values(data->GetPointData(), "origin");
   const auto triangles = values(data->GetPointData(), "triangle");
@@ -115,7 +98,7 @@ TEST(WriteMedialAxis, MakesThreeFilesThatNumberTheVerticesAlike) {
   write_medial_axis(folder / "axis", axis);
   for (const char* name : {"axis-vertices.vtp", "axis-edges.vtp", "axis-faces.vtp"}) {
     SCOPED_TRACE(name);
-    const auto data = read(folder / name);
+    const auto data = test::read_poly_data(folder / name);
     EXPECT_EQ(points_of(data), axis.centers);
     EXPECT_EQ(values(data->GetPointData(), "radius"), axis.radii);
     EXPECT_EQ(values(data->GetPointData(), "valence"), (std::vector<double>{2, 1, 1, 0}));
@@ -124,8 +107,8 @@ TEST(WriteMedialAxis, MakesThreeFilesThatNumberTheVerticesAlike) {
     EXPECT_EQ(component[0], component[2]);
     EXPECT_NE(component[0], component[3]);
   }
-  EXPECT_EQ(read(folder / "axis-vertices.vtp")->GetNumberOfVerts(), 4);
-  const auto contacts = read(folder / "axis-contacts.vtp");
+  EXPECT_EQ(test::read_poly_data(folder / "axis-vertices.vtp")->GetNumberOfVerts(), 4);
+  const auto contacts = test::read_poly_data(folder / "axis-contacts.vtp");
   EXPECT_EQ(points_of(contacts), axis.points);
   EXPECT_EQ(values(contacts->GetPointData(), "origin"), (std::vector<double>{0, 2}));
 }
@@ -133,8 +116,9 @@ TEST(WriteMedialAxis, MakesThreeFilesThatNumberTheVerticesAlike) {
 TEST(WriteMedialAxis, HasALinePerPairOfNeighboursAndAPolygonPerFace) {
   const TestFolder folder;
   write_medial_axis(folder / "axis", test::small_axis());
-  EXPECT_EQ(cells_of(read(folder / "axis-edges.vtp")), (std::vector<std::vector<Index>>{{0, 1}, {0, 2}}));
-  const auto faces = read(folder / "axis-faces.vtp");
+  EXPECT_EQ(cells_of(test::read_poly_data(folder / "axis-edges.vtp")),
+            (std::vector<std::vector<Index>>{{0, 1}, {0, 2}}));
+  const auto faces = test::read_poly_data(folder / "axis-faces.vtp");
   EXPECT_EQ(cells_of(faces), (std::vector<std::vector<Index>>{{0, 1, 2}}));
   EXPECT_EQ(values(faces->GetCellData(), "point_a"), std::vector<double>{0});
   EXPECT_EQ(values(faces->GetCellData(), "point_b"), std::vector<double>{1});
@@ -161,7 +145,7 @@ TEST(WriteTreeLevel, ShowsForEveryLeafExactlyTheNodeOfItsPathThatStandsForItTher
         if (tree.nodes[i].child_count == 0) expected.insert(standing_for(tree, i, level));
       }
       write_tree_level(folder / "level.vtp", tree, level);
-      const auto data = read(folder / "level.vtp");
+      const auto data = test::read_poly_data(folder / "level.vtp");
       const auto nodes = values(data->GetPointData(), "node");
       EXPECT_EQ(nodes, std::vector<double>(expected.begin(), expected.end()));
       EXPECT_EQ(data->GetNumberOfVerts(), static_cast<vtkIdType>(expected.size()));
@@ -176,7 +160,7 @@ TEST(WriteTreeLevel, CarriesTheFiguresOfEachNode) {
     const SphereTree tree = test::random_tree(seed, 3);
     const Index level = 2;
     write_tree_level(folder / "level.vtp", tree, level);
-    const auto data = read(folder / "level.vtp");
+    const auto data = test::read_poly_data(folder / "level.vtp");
     const auto centers = points_of(data);
     vtkPointData* arrays = data->GetPointData();
     const auto nodes = values(arrays, "node");
@@ -202,7 +186,7 @@ TEST(WriteTreeLevel, SaysNaNForWhatIsNotKnown) {
   tree.nodes[1].distance_bound = tree.nodes[1].inaccuracy = std::numeric_limits<double>::infinity();
   write_tree_level(folder / "level.vtp", tree, 1);
   for (const char* name : {"error", "inaccuracy"}) {
-    const auto all = values(read(folder / "level.vtp")->GetPointData(), name);
+    const auto all = values(test::read_poly_data(folder / "level.vtp")->GetPointData(), name);
     EXPECT_TRUE(std::isnan(all.front())) << name;
     for (std::size_t i = 1; i < all.size(); ++i) EXPECT_TRUE(std::isfinite(all[i])) << name;
   }
@@ -211,7 +195,7 @@ TEST(WriteTreeLevel, SaysNaNForWhatIsNotKnown) {
 TEST(WriteTreeLevel, GivesTheRootNoParentAndNoBranch) {
   const TestFolder folder;
   write_tree_level(folder / "level.vtp", test::random_tree(1, 2), 0);
-  const auto data = read(folder / "level.vtp");
+  const auto data = test::read_poly_data(folder / "level.vtp");
   EXPECT_EQ(values(data->GetPointData(), "parent"), std::vector<double>{-1});
   EXPECT_EQ(values(data->GetPointData(), "branch"), std::vector<double>{-1});
 }
@@ -222,7 +206,7 @@ TEST(Writers, MakeReadableFilesOfEmptyValues) {
   write_tree_level(folder / "level.vtp", {}, 0);
   write_medial_axis(folder / "axis", {});
   for (const char* name : {"points.vtp", "level.vtp", "axis-vertices.vtp", "axis-edges.vtp", "axis-faces.vtp"}) {
-    EXPECT_EQ(read(folder / name)->GetNumberOfPoints(), 0) << name;
+    EXPECT_EQ(test::read_poly_data(folder / name)->GetNumberOfPoints(), 0) << name;
   }
 }
 

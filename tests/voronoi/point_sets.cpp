@@ -1,14 +1,11 @@
 #include "voronoi/point_sets.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "orchard/geometry/random.h"
 
 namespace orchard::test {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 Vector direction(Random& random) {
   const double z = random.uniform(-1, 1), angle = random.uniform(0, kTurn), r = std::sqrt(1 - z * z);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,8 @@
 namespace orchard::test {
 
 using Points = std::vector<Point>;
+
+inline constexpr double kTurn = 2 * std::numbers::pi;  // radians
 
 Points uniform_points(std::size_t n, std::uint64_t seed);       // in the unit cube
 Points box_face_points(std::size_t n, std::uint64_t seed);      // random, exactly on the faces of a unit cube

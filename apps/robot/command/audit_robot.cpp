@@ -74,7 +74,7 @@ void choose(const AuditCommand& command, const robot::Robot& robot, SphereFile& 
   std::erase_if(shapes, [&](const robot::LinkShape& shape) { return robot.links[shape.link].name != command.link; });
 }
 
-void print(const AuditedRobot& set) {
+void print_audited(const AuditedRobot& set) {
   if (set.buffered) fmt::print("with the buffers on all radii:\n");
   print_rows(set.rows);
   const RobotFigures figures = figures_of(set.rows);
@@ -136,7 +136,7 @@ ExitCode audit_robot(const AuditCommand& command) {
   if (!command.output.json && !command.output.quiet) {
     for (const std::string& note : notes) fmt::print("{}\n", note);
     fmt::print("{} ({}) beside {}\n", command.spheres.string(), file.format, command.mesh.string());
-    for (const AuditedRobot& set : sets) print(set);
+    for (const AuditedRobot& set : sets) print_audited(set);
   }
   if (destination) write(command, robot, shapes, sets.back(), *destination, report);
   return open ? kAuditOpen : kSucceeded;

@@ -29,12 +29,12 @@ std::vector<PreparedTree> prepared(const std::vector<Body>& bodies) {
   return result;
 }
 
-struct Case {
+struct PairCase {
   std::size_t a, b;
   Pose at_a, at_b;
 };
 
-Case random_case(const std::vector<Body>& all, std::uint64_t seed) {
+PairCase random_case(const std::vector<Body>& all, std::uint64_t seed) {
   Draw draw(seed);
   const std::size_t i = draw.bits() % all.size(), j = draw.bits() % all.size();
   const double reach = all[i].tree.bounding_radius + all[j].tree.bounding_radius;
@@ -47,7 +47,7 @@ TEST(TreePair, IsSmallAndAnswersAsANarrowPhaseOfItsOwn) {
   const auto trees = prepared(all);
   Workspace workspace;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    const Case c = random_case(all, seed);
+    const PairCase c = random_case(all, seed);
     NarrowPhase own(all[c.a].tree, all[c.b].tree);
     const Budget budget = {.work = seed % 3 == 0 ? 200 : Budget{}.work};
     for (const Order order : {Order::exact_first, Order::level_by_level}) {
@@ -110,7 +110,7 @@ TEST(Budget, DecidesAtOnceWhatIsEasyToDecideExactly) {
   const auto all = bodies();
   int first = 0, levels = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Case c = random_case(all, seed);
+    const PairCase c = random_case(all, seed);
     NarrowPhase pair(all[c.a].tree, all[c.b].tree);
     const Budget budget = {.work = 500};
     first += collide(pair, c.at_a, c.at_b, budget).answer != Answer::maybe;
@@ -126,7 +126,7 @@ TEST(CloserThan, AgreesWithTheDistanceByBruteForce) {
   int yes = 0, no = 0;
   const std::uint64_t begin = orchard::test::first_seed();
   for (std::uint64_t seed = begin; seed < begin + 250 * orchard::test::more(); ++seed) {
-    const Case c = random_case(all, seed);
+    const PairCase c = random_case(all, seed);
     const TreePair pair(trees[c.a], trees[c.b]);
     const auto truth = static_cast<double>(
         surface_distance(placed_triangles(all[c.a].tree, c.at_a), placed_triangles(all[c.b].tree, c.at_b)));
@@ -170,7 +170,7 @@ TEST(TreePair, AnswersAsAnewWhereTheWorkspaceHasItsTreesAlready) {
   const auto trees = prepared(all), others = prepared(copies);
   Workspace kept;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Case c = random_case(all, seed);
+    const PairCase c = random_case(all, seed);
     const PreparedTree& other = seed % 2 == 0 ? others[c.a] : trees[c.b];
     const TreePair pairs[] = {{trees[c.a], other}, {trees[c.a], other}, {other, trees[c.a]}};
     const Pose poses[][2] = {{c.at_a, c.at_b}, {c.at_b, c.at_a}, {c.at_a, c.at_b}};
@@ -251,7 +251,7 @@ TEST(Batch, GivesTheSameAnswersOnEveryNumberOfThreads) {
   std::vector<Verdict> alone;
   Workspace single;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Case c = random_case(all, seed);
+    const PairCase c = random_case(all, seed);
     pairs.emplace_back(trees[c.a], trees[c.b]);
     ra.push_back(c.at_a.rotation), rb.push_back(c.at_b.rotation);
     ta.push_back(c.at_a.translation), tb.push_back(c.at_b.translation);

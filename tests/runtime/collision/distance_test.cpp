@@ -19,14 +19,14 @@ namespace {
 
 using namespace orchard::runtime::test;
 
-struct Scene {
+struct DistanceScene {
   std::size_t a, b;
   Pose pose_a, pose_b;
 };
 
-Scene random_scene(const std::vector<Body>& all, std::uint64_t seed, double spread) {
+DistanceScene random_scene(const std::vector<Body>& all, std::uint64_t seed, double spread) {
   Draw draw(seed);
-  Scene s{draw.bits() % all.size(), draw.bits() % all.size(), {}, {}};
+  DistanceScene s{draw.bits() % all.size(), draw.bits() % all.size(), {}, {}};
   const PackedSphereTree &a = all[s.a].tree, &b = all[s.b].tree;
   s.pose_a = centered(a, draw.pose(0));
   s.pose_b = centered(b, draw.pose(draw.uniform(0, spread) * (a.bounding_radius + b.bounding_radius)));
@@ -38,7 +38,7 @@ TEST(Distance, ClosesInOnTheTruthFromBothSides) {
   int apart = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
-    const Scene s = random_scene(all, seed, 2);
+    const DistanceScene s = random_scene(all, seed, 2);
     const double truth = static_cast<double>(
         surface_distance(placed_triangles(all[s.a].tree, s.pose_a), placed_triangles(all[s.b].tree, s.pose_b)));
     const double rounding = 4e-6;  // nearly parallel edges
@@ -69,7 +69,7 @@ TEST(Distance, ClosesInOnTheTruthFromBothSides) {
 TEST(Distance, IsTheSameHoweverItIsCutAndWhicheverBodyComesFirst) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Scene s = random_scene(all, seed, 1.5);
+    const DistanceScene s = random_scene(all, seed, 1.5);
     DistanceQuery whole(all[s.a].tree, all[s.b].tree), back(all[s.b].tree, all[s.a].tree);
     whole.start(s.pose_a, s.pose_b), back.start(s.pose_b, s.pose_a);
     const std::size_t before = allocations;

@@ -47,14 +47,14 @@ Outcome exchanged(Outcome o) {
   return o;
 }
 
-struct Scene {
+struct PosedBodies {
   std::size_t a, b;
   Pose pose_a, pose_b;
 };
 
-Scene random_scene(const std::vector<Body>& all, std::uint64_t seed) {
+PosedBodies random_scene(const std::vector<Body>& all, std::uint64_t seed) {
   Draw draw(seed);
-  Scene s{draw.bits() % all.size(), draw.bits() % all.size(), {}, {}};
+  PosedBodies s{draw.bits() % all.size(), draw.bits() % all.size(), {}, {}};
   const PackedSphereTree &a = all[s.a].tree, &b = all[s.b].tree;
   s.pose_a = centered(a, draw.pose(0));
   s.pose_b = centered(b, draw.pose(draw.uniform(0, a.bounding_radius + b.bounding_radius)));
@@ -65,7 +65,7 @@ TEST(NarrowPhase, GivesTheSameAnswersAtEveryLevelWhenTheBodiesAreExchanged) {
   const auto all = bodies(), copies = all;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
-    const Scene s = random_scene(all, seed);
+    const PosedBodies s = random_scene(all, seed);
     NarrowPhase there(all[s.a].tree, all[s.b].tree), back(copies[s.b].tree, all[s.a].tree);
     there.start(s.pose_a, s.pose_b);
     back.start(s.pose_b, s.pose_a);
@@ -83,7 +83,7 @@ TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 600; ++seed) {
     SCOPED_TRACE(seed);
-    const Scene s = random_scene(all, seed);
+    const PosedBodies s = random_scene(all, seed);
     NarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
     whole.start(s.pose_a, s.pose_b);
     while (!whole.finished()) whole.refine();
@@ -109,7 +109,7 @@ TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
 TEST(NarrowPhase, StopsSoonAfterItsTimeAndResumes) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    const Scene s = random_scene(all, seed);
+    const PosedBodies s = random_scene(all, seed);
     NarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
     whole.start(s.pose_a, s.pose_b);
     while (!whole.finished()) whole.refine();
@@ -126,7 +126,7 @@ TEST(NarrowPhase, StopsSoonAfterItsTimeAndResumes) {
 TEST(NarrowPhase, ReplaysATimedRunFromItsCount) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Scene s = random_scene(all, seed);
+    const PosedBodies s = random_scene(all, seed);
     NarrowPhase timed(all[s.a].tree, all[s.b].tree), replayed(all[s.a].tree, all[s.b].tree);
     timed.start(s.pose_a, s.pose_b);
     for (std::uint64_t calls = seed % 9; calls > 0; --calls) {

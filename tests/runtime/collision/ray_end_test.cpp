@@ -5,6 +5,7 @@
 #include "every_machine.h"
 #include "orchard/runtime/pose.h"
 #include "orchard/runtime/shape_query.h"
+#include "runtime/same_hit.h"
 #include "support.h"
 #include "support/effort.h"
 
@@ -14,15 +15,10 @@ namespace {
 
 using test::Draw;
 
-bool same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
-  return a.has_value() == b.has_value() &&
-         (!a || (a->along == b->along && a->triangle == b->triangle && a->point == b->point));
-}
-
-struct Body {
+struct IndexedBody {
   PackedSphereTree tree;
   RayIndex index;
-  explicit Body(const test::Mesh& mesh) : tree(test::build_tree(mesh)), index(tree) {}
+  explicit IndexedBody(const test::Mesh& mesh) : tree(test::build_tree(mesh)), index(tree) {}
 };
 
 // To a vertex, to a point of an edge, or to anywhere, and not as far as there or farther.
@@ -46,7 +42,7 @@ Ray ray_at(Draw& draw, const PackedSphereTree& tree, const Pose& pose) {
   return ray;
 }
 
-void expect_no_bend(Draw& draw, const Body& body, const Pose& pose, const Ray& ray, std::uint64_t seed,
+void expect_no_bend(Draw& draw, const IndexedBody& body, const Pose& pose, const Ray& ray, std::uint64_t seed,
                     std::size_t& hits) {
   const auto cast = [&](double longest) {
     const auto hit = cast_ray(body.tree, pose, ray.origin, ray.direction, longest);
@@ -56,8 +52,8 @@ void expect_no_bend(Draw& draw, const Body& body, const Pose& pose, const Ray& r
     rays.fill(ends);
     std::array<std::optional<RayHit>, 8> all;
     cast_rays(body.index, pose, rays, all);
-    EXPECT_TRUE(same(hit, cast_ray(body.index, pose, ray.origin, ray.direction, longest))) << seed;
-    EXPECT_TRUE(same(hit, all[0]) && same(hit, all[7])) << seed;
+    EXPECT_TRUE(test::same_hit(hit, cast_ray(body.index, pose, ray.origin, ray.direction, longest))) << seed;
+    EXPECT_TRUE(test::same_hit(hit, all[0]) && test::same_hit(hit, all[7])) << seed;
     return hit;
   };
   const auto hit = cast(std::numeric_limits<double>::infinity());
@@ -66,7 +62,7 @@ void expect_no_bend(Draw& draw, const Body& body, const Pose& pose, const Ray& r
   const double along = hit->along;
   for (const double longest : {along, std::nextafter(along, 1e300), along * (1 + 1e-12), along * 1.000001, along * 1.01,
                                along * 1.1, along * draw.uniform(1, 3), along * 1e6}) {
-    ASSERT_TRUE(same(cast(longest), hit)) << "seed " << seed << ", " << longest / along;
+    ASSERT_TRUE(test::same_hit(cast(longest), hit)) << "seed " << seed << ", " << longest / along;
   }
   const double nearest = length(Vec3(hit->point) - Vec3(pose.translation)) + length(Vec3(ray.origin));
   const double rounding = 1e-11 * nearest / length(Vec3(ray.direction));
@@ -76,14 +72,15 @@ void expect_no_bend(Draw& draw, const Body& body, const Pose& pose, const Ray& r
 }
 
 TEST(RayEnds, BeyondAHitDoNotChangeIt) {
-  const Body bodies[] = {Body(test::box({-1, -1, -1}, {1, 1, 1})), Body(test::torus(14, 6, 1, 0.3)),
-                         Body(test::spikes(3, 12, 8)), Body(test::l_shape())};
+  const IndexedBody bodies[] = {IndexedBody(test::box({-1, -1, -1}, {1, 1, 1})),
+                                IndexedBody(test::torus(14, 6, 1, 0.3)), IndexedBody(test::spikes(3, 12, 8)),
+                                IndexedBody(test::l_shape())};
   const std::uint64_t begin = orchard::test::first_seed();
   test::on_every_machine([&] {
     std::size_t hits = 0;
     for (std::uint64_t seed = begin; seed < begin + 100 * orchard::test::more(); ++seed) {
       Draw draw(seed);
-      for (const Body& body : bodies) {
+      for (const IndexedBody& body : bodies) {
         Pose pose = draw.pose(draw.uniform(0, 3));
         if (seed % 3 == 0) pose = {};
         if (seed % 4 == 0) pose.scale = draw.uniform(0.1, 10);
@@ -96,7 +93,7 @@ TEST(RayEnds, BeyondAHitDoNotChangeIt) {
 }
 
 TEST(RayEnds, OnTheSurfaceCount) {
-  const Body cube(test::box({-1, -1, -1}, {1, 1, 1}));
+  const IndexedBody cube(test::box({-1, -1, -1}, {1, 1, 1}));
   for (const double x : {0.0, 0.25, 1.0}) {
     const auto hit = cast_ray(cube.tree, {}, {x, 0.5, 3}, {0, 0, -1}, 2);
     ASSERT_TRUE(hit) << x;

@@ -10,6 +10,7 @@
 #include "bodies.h"
 #include "every_machine.h"
 #include "lattice_scene.h"
+#include "runtime/same_hit.h"
 #include "support/effort.h"
 
 namespace orchard::runtime {
@@ -93,11 +94,6 @@ Met meets_triangle(const IntVec& p, const IntVec& d, const LatticeTriangle& tria
   return first;
 }
 
-bool same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
-  return a.has_value() == b.has_value() &&
-         (!a || (a->along == b->along && a->triangle == b->triangle && a->point == b->point));
-}
-
 struct LatticeRay {
   Ray ray;
   Fraction first;
@@ -158,7 +154,8 @@ TEST(RayIndex, AndTreeSayWhatIntegersSayAtEverySizeOnEveryMachine) {
         const Ray& ray = lattice.ray;
         rays.push_back(ray);
         const auto hit = cast_ray(tree, {}, ray.origin, ray.direction, ray.longest);
-        ASSERT_TRUE(same(hit, cast_ray(index, {}, ray.origin, ray.direction, ray.longest))) << seed << " " << kind;
+        ASSERT_TRUE(test::same_hit(hit, cast_ray(index, {}, ray.origin, ray.direction, ray.longest)))
+            << seed << " " << kind;
         if (!lattice.clear) continue;
         ASSERT_EQ(hit.has_value(), lattice.first.any()) << seed << " " << kind << " 2^" << power;
         (hit ? hits : misses) += 1;
@@ -174,7 +171,7 @@ TEST(RayIndex, AndTreeSayWhatIntegersSayAtEverySizeOnEveryMachine) {
       cast_rays(index, {}, rays, of_index);
       for (std::size_t r = 0; r < rays.size(); ++r) {
         const auto one = cast_ray(tree, {}, rays[r].origin, rays[r].direction, rays[r].longest);
-        ASSERT_TRUE(same(one, of_tree[r]) && same(one, of_index[r])) << seed << " " << r;
+        ASSERT_TRUE(test::same_hit(one, of_tree[r]) && test::same_hit(one, of_index[r])) << seed << " " << r;
       }
     }
     EXPECT_GT(hits, 200);
@@ -253,7 +250,7 @@ TEST(RayIndex, FindsWhatEveryTriangleByItselfSaysUnderEveryPoseOnEveryMachine) {
       ASSERT_EQ(allocations, before);
       for (std::size_t r = 0; r < rays.size(); ++r) {
         const auto one = cast_ray(index, pose, rays[r].origin, rays[r].direction, rays[r].longest);
-        ASSERT_TRUE(same(one, of_tree[r]) && same(one, of_index[r])) << seed << " " << r;
+        ASSERT_TRUE(test::same_hit(one, of_tree[r]) && test::same_hit(one, of_index[r])) << seed << " " << r;
         bool clear = true;
         const long double truth = first_along(placed, rays[r], clear);
         if (!clear) continue;
@@ -331,7 +328,7 @@ TEST(RayIndex, HoldsAnyNumberOfTrianglesInOnePlace) {
   for (const double z : {-1.0, 3.0}) {
     for (const double x : {0.25, 1.5, 0.15}) {
       const auto hit = cast_ray(index, {}, {x, 0.01, z}, {0, 0, z < 0 ? 1.0 : -1.0});
-      ASSERT_TRUE(same(hit, cast_ray(tree, {}, {x, 0.01, z}, {0, 0, z < 0 ? 1.0 : -1.0}))) << x << " " << z;
+      ASSERT_TRUE(test::same_hit(hit, cast_ray(tree, {}, {x, 0.01, z}, {0, 0, z < 0 ? 1.0 : -1.0}))) << x << " " << z;
       ASSERT_TRUE(hit) << x << " " << z;
     }
   }

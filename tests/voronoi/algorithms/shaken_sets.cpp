@@ -12,8 +12,6 @@
 namespace orchard::test {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 int between(Random& random, int low, int high) {
   return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1)));
 }
@@ -227,7 +225,7 @@ Points nested_cubes(Random& random) {
   return points;
 }
 
-Points needle(Random& random) {
+Points needle_set(Random& random) {
   Points points = random.below(2) == 0 ? box_lattice_points(between(random, 2, 5))
                                        : cone_ring_points(between(random, 2, 10), between(random, 4, 16));
   const double thin = std::pow(10.0, random.uniform(-5, 0));
@@ -280,7 +278,7 @@ constexpr Family kFamilies[] = {{"box grid", box_grid},
                                 {"regular solids", regular_solids},
                                 {"moment curve", moment_curve},
                                 {"nested cubes", nested_cubes},
-                                {"needle", needle},
+                                {"needle", needle_set},
                                 {"two clusters", two_clusters},
                                 {"half random", half_random}};
 

@@ -35,14 +35,14 @@ SiblingBlock random_block(Draw& draw, std::uint32_t used) {
   return block;
 }
 
-struct Case {
+struct BlockCase {
   SiblingBlock rows, lanes;
   BlockPair pair;
   Placement placement;
   LevelState level;
 };
 
-void make(Draw& draw, Case& c) {
+void make(Draw& draw, BlockCase& c) {
   const auto row_count = static_cast<std::uint32_t>(1 + draw.bits() % 8);
   const auto lane_count = static_cast<std::uint32_t>(1 + draw.bits() % 8);
   c.rows = random_block(draw, row_count);
@@ -68,7 +68,7 @@ void make(Draw& draw, Case& c) {
 TEST(SphereBlock, GivesTheSameBitsWithAndWithoutVectors) {
   for (std::uint64_t seed = 0; seed < 5000; ++seed) {
     Draw draw(seed);
-    Case c;
+    BlockCase c;
     make(draw, c);
     LevelState plain_level = c.level;
     BlockHits plain_hits;
@@ -94,7 +94,7 @@ TEST(SphereBlock, GivesTheSameBitsWithAndWithoutVectors) {
 TEST(SphereBlock, FindsTheMeetingPairsTheirKindAndWhichMayImprove) {
   for (std::uint64_t seed = 0; seed < 5000; ++seed) {
     Draw draw(seed);
-    Case c;
+    BlockCase c;
     make(draw, c);
     BlockHits hits;
     test_block(c.pair, c.placement, c.level, hits);
@@ -137,7 +137,7 @@ TEST(SphereBlock, FindsTheMeetingPairsTheirKindAndWhichMayImprove) {
 TEST(SphereBlock, NeverReportsUnusedLanes) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Draw draw(seed);
-    Case c;
+    BlockCase c;
     make(draw, c);
     for (SiblingBlock* block : {&c.rows, &c.lanes}) {
       for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
