@@ -182,7 +182,7 @@ void compare(const CompareCommand& command) {
   std::vector<Compared> all;
   for (std::size_t i = 0; i < lists.size(); ++i) all.push_back(measure_lists(surface, command.files[i], lists[i]));
   bar.clear();
-  json report = to_json(all, radius);
+  json report = compared_json(all, radius);
   add_solid_json(solid, report);
   report["provenance"] = to_json(destination.provenance);
   if (!command.plot.empty()) {
@@ -200,7 +200,7 @@ void compare(const CompareCommand& command) {
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(all, surface.mesh().triangles.size(), radius);
+    print_compared(all, surface.mesh().triangles.size(), radius);
     if (outputs) outputs->print();
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());
   }

@@ -293,7 +293,7 @@ void profile(const ProfileCommand& command) {
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print(report);
+    print_profile(report);
     if (outputs) outputs->print();
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());
     if (!command.csv.empty()) fmt::print("  {}  (every pose)\n", command.csv.string());
