@@ -92,7 +92,7 @@ const std::vector<Group>& groups() {
                   "up",         "json",          "quiet",      "force",        "accept",       "plot",         "csv",
                   "envelope",   "envelope-cell", "curve",      "spheres tree", "spheres link", "record",       "cells",
                   "cost",       "bins",          "beside",     "tool-frame",   "joints",       "acceleration", "jerk",
-                  "resolution", "density",       "trajectory", "trees",        "no-picture"}},
+                  "resolution", "density",       "trajectory", "trees",        "no-picture",   "light"}},
       {"Quality",
        {"method",      "depth",        "branching", "spheres",      "effort",       "objective",    "error",
         "region",      "time",         "fit",       "volume-error", "solid",        "padding",      "min-radius",

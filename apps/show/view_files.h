@@ -1,0 +1,25 @@
+#pragma once
+#ifdef ORCHARD_HAS_VIZ
+#include <filesystem>
+#include <vector>
+
+#include "orchard/viz/view.h"
+
+// What `orchard view` draws, read from files.
+namespace orchard::apps {
+
+// One moment of a series.
+struct TimeStep {
+  double time = 0;
+  std::vector<std::filesystem::path> files;  // .vtp and .vtu
+};
+
+// Reads a ParaView collection (.pvd): the moments in the order of time, each with all of its parts. Throws InputError if
+// the file is no collection, if it is empty, or if it names a file that is missing or cannot be drawn.
+std::vector<TimeStep> read_series(const std::filesystem::path& pvd);
+
+// Adds the contents of a file to the scene by its ending. `talk`: print what reading a mesh changed. Throws InputError.
+void add_file(const std::filesystem::path& file, Scene& scene, bool talk);
+
+}  // namespace orchard::apps
+#endif
