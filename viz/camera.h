@@ -33,8 +33,8 @@ View steady(View view, const std::vector<Extent>& extents);
 
 // Places in a picture: x to the right and y upward in pixels from its lower left corner, z towards the eye.
 struct Projection {
-  Eigen::Vector3d right, up, backward, center;  // as of a View
-  double unit = 1;                              // the length of a pixel
+  Eigen::Vector3d right, up, backward, center;       // as of a View
+  double unit = 1;                                   // the length of a pixel
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // where the centre is
 
   Eigen::Vector3d operator()(const Eigen::Vector3d& place) const;

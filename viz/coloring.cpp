@@ -22,9 +22,9 @@ namespace orchard::detail {
 namespace {
 
 constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
-const std::set<std::string> kCategories{"answer", "body", "branch",  "carried",   "cluster",        "component", "kind",
-                                        "measure", "node",      "origin",         "parent",    "segment",
-                                        "sheet",   "structure", "structure_kind", "trunk",     "wall"};
+const std::set<std::string> kCategories{"answer", "body",      "branch",         "carried", "cluster", "component",
+                                        "kind",   "measure",   "node",           "origin",  "parent",  "segment",
+                                        "sheet",  "structure", "structure_kind", "trunk",   "wall"};
 
 std::vector<vtkPolyData*> all_of(const ViewParts& parts) {
   std::vector<vtkPolyData*> all;

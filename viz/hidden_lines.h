@@ -6,8 +6,8 @@
 
 namespace orchard::detail {
 
-// What hides lines in a picture. Coordinates are those of the picture: x to the right, y upward, z towards the eye, which
-// is infinitely far away.
+// What hides lines in a picture. Coordinates are those of the picture: x to the right, y upward, z towards the eye,
+// which is infinitely far away.
 class Occluders {
  public:
   // Nothing hides a line that is nearer to it than `slack`, along z: lines lie on the surfaces that they belong to.

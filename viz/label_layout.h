@@ -6,8 +6,8 @@ namespace orchard::detail {
 
 // A word and the place that it belongs to, in pixels from the lower left corner of a picture.
 struct PlacedWord {
-  Eigen::Vector2d anchor;  // the place
-  Eigen::Vector2d size;    // of the word
+  Eigen::Vector2d anchor;                            // the place
+  Eigen::Vector2d size;                              // of the word
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // of the word, chosen by place_words()
 };
 

@@ -23,8 +23,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSlack = 2e-4;         // of the larger side of the panel: how near a line is to what it lies on
-constexpr int kCircle = 72;             // sides of a circle: its chords are within Occluders' slack for spheres
+constexpr double kSlack = 2e-4;  // of the larger side of the panel: how near a line is to what it lies on
+constexpr int kCircle = 72;      // sides of a circle: its chords are within Occluders' slack for spheres
 constexpr std::size_t kMostMeetings = 20'000;
 
 // Without doubled points, cut by the plane.
@@ -72,7 +72,8 @@ std::vector<Side> sides_of(const std::vector<std::array<int, 3>>& triangles) {
   return sides;
 }
 
-// Whether both triangles are on one side of their common edge, as seen: one of them faces the eye and the other does not.
+// Whether both triangles are on one side of their common edge, as seen: one of them faces the eye and the other does
+// not.
 bool is_outline(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
   const auto side = [&](const Vector3d& p) {
     return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
@@ -136,7 +137,8 @@ void LineArt::add_edges(vtkPolyData* surface, Surface kind, int first) {
       const Kind of_axis = end - i == 1 ? Kind::border : Kind::seam;
       add(axis && !on_cut(sides[i].a, sides[i].b) ? of_axis : Kind::sharp);
     } else {
-      const Vector3d &a = at(sides[i].a), &b = at(sides[i].b), &c = at(sides[i].opposite), &d = at(sides[i + 1].opposite);
+      const Vector3d &a = at(sides[i].a), &b = at(sides[i].b), &c = at(sides[i].opposite),
+                     &d = at(sides[i + 1].opposite);
       if (is_outline(a, b, c, d))
         add(Kind::outline);
       else if (!axis && is_sharp(a, b, c, d))
@@ -163,8 +165,7 @@ void LineArt::add_meeting(const Ball& one, const Ball& other) {
   const Vector3d between = other.center - one.center;
   const double distance = between.norm();
   if (distance >= one.radius + other.radius || distance <= std::abs(one.radius - other.radius)) return;
-  const double along =
-      (distance * distance + one.radius * one.radius - other.radius * other.radius) / (2 * distance);
+  const double along = (distance * distance + one.radius * one.radius - other.radius * other.radius) / (2 * distance);
   const double radius = std::sqrt(std::max(0.0, one.radius * one.radius - along * along));
   const Vector3d normal = between / distance, u = normal.unitOrthogonal();
   add_circle(one.center + along * normal, radius * u, radius * normal.cross(u));

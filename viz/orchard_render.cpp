@@ -24,8 +24,8 @@ void render(const Request& request) {
                                                    .opacity = request.opacity,
                                                    .whole = request.whole,
                                                    .figure = request.figure});
-  const bool from_behind = std::any_of(content.panels.begin(), content.panels.end(),
-                                       [](const Panel& panel) { return panel.from_behind; });
+  const bool from_behind =
+      std::any_of(content.panels.begin(), content.panels.end(), [](const Panel& panel) { return panel.from_behind; });
   const Views views = views_of(request, content.extents, from_behind);
   const Layout layout = make_layout(request,
                                     {.panels = static_cast<int>(content.panels.size()),

@@ -59,8 +59,8 @@ inline Color color_at(const ColorMap& map, double t) {
   const std::size_t below = std::min(static_cast<std::size_t>(place), map.colors.size() - 2);
   Color color{};
   for (std::size_t c = 0; c < 3; ++c)
-    color[c] = map.colors[below][c] +
-               (place - static_cast<double>(below)) * (map.colors[below + 1][c] - map.colors[below][c]);
+    color[c] =
+        map.colors[below][c] + (place - static_cast<double>(below)) * (map.colors[below + 1][c] - map.colors[below][c]);
   return color;
 }
 

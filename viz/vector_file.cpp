@@ -36,7 +36,8 @@ template <class Visit>
 void visit_looks(const std::vector<VectorLine>& lines, const Visit& visit) {
   for (std::size_t begin = 0; begin < lines.size();) {
     std::size_t end = begin;
-    while (end < lines.size() && lines[end].color == lines[begin].color && lines[end].width == lines[begin].width) ++end;
+    while (end < lines.size() && lines[end].color == lines[begin].color && lines[end].width == lines[begin].width)
+      ++end;
     visit(begin, end);
     begin = end;
   }
@@ -90,11 +91,12 @@ std::string latin(const std::string& text) {
 }
 
 // Helvetica's widths of the characters from the blank to the tilde, in thousandths of the size.
-constexpr std::array<int, 95> kWidths{
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556, 556, 556, 556, 556, 556,
-    556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
-    667, 778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556,
-    556, 222, 222, 500, 222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584};
+constexpr std::array<int, 95> kWidths{278,  278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278,
+                                      556,  556, 556, 556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556,
+                                      1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
+                                      667,  778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556,
+                                      333,  556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556,
+                                      556,  556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584};
 
 double width_of(const std::string& latin_text, double size) {
   int sum = 0;
@@ -175,10 +177,12 @@ std::string to_pdf(const VectorPicture& picture) {
     return std::string("<< /Type /Font /Subtype /Type1 /BaseFont /") + name + " /Encoding /WinAnsiEncoding >>";
   };
   const std::array<std::string, 6> objects{
-      "<< /Type /Catalog /Pages 2 0 R >>", "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
+      "<< /Type /Catalog /Pages 2 0 R >>",
+      "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
       "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " + short_number(picture.width) + " " +
           short_number(picture.height) + "] /Contents 6 0 R /Resources << /Font << /F 4 0 R /B 5 0 R >> >> >>",
-      font("Helvetica"), font("Helvetica-Bold"),
+      font("Helvetica"),
+      font("Helvetica-Bold"),
       "<< /Filter /FlateDecode /Length " + std::to_string(content.size()) + " >>\nstream\n" + content + "\nendstream"};
   std::string bytes = "%PDF-1.4\n", table = "0000000000 65535 f \n";
   for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -14,8 +14,8 @@
 namespace orchard::detail {
 namespace {
 
-std::vector<VectorLine> lines_of(const ViewParts& parts, int level, const Request& request, const Projection& projection,
-                                 const Layout& layout) {
+std::vector<VectorLine> lines_of(const ViewParts& parts, int level, const Request& request,
+                                 const Projection& projection, const Layout& layout) {
   LineArt art(projection, layout.panel_width, layout.panel_height);
   if (request.figure.clip) art.clip(*request.figure.clip);
   for (const auto& part : parts.axes) {

@@ -57,8 +57,8 @@ struct PartLook {
   bool edges = false;                                  // borders and seams of axes, feature edges of .vtp files
   bool balls = false;                                  // the balls of axes
   const ColorMap* map = &kViridis;
-  std::array<double, 2> radii{0, 1};  // at the ends of the map, where axes have their own colours
-  const Coloring* coloring = nullptr;                  // null: each thing in its own colours
+  std::array<double, 2> radii{0, 1};   // at the ends of the map, where axes have their own colours
+  const Coloring* coloring = nullptr;  // null: each thing in its own colours
 };
 
 // What is seen whatever the level. Of meshes beside other things the faces' actors come back, for their opacity.

@@ -72,8 +72,8 @@ void add_figure(CLI::App& command, ViewCommand& view) {
   command.add_flag("--transparent", view.transparent, "Make the background transparent");
   command.add_option("--turn", view.turn, "Draw this many pictures of a full turn: PICTURE-001.png ..")
       ->check(CLI::Range(2, 3600));
-  CLI::Option* frame = command.add_option("--frame", view.frame,
-                                          "Time step of series (.pvd) to draw, from 1 (default: the last one)");
+  CLI::Option* frame =
+      command.add_option("--frame", view.frame, "Time step of series (.pvd) to draw, from 1 (default: the last one)");
   frame->check(CLI::Range(1, 1'000'000));
   command
       .add_flag("--play", view.play,
@@ -91,7 +91,8 @@ void add_view(CLI::App& app, Request& request) {
                   "(.vor), meshes (.obj, .ply, .stl, .off), points (.xyz), views (.vtp, .vtu) or series of views, such "
                   "as simulations (.pvd)")
       ->required();
-  command.add_option("-o,--output", view.picture, "Picture to write: .png, or .svg or .pdf for a picture of lines, which needs no display. With "
+  command.add_option("-o,--output", view.picture,
+                     "Picture to write: .png, or .svg or .pdf for a picture of lines, which needs no display. With "
                      "--window, the key s saves it (.png)");
   add_list(
       command, "--level", view.levels,
@@ -103,7 +104,9 @@ void add_view(CLI::App& app, Request& request) {
   command.add_option("--up", view.up, "Axis that points up")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels, or points of a picture of lines (default: fits the model; 1000x800 for a window)");
+  command.add_option(
+      "--size", view.size,
+      "WIDTHxHEIGHT in pixels, or points of a picture of lines (default: fits the model; 1000x800 for a window)");
   command
       .add_option("--opacity", view.opacity,
                   "Opacity of meshes that are drawn around something else. 0 hides them, 1 hides what is inside")

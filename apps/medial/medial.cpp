@@ -136,10 +136,11 @@ struct Judged {
   std::string name;
 };
 
-// The first axis and those beside it in one table, and where the first one is worst: printed, and into `report`. Returns
-// the axes for a picture.
+// The first axis and those beside it in one table, and where the first one is worst: printed, and into `report`.
+// Returns the axes for a picture.
 std::vector<PicturedAxis> report_quality(const MedialCommand& command, const SolidMesh& solid, const Judged& first,
-                    const std::vector<AxisFile>& beside, json& report, const Progress& progress, ProgressBar& bar) {
+                                         const std::vector<AxisFile>& beside, json& report, const Progress& progress,
+                                         ProgressBar& bar) {
   std::vector<JudgedAxis> axes{{first.name, first.judgement}};
   std::vector<PicturedAxis> pictured{{"", &first.mesh, first.judgement.quality.worst}};
   json others = json::array();

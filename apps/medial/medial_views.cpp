@@ -95,7 +95,8 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
 
 std::vector<std::string> view_names(const std::filesystem::path& model) {
   std::vector<std::string> names;
-  for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-parts.vtm", "-medial.pvsm", "-medial-view.py", "-medial-outline.vtp", "-medial-light.vtp", "-medial-vertices.vtp", "-medial-edges.vtp",
+  for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-parts.vtm", "-medial.pvsm", "-medial-view.py",
+                             "-medial-outline.vtp", "-medial-light.vtp", "-medial-vertices.vtp", "-medial-edges.vtp",
                              "-medial-faces.vtp", "-medial-contacts.vtp", "-medial-mesh.vtp", "-medial-points.vtp",
                              "-medial-thickness.vtp", "-medial-skeleton.vtp", "-medial-worst.vtp", "-medial.png"})
     names.push_back(named(model, ending));
@@ -184,7 +185,8 @@ Index write_light_balls(const MedialCommand& command, const MedialAxis& axis, Ou
   const std::vector<Index> vertices = light_balls(all, command.light_balls);
   for (const Index vertex : vertices) kept.push_back(all[vertex]);
   const std::string what = fmt::format(
-      "{} of its {} balls, the largest of each region (--light); all of them as spheres take about {:.1f} s to draw without a graphics card",
+      "{} of its {} balls, the largest of each region (--light); all of them as spheres take about {:.1f} s to draw "
+      "without a graphics card",
       kept.size(), all.size(), kSecondsPerGlyph * static_cast<double>(all.size()));
   write_balls(outputs.add(named(command.mesh, "-medial-light.vtp"), what), kept, vertices);
   return static_cast<Index>(kept.size());
@@ -197,7 +199,8 @@ void write_collections(const MedialCommand& command, const std::vector<NamedFile
     if (part.name == "medial faces" || part.name == "skeleton" || part.name == "worst places") seen.push_back(part);
   write_multiblock(outputs.add(named(command.mesh, "-medial.vtm"), "the axis between the lines of its solid"), seen);
   write_multiblock(
-      outputs.add(named(command.mesh, "-medial-parts.vtm"), "mesh, points, parts of the axis and skeleton at once"), parts);
+      outputs.add(named(command.mesh, "-medial-parts.vtm"), "mesh, points, parts of the axis and skeleton at once"),
+      parts);
 }
 
 }  // namespace

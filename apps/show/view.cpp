@@ -203,8 +203,7 @@ void check_view(const ViewCommand& command) {
 // Cut spheres are no outlines of spheres, and polyhedra in a heap no lines that one could read.
 void check_lines(const ViewCommand& command, const Scene& scene) {
   if (!is_of_lines(command)) return;
-  if (!scene.diagrams.empty())
-    throw InputError("view: a picture of lines shows no Voronoi diagram; name a .png file");
+  if (!scene.diagrams.empty()) throw InputError("view: a picture of lines shows no Voronoi diagram; name a .png file");
   if (!command.clip.empty() && (!scene.trees.empty() || command.balls))
     throw InputError("view: --clip cuts no spheres in a picture of lines; name a .png file");
 }
@@ -217,9 +216,10 @@ SeriesList read_all_series(const ViewCommand& command) {
   if (all.empty() && (command.play || command.frame > 0))
     throw InputError("view: --play and --frame belong to a series (.pvd), and there is none among the files");
   if (command.play && command.turn > 0 && command.turn != length)
-    throw InputError(fmt::format("--turn {}: with --play there is a picture for each of the {} time steps; turn by as "
-                                 "many",
-                                 command.turn, length));
+    throw InputError(
+        fmt::format("--turn {}: with --play there is a picture for each of the {} time steps; turn by as "
+                    "many",
+                    command.turn, length));
   if (command.frame > length)
     throw InputError(fmt::format("--frame {}: the series has {} time steps", command.frame, length));
   return all;
@@ -284,8 +284,7 @@ void view(const ViewCommand& command) {
 
   const Writing writing;
   if (command.window) picture.title = "orchard: " + command.files.front().filename().string();
-  for (const ViewFrame& frame : frames)
-    draw_frame(command, frame, scene_at(frame.step, still, series), picture, line);
+  for (const ViewFrame& frame : frames) draw_frame(command, frame, scene_at(frame.step, still, series), picture, line);
 }
 
 #else

@@ -14,8 +14,8 @@ struct TimeStep {
   std::vector<std::filesystem::path> files;  // .vtp and .vtu
 };
 
-// Reads a ParaView collection (.pvd): the moments in the order of time, each with all of its parts. Throws InputError if
-// the file is no collection, if it is empty, or if it names a file that is missing or cannot be drawn.
+// Reads a ParaView collection (.pvd): the moments in the order of time, each with all of its parts. Throws InputError
+// if the file is no collection, if it is empty, or if it names a file that is missing or cannot be drawn.
 std::vector<TimeStep> read_series(const std::filesystem::path& pvd);
 
 // Adds the contents of a file to the scene by its ending. `talk`: print what reading a mesh changed. Throws InputError.

@@ -99,10 +99,8 @@ void draw_holes(const std::filesystem::path& mesh, const std::string& up, const 
   const double diagonal = surface.bounding_box().diagonal().norm();
   const SurfaceSampling points = points_of(surface);
   MedialMesh balls = as_triangles(spheres);
-  MedialErrorsOfAxis errors{.mesh = &balls,
-                            .coverage = {},
-                            .protrusion = std::vector<double>(balls.centers.size(), 0),
-                            .worst = {}};
+  MedialErrorsOfAxis errors{
+      .mesh = &balls, .coverage = {}, .protrusion = std::vector<double>(balls.centers.size(), 0), .worst = {}};
   for (const Point& point : points.points)
     errors.coverage.push_back(100 / diagonal * std::max(0.0, gap_from(spheres, point)));
   for (std::size_t i = 0; surface.solid() && i < balls.centers.size(); ++i)
@@ -112,8 +110,8 @@ void draw_holes(const std::filesystem::path& mesh, const std::string& up, const 
   picture.title = mesh.stem().string();
   picture.up = parse_up(up);
   picture.progress = cancelled_by_interrupts();
-  if (is_drawn(draw_medial_errors(
-          outputs.staged(name), {.surface = &surface, .sampling = &points, .axes = {std::move(errors)}}, picture)))
+  if (is_drawn(draw_medial_errors(outputs.staged(name),
+                                  {.surface = &surface, .sampling = &points, .axes = {std::move(errors)}}, picture)))
     outputs.add(name, "where the surface is open and where spheres stick out, as a picture");
 }
 #else

@@ -7,8 +7,8 @@
 #include "palette.h"
 
 // Colours as eyes see them that miss one kind of cones: maps keep their order, and kinds of lines stay apart. The
-// simulation is that of Machado, Oliveira and Fernandes (2009) at full severity, on linear light; distances are those of
-// CIELAB (1976) under D65.
+// simulation is that of Machado, Oliveira and Fernandes (2009) at full severity, on linear light; distances are those
+// of CIELAB (1976) under D65.
 namespace orchard::detail {
 namespace {
 
@@ -72,8 +72,8 @@ TEST(ColorMaps, HaveEvenStepsOfLightnessForEyesWithAllCones) {
     const Eye& eye = eyes().front();
     const double even = (lab(color_at(map, 1), eye)[0] - lab(color_at(map, 0), eye)[0]) / kSteps;
     for (int i = 0; i < kSteps; ++i) {
-      const double step = lab(color_at(map, (i + 1.0) / kSteps), eye)[0] -
-                          lab(color_at(map, static_cast<double>(i) / kSteps), eye)[0];
+      const double step =
+          lab(color_at(map, (i + 1.0) / kSteps), eye)[0] - lab(color_at(map, static_cast<double>(i) / kSteps), eye)[0];
       EXPECT_NEAR(step / even, 1, 0.5) << map.name << " at step " << i;
     }
   }

@@ -110,8 +110,8 @@ TEST(LineChains, CloseLoops) {
   LineChains chains({Vector2d(0, 0), Vector2d(10, 10)});
   const std::vector<Vector2d> corners{{1, 1}, {5, 1}, {5, 5}, {1, 5}};
   for (int i = 0; i < 4; ++i)
-    chains.add({i, (i + 1) % 4}, corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>((i + 1) % 4)], 0,
-               1);
+    chains.add({i, (i + 1) % 4}, corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>((i + 1) % 4)],
+               0, 1);
   const auto lines = chains.joined();
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].size(), 10u) << "the first corner comes again at the end";

@@ -352,8 +352,9 @@ TEST(Medial, DrawsTheAxesBesideItInItsPicture) {
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
   const std::string other = here.add("other.ma", std::string("2 1 0\nv .4 .4 .4 .3\nv .6 .4 .4 .3\ne 0 1\n"));
   const auto height = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all{"medial", mesh, "-o", out, "--samples", "150", "--report", "--quality-samples", "200",
-                                 "--picture", "--no-views", "--quiet"};
+    std::vector<std::string> all{"medial",    mesh,        "-o",         out,
+                                 "--samples", "150",       "--report",   "--quality-samples",
+                                 "200",       "--picture", "--no-views", "--quiet"};
     all.insert(all.end(), more.begin(), more.end());
     const Finished run = here.run(all);
     EXPECT_EQ(run.exit_code, 0) << run.err;

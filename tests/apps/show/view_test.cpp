@@ -183,12 +183,13 @@ TEST(View, DrawsSphereSetsAndSimulations) {
   const struct {
     std::vector<std::string> arguments;
     const char* named;
-  } cases[] = {{{out + "/box-run.pvd", "--frame", "9"}, "the series has 3 time steps"},
-               {{spheres, "--play"}, "belong to a series"},
-               {{here.add("a.pvd", std::string("<VTKFile>")), "--frame", "1"}, "no collection"},
-               {{here.add("b.pvd", std::string("<VTKFile><Collection/></VTKFile>"))}, "no time step"},
-               {{here.add("c.pvd", std::string("<VTKFile><Collection><DataSet file=\"gone.vtp\"/></Collection></VTKFile>"))},
-                "gone.vtp"}};
+  } cases[] = {
+      {{out + "/box-run.pvd", "--frame", "9"}, "the series has 3 time steps"},
+      {{spheres, "--play"}, "belong to a series"},
+      {{here.add("a.pvd", std::string("<VTKFile>")), "--frame", "1"}, "no collection"},
+      {{here.add("b.pvd", std::string("<VTKFile><Collection/></VTKFile>"))}, "no time step"},
+      {{here.add("c.pvd", std::string("<VTKFile><Collection><DataSet file=\"gone.vtp\"/></Collection></VTKFile>"))},
+       "gone.vtp"}};
   for (const auto& [arguments, named] : cases) {
     std::vector<std::string> all{"view", "-o", picture};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -203,8 +204,8 @@ TEST(View, ColorsByTheMapThatIsNamed) {
   const Workplace here;
   const std::string axis = here.add("rod.ma", std::string("3 2 0\nv 1 1 1 1\nv 3 1 1 1\nv 5 1 1 .5\ne 0 1\ne 1 2\n"));
   const auto drawn = [&](const std::string& map) {
-    const Finished run = here.run({"view", axis, "-o", (here / "v.png").string(), "--balls", "--color", "radius", "--map",
-                                   map, "--size", "200x100", "--quiet"});
+    const Finished run = here.run({"view", axis, "-o", (here / "v.png").string(), "--balls", "--color", "radius",
+                                   "--map", map, "--size", "200x100", "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return here.files("").at("v.png");
   };

@@ -39,11 +39,11 @@ struct Figure {
   std::optional<std::array<double, 4>> clip = {};  // a, b, c, d: parts with a x + b y + c z > d are cut away.
   std::optional<Box> room = {};  // A box that must fit into the picture beside the items: for pictures of a series.
   bool edges = false;            // Borders (black) and seams (orange) of axes, and feature edges of .vtp files.
-  bool balls = false;        // The balls of axes instead of their sheets.
-  bool beside = false;       // A panel for each item, with the meshes around it, instead of one panel for all.
-  bool captions = true;      // Captions below the panels.
-  bool transparent = false;  // No white background.
-  bool steady = false;       // Enough room for all items from all directions, for turntables.
+  bool balls = false;            // The balls of axes instead of their sheets.
+  bool beside = false;           // A panel for each item, with the meshes around it, instead of one panel for all.
+  bool captions = true;          // Captions below the panels.
+  bool transparent = false;      // No white background.
+  bool steady = false;           // Enough room for all items from all directions, for turntables.
 };
 
 // The items of a picture.
@@ -76,8 +76,8 @@ Box bounds_of_data(const std::vector<std::filesystem::path>& files);
 
 // Draws a .png file, or a picture of lines: .svg or .pdf. Uses all members of `picture` except the values. A picture of
 // lines has the outlines and sharp edges of meshes and spheres, the borders, seams and curves of axes, and captions as
-// text; what is hidden is left out, and its sizes are points in place of pixels. It needs no display, ignores the colours
-// of the figure, and cannot show Voronoi diagrams.
+// text; what is hidden is left out, and its sizes are points in place of pixels. It needs no display, ignores the
+// colours of the figure, and cannot show Voronoi diagrams.
 PictureStatus draw_view(const std::filesystem::path& picture_file, const Scene& scene, const PipelinePicture& picture);
 
 // Opens a window on $DISPLAY and returns when it is closed. A status without a picture states why there was no window.
