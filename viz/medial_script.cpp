@@ -59,8 +59,9 @@ def color_by_value(shown, view, kind, array, title):
     shown.RescaleTransferFunctionToDataRange(False, True)
     bar = simple.GetScalarBar(colors, view)
     bar.Title, bar.ComponentTitle, bar.TitleColor, bar.LabelColor = title, "", [0.1] * 3, [0.1] * 3
-    bar.TitleFontSize, bar.LabelFontSize, bar.ScalarBarLength, bar.ScalarBarThickness = 16, 14, 0.33, 14
-    bar.RangeLabelFormat = bar.LabelFormat = "%.3g"
+    bar.TitleFontSize, bar.LabelFontSize, bar.ScalarBarLength, bar.ScalarBarThickness = 15, 14, 0.6, 14
+    bar.WindowLocation, bar.Position, bar.AddRangeLabels = "Any Location", [0.86, 0.2], 0
+    bar.LabelFormat = "%.3g"
     shown.SetScalarBarVisibility(view, True)
 
 
@@ -138,6 +139,8 @@ def main():
     options = arguments()
     simple._DisableFirstRenderCameraReset()  # which would step back further than the model needs
     view = simple.GetActiveViewOrCreate("RenderView")
+    if options.output:
+        view.ViewSize = options.size
     view.UseColorPaletteForBackground = 0
     view.Background = [1, 1, 1]
     view.OrientationAxesLabelColor = [0.1] * 3

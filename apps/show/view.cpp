@@ -147,14 +147,6 @@ struct ViewFrame {
   std::size_t step = 0;
 };
 
-using SeriesList = std::vector<std::vector<TimeStep>>;
-
-std::size_t length_of(const SeriesList& all) {
-  std::size_t length = 0;
-  for (const auto& series : all) length = std::max(length, series.size());
-  return length;
-}
-
 // The pictures, and which time step each shows; the last one if none is named.
 std::vector<ViewFrame> frames_of(const ViewCommand& command, std::size_t steps) {
   const std::size_t shown = command.frame > 0 ? command.frame - 1 : steps == 0 ? 0 : steps - 1;
@@ -225,24 +217,6 @@ SeriesList read_all_series(const ViewCommand& command) {
   return all;
 }
 
-// The files of a time step, beside those that are there in all of them. A series that is shorter stays at its end.
-Scene scene_at(std::size_t step, const Scene& still, const SeriesList& all) {
-  Scene scene = still;
-  for (const auto& series : all)
-    for (const std::filesystem::path& file : series[std::min(step, series.size() - 1)].files)
-      scene.data.push_back({file.filename().string(), file});
-  return scene;
-}
-
-// One camera for all pictures of a series.
-std::optional<Box> room_of(const SeriesList& all) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& series : all)
-    for (const TimeStep& step : series) files.insert(files.end(), step.files.begin(), step.files.end());
-  const Box box = bounds_of_data(files);
-  return box.isEmpty() ? std::nullopt : std::optional(box);
-}
-
 void draw_frame(const ViewCommand& command, const ViewFrame& frame, const Scene& scene, PipelinePicture picture,
                 const std::string& line) {
   const auto before = written_at(frame.file);
@@ -271,20 +245,25 @@ void view(const ViewCommand& command) {
     for (const ViewFrame& frame : frames) check_output(frame.file, command.files);
   const std::string line = line_of(provenance_of(command.run, command.files));
 
-  Scene still;
-  still.levels = command.levels;
-  still.opacity = command.opacity;
-  still.figure = figure_of(command);
-  if (command.play) still.figure.room = room_of(series);
+  Scene scene;
+  scene.levels = command.levels;
+  scene.opacity = command.opacity;
+  scene.figure = figure_of(command);
+  if (command.play) scene.figure.room = room_of(series);
   for (const std::filesystem::path& file : command.files)
-    if (lower_extension(file) != ".pvd") add_file(file, still, !command.quiet);
-  check_levels(still);
-  check_lines(command, still);
-  check_color(scene_at(frames.front().step, still, series));
+    if (lower_extension(file) != ".pvd") add_file(file, scene, !command.quiet);
+  check_levels(scene);
+  check_lines(command, scene);
+  const std::size_t still = scene.data.size();
+  show_step(frames.front().step, series, still, scene);
+  check_color(scene);
 
   const Writing writing;
   if (command.window) picture.title = "orchard: " + command.files.front().filename().string();
-  for (const ViewFrame& frame : frames) draw_frame(command, frame, scene_at(frame.step, still, series), picture, line);
+  for (const ViewFrame& frame : frames) {
+    show_step(frame.step, series, still, scene);
+    draw_frame(command, frame, scene, picture, line);
+  }
 }
 
 #else

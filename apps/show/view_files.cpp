@@ -64,6 +64,27 @@ std::vector<TimeStep> read_series(const fs::path& pvd) {
   return series;
 }
 
+std::size_t length_of(const SeriesList& all) {
+  std::size_t length = 0;
+  for (const auto& series : all) length = std::max(length, series.size());
+  return length;
+}
+
+void show_step(std::size_t step, const SeriesList& all, std::size_t still, Scene& scene) {
+  scene.data.erase(scene.data.begin() + static_cast<std::ptrdiff_t>(still), scene.data.end());
+  for (const auto& series : all)
+    for (const std::filesystem::path& file : series[std::min(step, series.size() - 1)].files)
+      scene.data.push_back({file.filename().string(), file});
+}
+
+std::optional<Box> room_of(const SeriesList& all) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& series : all)
+    for (const TimeStep& step : series) files.insert(files.end(), step.files.begin(), step.files.end());
+  const Box box = bounds_of_data(files);
+  return box.isEmpty() ? std::nullopt : std::optional(box);
+}
+
 void add_file(const fs::path& file, Scene& scene, bool talk) {
   const std::string extension = lower_extension(file), name = file.filename().string();
   if (extension == ".orchard" || extension == ".sph") {

@@ -156,7 +156,7 @@ def main():
     parser.add_argument("folder")
     parser.add_argument("recipe", choices=[*RECIPES, "animate", "all"])
     parser.add_argument("-o", "--output", default="picture.png")
-    parser.add_argument("--size", type=int, nargs=2, default=[540, 360])
+    parser.add_argument("--size", type=int, nargs=2, default=[500, 340])
     options = parser.parse_args()
     model = model_in(options.folder)
     simple._DisableFirstRenderCameraReset()
