@@ -137,9 +137,9 @@ std::vector<std::string> color_arrays(const Scene& scene) {
       std::smatch found;
       if (line.find("<DataArray") == std::string::npos || !std::regex_search(line, found, array)) continue;
       const std::string& own = found[1];
-      if (own != "Points" && own != "connectivity" && own != "offsets" &&
-          line.find("NumberOfComponents") == std::string::npos)
-        names.insert(own);
+      const bool one = line.find("NumberOfComponents") == std::string::npos ||
+                       line.find("NumberOfComponents=\"1\"") != std::string::npos;
+      if (one && own != "Points" && own != "connectivity" && own != "offsets" && own != "types") names.insert(own);
     }
   }
   return {names.begin(), names.end()};

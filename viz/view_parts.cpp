@@ -171,6 +171,8 @@ std::vector<Extent> extents_of(const ViewParts& parts) {
 
 std::vector<Extent> extents_of(const ViewParts& parts, const FigureOptions& figure) {
   std::vector<Extent> extents = extents_of(parts);
+  if (figure.balls)
+    for (const auto& part : parts.axes) extend(extents, part.second, "radius");
   if (figure.room) {
     const auto& [a, b, c, d, e, f] = *figure.room;
     extents.push_back({{a, b, c}, 0});
