@@ -69,7 +69,7 @@ void write_sphere_views(const std::filesystem::path& mesh, const std::string& pr
   const auto name = [&](const char* ending) { return named(mesh, prefix + ending); };
   const SurfaceSampling points = points_of(surface);
   ViewArray gaps{.name = "gap", .values = {}};
-  for (const Point& point : points.points) gaps.values.push_back(gap_from(spheres, point));
+  for (const Point& point : points.points) gaps.values.push_back(std::max(0.0, gap_from(spheres, point)));
   write_mesh(outputs.add(name("-mesh.vtp")), surface);
   write_points(outputs.add(name("-points.vtp")), points, {gaps});
   write_tree_level(outputs.add(name("-spheres.vtp")),
