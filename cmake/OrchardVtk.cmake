@@ -3,7 +3,7 @@
 # what links the static library orchard::viz links them too.
 enable_language(C)
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
-set(orchard_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources IOImage IOXML
+set(orchard_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources IOCore IOImage IOXML
   ImagingCore InteractionStyle RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)
 if(ORCHARD_BENCH)
   list(APPEND orchard_vtk_components IOGeometry)  # a rival of the OBJ reader

@@ -173,22 +173,18 @@ vtkSmartPointer<vtkActor> make_level(vtkPolyData* spheres) {
   return make_spheres(spheres);
 }
 
-vtkSmartPointer<vtkColorTransferFunction> viridis(const double range[2]) {
+vtkSmartPointer<vtkColorTransferFunction> transfer_function(const ColorMap& map, const double range[2]) {
   auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
-  for (std::size_t i = 0; i < kViridis.size(); ++i) {
-    const double t = static_cast<double>(i) / static_cast<double>(kViridis.size() - 1);
-    colors->AddRGBPoint(range[0] + t * (range[1] - range[0]), kViridis[i][0], kViridis[i][1], kViridis[i][2]);
+  for (std::size_t i = 0; i < map.colors.size(); ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(map.colors.size() - 1);
+    colors->AddRGBPoint(range[0] + t * (range[1] - range[0]), map.colors[i][0], map.colors[i][1], map.colors[i][2]);
   }
   return colors;
 }
 
 vtkSmartPointer<vtkColorTransferFunction> error_colors(double max) {
-  constexpr std::array kColors{rgb(0xdfe6ec), rgb(0xf4d58a), rgb(0xee8a3c), rgb(0xb3121d)};
-  auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
-  for (std::size_t i = 0; i < kColors.size(); ++i)
-    colors->AddRGBPoint(std::max(max, 1e-12) * static_cast<double>(i) / static_cast<double>(kColors.size() - 1),
-                        kColors[i][0], kColors[i][1], kColors[i][2]);
-  return colors;
+  const double range[2] = {0, std::max(max, 1e-12)};
+  return transfer_function(kHeat, range);
 }
 
 void extend(std::vector<Extent>& extents, vtkPolyData* data, const char* radius_array) {

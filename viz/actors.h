@@ -58,7 +58,7 @@ vtkSmartPointer<vtkActor> add_glass(vtkRenderer* renderer, vtkPolyData* mesh, do
 // The spheres of a tree's level, coloured by branch.
 vtkSmartPointer<vtkActor> make_level(vtkPolyData* spheres);
 
-vtkSmartPointer<vtkColorTransferFunction> viridis(const double range[2]);
+vtkSmartPointer<vtkColorTransferFunction> transfer_function(const ColorMap& map, const double range[2]);
 // Pale where a value is 0, red where it is `max`.
 vtkSmartPointer<vtkColorTransferFunction> error_colors(double max);
 

@@ -7,6 +7,7 @@
 #include "actors.h"
 
 class vtkDataObject;
+class vtkUnstructuredGrid;
 
 namespace orchard::detail {
 
@@ -22,5 +23,8 @@ class Blocks {
  private:
   std::vector<std::pair<std::string, vtkSmartPointer<vtkDataObject>>> blocks_;
 };
+
+// The polygons and lines of a grid, with the arrays of its points and cells. Other cells are left out.
+Data as_poly_data(vtkUnstructuredGrid* grid);
 
 }  // namespace orchard::detail

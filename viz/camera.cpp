@@ -12,6 +12,11 @@ using Eigen::Vector3d;
 
 constexpr double kMargin = 1.06;  // around what is drawn
 
+// The length of a pixel.
+double unit_of(const View& view, int width, int height, int caption_height) {
+  return kMargin * std::max(view.height / (height - caption_height), view.width / width);
+}
+
 }  // namespace
 
 View looking(const Direction& request) {
@@ -66,8 +71,22 @@ View steady(View view, const std::vector<Extent>& extents) {
   return view;
 }
 
+Eigen::Vector3d Projection::operator()(const Vector3d& place) const {
+  const Vector3d from = (place - center) / unit;
+  return {middle.x() + from.dot(right), middle.y() + from.dot(up), from.dot(backward)};
+}
+
+Projection projection_of(const View& view, int width, int height, int caption_height) {
+  return {view.right,
+          view.up,
+          view.backward,
+          view.center,
+          unit_of(view, width, height, caption_height),
+          Eigen::Vector2d(0.5 * width, 0.5 * (height + caption_height))};
+}
+
 void aim(vtkCamera* camera, const View& view, int width, int height, int caption_height) {
-  const double unit = kMargin * std::max(view.height / (height - caption_height), view.width / width);  // per pixel
+  const double unit = unit_of(view, width, height, caption_height);
   camera->ParallelProjectionOn();
   camera->SetParallelScale(0.5 * unit * height);
   const Vector3d focus = view.center - 0.5 * unit * caption_height * view.up;

@@ -7,10 +7,12 @@
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty.h>
+#include <vtkProperty2D.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <set>
@@ -20,9 +22,9 @@ namespace orchard::detail {
 namespace {
 
 constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
-const std::set<std::string> kCategories{"branch",  "carried",   "cluster",        "component", "kind",
-                                        "measure", "node",      "origin",         "parent",    "segment",
-                                        "sheet",   "structure", "structure_kind", "trunk",     "wall"};
+const std::set<std::string> kCategories{"answer", "body",      "branch",         "carried", "cluster", "component",
+                                        "kind",   "measure",   "node",           "origin",  "parent",  "segment",
+                                        "sheet",  "structure", "structure_kind", "trunk",   "wall"};
 
 std::vector<vtkPolyData*> all_of(const ViewParts& parts) {
   std::vector<vtkPolyData*> all;
@@ -85,6 +87,26 @@ void add_print(vtkRenderer* renderer, const std::string& text, double x, double 
   renderer->AddViewProp(actor);
 }
 
+// A short line on the right of the bar.
+void add_mark(vtkRenderer* renderer, double left, double right, double y, double width) {
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(left, y, 0);
+  points->InsertNextPoint(right, y, 0);
+  vtkNew<vtkCellArray> line;
+  const std::array<vtkIdType, 2> ends{0, 1};
+  line->InsertNextCell(2, ends.data());
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(line);
+  vtkNew<vtkPolyDataMapper2D> mapper;
+  mapper->SetInputData(data);
+  vtkNew<vtkActor2D> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(kInk[0], kInk[1], kInk[2]);
+  actor->GetProperty()->SetLineWidth(static_cast<float>(width));
+  renderer->AddViewProp(actor);
+}
+
 // Rectangles one above the other.
 vtkSmartPointer<vtkPolyData> bar(const Coloring& coloring, double left, double right, double low, double high) {
   constexpr int kSteps = 128;
@@ -123,7 +145,10 @@ Color Coloring::color_of(double value) const {
 
 std::optional<Coloring> coloring_of(const ViewParts& parts, const FigureOptions& figure) {
   if (figure.color.empty()) return std::nullopt;
-  Coloring coloring{.array = figure.color, .categories = kCategories.contains(figure.color), .colors = {}};
+  Coloring coloring{.array = figure.color,
+                    .title = figure.bar_title.empty() ? figure.color : figure.bar_title,
+                    .categories = kCategories.contains(figure.color),
+                    .colors = {}};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, 2> range{kInfinity, -kInfinity};
   bool found = false;
@@ -137,7 +162,7 @@ std::optional<Coloring> coloring_of(const ViewParts& parts, const FigureOptions&
   if (figure.range) range = *figure.range;
   if (range[0] == range[1]) range[1] = range[0] + std::max(1e-9, 1e-9 * std::abs(range[0]));
   coloring.range = range;
-  coloring.colors = viridis(range.data());
+  coloring.colors = transfer_function(*color_map(figure.map), range.data());
   coloring.colors->SetNanColor(kUndefined[0], kUndefined[1], kUndefined[2]);
   return coloring;
 }
@@ -182,10 +207,20 @@ void color_points(const Coloring& coloring, vtkPolyData* data) {
   });
 }
 
+std::vector<double> round_numbers(double low, double high) {
+  const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.5, 2.0, 1.0})
+    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
+  std::vector<double> numbers;
+  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) numbers.push_back(i * step + 0.0);
+  return numbers;
+}
+
 vtkSmartPointer<vtkRenderer> color_bar(const Coloring& coloring, int width, int height) {
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
   renderer->SetBackground(1, 1, 1);
-  const double low = 0.22 * height, high = 0.78 * height, left = 0.30 * width, right = 0.46 * width;
+  const double low = 0.15 * height, high = 0.85 * height, left = 0.30 * width, right = 0.46 * width;
   vtkNew<vtkPolyDataMapper2D> mapper;
   mapper->SetInputData(bar(coloring, left, right, low, high));
   mapper->SetScalarModeToUseCellFieldData();
@@ -194,15 +229,18 @@ vtkSmartPointer<vtkRenderer> color_bar(const Coloring& coloring, int width, int 
   vtkNew<vtkActor2D> actor;
   actor->SetMapper(mapper);
   renderer->AddViewProp(actor);
-  const int print = std::max(8, width / 8);
-  constexpr int kLabels = 5;
-  for (int i = 0; i < kLabels; ++i) {
-    const double t = static_cast<double>(i) / (kLabels - 1);
+  const int print = std::max(8, std::min(width / 7, height / 18));
+  const auto [from, to] = coloring.range;
+  for (const double number : round_numbers(from, to)) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.3g", coloring.range[0] + t * (coloring.range[1] - coloring.range[0]));
-    add_print(renderer, text, right + 0.06 * width, low + t * (high - low), print, false);
+    std::snprintf(text, sizeof text, "%.6g", number);
+    const double place = low + (number - from) / (to - from) * (high - low);
+    add_mark(renderer, right, right + 0.06 * width, place, std::max(1.0, print / 14.0));
+    add_print(renderer, text, right + 0.09 * width, place, print, false);
   }
-  add_print(renderer, coloring.array, 0.16 * width, 0.5 * (low + high), print, true);
+  constexpr double kLetter = 0.5;  // width of a letter, of the size of print
+  const double room = 0.98 * height / (kLetter * static_cast<double>(std::max<std::size_t>(coloring.title.size(), 1)));
+  add_print(renderer, coloring.title, 0.16 * width, 0.5 * (low + high), std::min(print, static_cast<int>(room)), true);
   return renderer;
 }
 

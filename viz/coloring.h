@@ -11,7 +11,7 @@ namespace orchard::detail {
 
 // The colours of an array's values, the same ones in all panels.
 struct Coloring {
-  std::string array;
+  std::string array, title;
   bool categories = false;  // numbers of things, each with a colour of its own
   std::array<double, 2> range{0, 1};
   vtkSmartPointer<vtkColorTransferFunction> colors;  // of those that are no categories
@@ -30,6 +30,8 @@ void apply(const Coloring& coloring, vtkPolyData* data, vtkActor* actor);
 // The points' `color`, for make_spheres(). Precondition: the points have the array.
 void color_points(const Coloring& coloring, vtkPolyData* data);
 
+// Multiples of 1, 2, 2.5 or 5 times a power of ten in [low, high], about five of them. Precondition: low < high.
+std::vector<double> round_numbers(double low, double high);
 // A bar of the colours with the name of the array and values beside it, in a picture of so many pixels.
 vtkSmartPointer<vtkRenderer> color_bar(const Coloring& coloring, int width, int height);
 

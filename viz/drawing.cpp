@@ -109,6 +109,8 @@ std::optional<std::string> failure_of(const std::string& where, int status, cons
   return std::nullopt;
 }
 
+bool is_vector_ending(const std::string& ending) { return ending == ".svg" || ending == ".pdf"; }
+
 // Runs orchard-render on one display; the reason why it failed, or nothing.
 std::optional<std::string> run_renderer(const Drawing& drawing, const std::string& display) {
   const PipelinePicture& picture = drawing.picture;
@@ -116,7 +118,7 @@ std::optional<std::string> run_renderer(const Drawing& drawing, const std::strin
   detail::ChildProcess child(
       {.program = drawing.renderer, .arguments = arguments_of(drawing), .display = display, .log = log});
   const std::optional<int> status = child.wait_until(Clock::now() + picture.timeout, picture.progress);
-  const std::string where = "orchard-render on display " + display;
+  const std::string where = display.empty() ? "orchard-render" : "orchard-render on display " + display;
   if (!status) return where + " took longer than " + std::to_string(picture.timeout.count()) + " s";
   return failure_of(where, *status, log);
 }
@@ -135,8 +137,9 @@ std::optional<std::string> run_on_virtual_display(const Drawing& drawing) {
   }
 }
 
-// Where there is a display it is tried first.
+// Pictures of lines need no display. Where there is a display it is tried first.
 std::optional<std::string> run_somewhere(const Drawing& drawing) {
+  if (is_vector_ending(drawing.png.extension().string())) return run_renderer(drawing, "");
   std::string reasons = "DISPLAY is not set";
   if (const std::string display = variable("DISPLAY"); !display.empty()) {
     const std::optional<std::string> failure = run_renderer(drawing, display);
@@ -184,7 +187,8 @@ PictureStatus detail::draw(const fs::path& png, const PipelinePicture& picture, 
     const TemporaryFolder folder;
     write(folder.path() / kPrefix);
     report_progress(picture.progress, "picture", 0);
-    const Drawing drawing{picture, more, renderer, folder.path(), folder.path() / "picture.png"};
+    const std::string ending = is_vector_ending(png.extension().string()) ? png.extension().string() : ".png";
+    const Drawing drawing{picture, more, renderer, folder.path(), folder.path() / ("picture" + ending)};
     if (const auto reason = run_somewhere(drawing)) return {false, *reason};
     write_file(png, content(drawing.png));
     return {true, {}};

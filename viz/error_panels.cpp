@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,14 +67,32 @@ void add_dents(Panel& panel, const Worst& dents) {
   }
 }
 
-Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places, double size, double line_width) {
-  Panel panel{make_renderer(size), "surface left uncovered", {}};
-  const vtkIdType count = points->GetNumberOfPoints();
-  vtkDataArray* coverage = require_array(points->GetPointData(), "coverage", count);
-  const double max = coverage->GetRange()[1];
+// An axis, and where it is bad.
+struct JudgedAxis {
+  std::string name;  // empty: the only one
+  Data points, medial, places;
+
+  double max_coverage() const { return max_of(points, "coverage"); }
+  double max_protrusion() const { return max_of(medial, "protrusion"); }
+
+ private:
+  static double max_of(vtkPolyData* data, const char* name) {
+    return require_array(data->GetPointData(), name, data->GetNumberOfPoints())->GetRange()[1];
+  }
+};
+
+std::string captioned(const JudgedAxis& axis, const char* caption) {
+  return axis.name.empty() ? caption : axis.name + ": " + caption;
+}
+
+// The colours reach to `max`, which is that of all axes.
+Panel coverage_panel(vtkPolyData* mesh, const JudgedAxis& axis, double max, double size, double line_width) {
+  Panel panel{make_renderer(size), captioned(axis, "surface left uncovered"), {}};
+  const vtkIdType count = axis.points->GetNumberOfPoints();
+  vtkDataArray* coverage = require_array(axis.points->GetPointData(), "coverage", count);
   const auto colors = error_colors(max);
   vtkNew<vtkPolyData> dots;
-  dots->SetPoints(points->GetPoints());
+  dots->SetPoints(axis.points->GetPoints());
   set_colors(dots->GetPointData(), count, [&](vtkIdType i) {
     Color color{};
     colors->GetColor(coverage->GetComponent(i, 0), color.data());
@@ -87,36 +106,57 @@ Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places
   panel.renderer->AddActor(make_actor(mesh, {0.93, 0.94, 0.95}));
   panel.renderer->AddActor(make_spheres(dots));
   panel.renderer->AddActor(edges(mesh, kFeatureAngle, line_width, 0.6));
-  describe(panel, worst_of(places, 1), max);
-  add_dents(panel, worst_of(places, 2));
+  describe(panel, worst_of(axis.places, 1), axis.max_coverage());
+  add_dents(panel, worst_of(axis.places, 2));
   return panel;
 }
 
-Panel protrusion_panel(vtkPolyData* mesh, vtkPolyData* medial, vtkPolyData* places, double size, double line_width) {
-  Panel panel{make_renderer(size), "balls that protrude", {}};
-  vtkDataArray* protrusion = require_array(medial->GetPointData(), "protrusion", medial->GetNumberOfPoints());
-  const double max = protrusion->GetRange()[1];
-  auto sheet = make_sheet(medial, "protrusion", error_colors(max));
+Panel protrusion_panel(vtkPolyData* mesh, const JudgedAxis& axis, double max, double size, double line_width) {
+  Panel panel{make_renderer(size), captioned(axis, "balls that protrude"), {}};
+  auto sheet = make_sheet(axis.medial, "protrusion", error_colors(max));
   sheet->GetProperty()->SetLineWidth(static_cast<float>(2 * line_width));
   panel.renderer->AddActor(sheet);
   add_glass(panel.renderer, mesh, line_width);
-  describe(panel, worst_of(places, 0), max);
+  describe(panel, worst_of(axis.places, 0), axis.max_protrusion());
   return panel;
+}
+
+// The first axis, and those beside it: the blocks "medial mesh 2: NAME" and so on.
+std::vector<JudgedAxis> axes_of(const Blocks& blocks) {
+  std::vector<JudgedAxis> axes{{"", blocks["surface points"], blocks["medial mesh"], blocks["worst places"]}};
+  for (const auto& [block, data] : blocks.all()) {
+    const std::string number = std::to_string(axes.size() + 1), begin = "medial mesh " + number + ": ";
+    if (!block.starts_with(begin)) continue;
+    axes.push_back({block.substr(begin.size()), blocks["surface points " + number], vtkPolyData::SafeDownCast(data),
+                    blocks["worst places " + number]});
+    if (axes.back().points == nullptr) throw std::runtime_error("a scene has no block 'surface points " + number + "'");
+  }
+  if (axes.size() > 1) axes.front().name = "this axis";
+  return axes;
 }
 
 }  // namespace
 
 Panels error_panels(const Blocks& blocks, double line_width) {
   Panels result;
-  const Data mesh = blocks["mesh"], points = blocks["surface points"], medial = blocks["medial mesh"];
+  const Data mesh = blocks["mesh"];
+  const std::vector<JudgedAxis> axes = axes_of(blocks);
   extend(result.extents, mesh, nullptr);
   result.size = 0.5 * mesh->GetLength();
-  for (const bool from_behind : {false, true}) {
-    result.panels.push_back(coverage_panel(mesh, points, blocks["worst places"], result.size, line_width));
-    result.panels.push_back(protrusion_panel(mesh, medial, blocks["worst places"], result.size, line_width));
-    for (std::size_t i = result.panels.size() - 2; from_behind && i < result.panels.size(); ++i) {
-      result.panels[i].from_behind = true;
-      result.panels[i].caption += ", from behind";
+  result.columns = 4;
+  double coverage = 0, protrusion = 0;
+  for (const JudgedAxis& axis : axes) {
+    coverage = std::max(coverage, axis.max_coverage());
+    protrusion = std::max(protrusion, axis.max_protrusion());
+  }
+  for (const JudgedAxis& axis : axes) {
+    for (const bool from_behind : {false, true}) {
+      result.panels.push_back(coverage_panel(mesh, axis, coverage, result.size, line_width));
+      result.panels.push_back(protrusion_panel(mesh, axis, protrusion, result.size, line_width));
+      for (std::size_t i = result.panels.size() - 2; from_behind && i < result.panels.size(); ++i) {
+        result.panels[i].from_behind = true;
+        result.panels[i].caption += ", from behind";
+      }
     }
   }
   return result;

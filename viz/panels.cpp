@@ -47,7 +47,7 @@ Panel axis_panel(vtkPolyData* mesh, vtkPolyData* faces, double size, double line
   Panel panel{make_renderer(size), "medial axis", counted(faces->GetNumberOfPoints(), "sphere") + ", colour: radius"};
   double range[2];
   require_array(faces->GetPointData(), "radius", faces->GetNumberOfPoints())->GetRange(range);
-  panel.renderer->AddActor(make_sheet(drawn_sheets(faces, kMinAngle), "radius", viridis(range)));
+  panel.renderer->AddActor(make_sheet(drawn_sheets(faces, kMinAngle), "radius", transfer_function(kViridis, range)));
   if (mesh != nullptr) add_glass(panel.renderer, mesh, line_width);
   return panel;
 }

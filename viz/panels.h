@@ -37,6 +37,7 @@ struct Panels {
   std::vector<Panel> panels;
   std::vector<Extent> extents;  // of everything, so that all panels share one camera
   double size = 1;              // a length of the model's order
+  int columns = 0;              // of panels; 0: as many as fit
   // Draws what the colours of all panels stand for, in so many pixels; empty: nothing that needs saying.
   std::function<vtkSmartPointer<vtkRenderer>(int width, int height)> color_bar = {};
 };

@@ -13,24 +13,6 @@ namespace {
 
 // The script as it is for every model; what differs is set in lines before it.
 constexpr const char* kScript = R"PY(
-import argparse
-import os
-import sys
-
-from paraview import simple
-
-
-def own_path():
-    """Where this file is. ParaView's window does not say it to the script that it was started with."""
-    if "__file__" in globals():
-        return os.path.abspath(__file__)
-    with open("/proc/self/cmdline", encoding="utf-8", errors="surrogateescape") as words:
-        return os.path.abspath(words.read().partition("\0--script")[2][1:].partition("\0")[0])
-
-
-FOLDER = os.path.dirname(own_path())
-
-
 def arguments():
     parser = argparse.ArgumentParser(description="A level of the sphere-tree around the mesh.")
     parser.add_argument("-o", "--output", help="save a picture (.png) here")
@@ -103,25 +85,44 @@ def main():
 main()
 )PY";
 
-std::string six_digits(double value) {
+bool measured(const SphereTree& tree) {
+  return std::all_of(tree.nodes.begin(), tree.nodes.end(),
+                     [](const SphereNode& node) { return std::isfinite(node.inaccuracy); });
+}
+
+}  // namespace
+
+const char* const kScriptBegin = R"PY(
+import argparse
+import os
+import sys
+
+from paraview import simple
+
+
+def own_path():
+    """Where this file is. ParaView's window does not say it to the script that it was started with."""
+    if "__file__" in globals():
+        return os.path.abspath(__file__)
+    with open("/proc/self/cmdline", encoding="utf-8", errors="surrogateescape") as words:
+        return os.path.abspath(words.read().partition("\0--script")[2][1:].partition("\0")[0])
+
+
+FOLDER = os.path.dirname(own_path())
+
+)PY";
+
+std::string python_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
 }
 
-std::string list(const Vector& v) {
-  std::string text = "[";
-  text.append(six_digits(v.x()))
-      .append(", ")
-      .append(six_digits(v.y()))
-      .append(", ")
-      .append(six_digits(v.z()))
-      .append("]");
-  return text;
+std::string python_list(const Vector& v) {
+  return "[" + python_number(v.x()) + ", " + python_number(v.y()) + ", " + python_number(v.z()) + "]";
 }
 
-// Within double quotes.
-std::string quoted(const std::string& text) {
+std::string python_quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -129,13 +130,6 @@ std::string quoted(const std::string& text) {
   }
   return result + "\"";
 }
-
-bool measured(const SphereTree& tree) {
-  return std::all_of(tree.nodes.begin(), tree.nodes.end(),
-                     [](const SphereNode& node) { return std::isfinite(node.inaccuracy); });
-}
-
-}  // namespace
 
 Vector towards_eye(UpAxis up) {
   constexpr double kAzimuth = 0.6, kElevation = 0.4;
@@ -175,13 +169,13 @@ void write_paraview_script(const std::filesystem::path& prefix, const PipelineVa
   std::string text = "\"\"\"What ParaView shows of " + name + ": paraview --script=" + name +
                      "-view.py, or without a window\npvbatch " + name +
                      "-view.py -o picture.png [--level K]. In ParaView the levels are steps of time.\n\"\"\"\n";
-  text += "PREFIX = " + quoted(name) + "\n";
-  text += "CENTER, RADIUS = " + list(scene.center) + ", " + six_digits(scene.radius) + "\n";
-  text += "HALF_HEIGHT = " + six_digits(scene.half_height) + "\n";
-  text += "TO_EYE, UP = " + list(scene.to_eye) + ", " + list(scene.up) + "\n";
+  text += "PREFIX = " + python_quoted(name) + "\n";
+  text += "CENTER, RADIUS = " + python_list(scene.center) + ", " + python_number(scene.radius) + "\n";
+  text += "HALF_HEIGHT = " + python_number(scene.half_height) + "\n";
+  text += "TO_EYE, UP = " + python_list(scene.to_eye) + ", " + python_list(scene.up) + "\n";
   text += "LAST_LEVEL = " + (values.tree ? std::to_string(values.tree->depth()) : std::string("-1")) + "\n";
-  if (values.tree) text += "COLOR = " + quoted(scene.color) + "\n";
-  write_file(with_ending(prefix, "-view.py"), text + kScript);
+  if (values.tree) text += "COLOR = " + python_quoted(scene.color) + "\n";
+  write_file(with_ending(prefix, "-view.py"), text + kScriptBegin + kScript);
 }
 
 }  // namespace orchard::detail

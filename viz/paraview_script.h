@@ -11,6 +11,14 @@ constexpr double kParaViewRoom = 1.15;  // the spheres of the first levels reach
 // From the right and above, as in the picture.
 Vector towards_eye(UpAxis up);
 
+// The beginning of every script: what it imports, own_path() and FOLDER, which is where it lies.
+extern const char* const kScriptBegin;
+
+// Values as Python has them.
+std::string python_number(double value);
+std::string python_list(const Vector& v);
+std::string python_quoted(const std::string& text);
+
 // From where ParaView looks, at what, and the array of a level's file that the spheres' colour stands for.
 struct ParaViewScene {
   Vector center;

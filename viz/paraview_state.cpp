@@ -70,8 +70,9 @@ class SceneWriter {
       for (int i = 0; i <= static_cast<int>(end - begin); ++i)
         add(begin + i, kDistinct[static_cast<std::size_t>(i) % kDistinct.size()]);
     } else {
-      for (std::size_t i = 0; i < kViridis.size(); ++i)
-        add(begin + static_cast<double>(i) / static_cast<double>(kViridis.size() - 1) * (end - begin), kViridis[i]);
+      const auto& colors = kViridis.colors;
+      for (std::size_t i = 0; i < colors.size(); ++i)
+        add(begin + static_cast<double>(i) / static_cast<double>(colors.size() - 1) * (end - begin), colors[i]);
     }
     return points;
   }

@@ -21,9 +21,16 @@ PictureStatus draw_medial_errors(const fs::path& png, const MedialErrorsPicture&
       return file;
     };
     write_mesh(add("mesh", "-mesh.vtp"), *errors.surface);
-    write_points(add("surface points", "-points.vtp"), *errors.sampling, {{"coverage", errors.coverage}});
-    write_medial_mesh(add("medial mesh", "-medial.vtp"), *errors.mesh, {{"protrusion", errors.protrusion}});
-    write_worst_places(add("worst places", "-worst.vtp"), errors.worst);
+    for (std::size_t i = 0; i < errors.axes.size(); ++i) {
+      const MedialErrorsOfAxis& axis = errors.axes[i];
+      const std::string number = i == 0 ? "" : " " + std::to_string(i + 1), name = i == 0 ? "" : ": " + axis.name;
+      const std::string ending = std::to_string(i + 1) + ".vtp";
+      write_points(add("surface points" + number, "-points-" + ending), *errors.sampling,
+                   {{"coverage", axis.coverage}});
+      write_medial_mesh(add("medial mesh" + number + name, "-medial-" + ending), *axis.mesh,
+                        {{"protrusion", axis.protrusion}});
+      write_worst_places(add("worst places" + number, "-worst-" + ending), axis.worst);
+    }
     write_multiblock(with_ending(prefix, ".vtm"), files);
   });
 }

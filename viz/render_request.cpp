@@ -4,14 +4,16 @@
 #include <map>
 #include <stdexcept>
 
+#include "palette.h"
+
 namespace orchard::detail {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: orchard-render VIEWS.vtm PICTURE.png [options]\n"
+    "usage: orchard-render VIEWS.vtm PICTURE.png|.svg|.pdf [options]\n"
     "Draws what \"orchard build\" or \"orchard medial\" wrote for ParaView, or a scene of \"orchard view\". Needs an X "
     "display, for instance by "
-    "xvfb-run.\n"
+    "xvfb-run, unless the picture is one of lines (.svg, .pdf).\n"
     "  --width N      pixels, 64 to 8192; 0 (default): as wide as the model needs\n"
     "  --height N     pixels, 64 to 8192; 0 (default): 560 for each row of panels\n"
     "  --up x|y|z     the model's axis that points up (y)\n"
@@ -21,12 +23,15 @@ constexpr const char* kUsage =
     "  --opacity A    of meshes in a scene that has more than them, 0 to 1 (0.16)\n"
     "  --whole        all Voronoi cells of a scene, not those of the half away from the eye: where a box has cut them\n"
     "  --color NAME   by an array of the points, or cells, with a bar of its colours\n"
+    "  --bar-title TEXT   beside this bar (the name)\n"
+    "  --map NAME     of the colours: viridis (default), cividis, blues, heat, grey\n"
     "  --range A,B    of these colours (that of all values)\n"
     "  --look-at X,Y,Z, --span W   a part of the scene, W wide and high\n"
     "  --clip A,B,C,D  cuts away what has A x + B y + C z > D\n"
     "  --edges        borders and seams of axes, feature edges of .vtp files\n"
     "  --balls        the balls of axes instead of their sheets\n"
     "  --beside       a panel for each thing, with the meshes around it\n"
+    "  --room X,Y,Z,X,Y,Z  two corners of a box that must fit in as well\n"
     "  --no-captions  nothing below the panels\n"
     "  --transparent  no ground\n"
     "  --steady       room for the scene from all directions\n"
@@ -74,6 +79,13 @@ bool set_figure(const std::string& option, const std::string& value, Request& re
     request.figure.color = value;
   } else if (option == "--range") {
     request.figure.range = numbers<2>(value);
+  } else if (option == "--bar-title") {
+    request.figure.bar_title = value;
+  } else if (option == "--map") {
+    if (color_map(value) == nullptr) throw std::out_of_range(value);
+    request.figure.map = value;
+  } else if (option == "--room") {
+    request.figure.room = numbers<6>(value);
   } else if (option == "--clip") {
     request.figure.clip = numbers<4>(value);
   } else if (option == "--look-at") {

@@ -1,6 +1,15 @@
 #include "orchard/viz/view.h"
 
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPointSet.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <regex>
@@ -9,6 +18,7 @@
 #include "drawing.h"
 #include "orchard/viz/medial_writer.h"
 #include "orchard/viz/voronoi_writer.h"
+#include "palette.h"
 
 namespace orchard {
 namespace {
@@ -48,7 +58,8 @@ void write_scene(const fs::path& prefix, const Scene& scene, const std::set<Inde
   for (const auto& [name, axis] : scene.axes) write_medial_mesh(files.add("view/axis/" + name, ".vtp"), axis);
   for (const auto& [name, diagram] : scene.diagrams)
     write_voronoi_cells(files.add("view/cells/" + name, ".vtu"), diagram);
-  for (const auto& [name, file] : scene.data) std::filesystem::copy_file(file, files.add("view/data/" + name, ".vtp"));
+  for (const auto& [name, file] : scene.data)
+    std::filesystem::copy_file(file, files.add("view/data/" + name, file.extension().c_str()));
   for (const auto& [name, points] : scene.points) {
     SurfaceSampling sampling;
     sampling.points = points;
@@ -60,6 +71,14 @@ void write_scene(const fs::path& prefix, const Scene& scene, const std::set<Inde
     for (const Index level : levels)
       write_tree_level(files.add("view/level/" + std::to_string(level) + "/" + name, ".vtp"), tree, level);
   files.write();
+}
+
+template <class Reader>
+vtkSmartPointer<vtkPointSet> points_of(const fs::path& file) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return vtkPointSet::SafeDownCast(reader->GetOutputAsDataSet());
 }
 
 std::string all_digits(double value) {
@@ -82,6 +101,12 @@ std::vector<std::string> arguments_of(const Figure& figure) {
     arguments.push_back(value);
   };
   if (!figure.color.empty()) add("--color", figure.color);
+  if (!figure.bar_title.empty()) add("--bar-title", figure.bar_title);
+  add("--map", figure.map);
+  if (figure.room) {
+    const Point &low = figure.room->min(), &high = figure.room->max();
+    add("--room", listed(std::array{low.x(), low.y(), low.z(), high.x(), high.y(), high.z()}));
+  }
   if (figure.range) add("--range", listed(*figure.range));
   if (figure.look_at)
     add("--look-at", listed(std::array{figure.look_at->x(), figure.look_at->y(), figure.look_at->z()}));
@@ -112,12 +137,35 @@ std::vector<std::string> color_arrays(const Scene& scene) {
       std::smatch found;
       if (line.find("<DataArray") == std::string::npos || !std::regex_search(line, found, array)) continue;
       const std::string& own = found[1];
-      if (own != "Points" && own != "connectivity" && own != "offsets" &&
-          line.find("NumberOfComponents") == std::string::npos)
-        names.insert(own);
+      const bool one = line.find("NumberOfComponents") == std::string::npos ||
+                       line.find("NumberOfComponents=\"1\"") != std::string::npos;
+      if (one && own != "Points" && own != "connectivity" && own != "offsets" && own != "types") names.insert(own);
     }
   }
   return {names.begin(), names.end()};
+}
+
+std::vector<std::string> color_map_names() {
+  std::vector<std::string> names;
+  for (const detail::ColorMap& map : detail::kColorMaps) names.emplace_back(map.name);
+  return names;
+}
+
+Box bounds_of_data(const std::vector<fs::path>& files) {
+  Box box;
+  for (const fs::path& file : files) {
+    const vtkSmartPointer<vtkPointSet> data = file.extension() == ".vtu" ? points_of<vtkXMLUnstructuredGridReader>(file)
+                                                                         : points_of<vtkXMLPolyDataReader>(file);
+    vtkDataArray* radii = data->GetPointData()->GetArray("radius");
+    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+      Point center;
+      data->GetPoint(i, center.data());
+      const double radius = radii == nullptr ? 0 : radii->GetComponent(i, 0);
+      box.extend(center - Point::Constant(radius));
+      box.extend(center + Point::Constant(radius));
+    }
+  }
+  return box;
 }
 
 PictureStatus draw_view(const fs::path& png, const Scene& scene, const PipelinePicture& picture) {

@@ -60,10 +60,19 @@ void clip(vtkRenderer* renderer, const std::array<double, 4>& plane) {
 
 }  // namespace
 
+std::vector<PanelParts> panel_parts(const ViewParts& parts, const FigureOptions& figure) {
+  std::vector<PanelParts> all;
+  for (const ViewParts& seen : figure.beside ? beside(parts) : one_diagram_each(parts)) {
+    for (const auto& [level, trees] : seen.levels) all.push_back({seen, level});
+    if (seen.levels.empty()) all.push_back({seen, -1});
+  }
+  return all;
+}
+
 Panels view_panels(const ViewParts& parts, const PanelOptions& options) {
   const FigureOptions& figure = options.figure;
   Panels result;
-  result.extents = extents_of(parts);
+  result.extents = extents_of(parts, figure);
   result.size = size_of(parts);
   const std::optional<Coloring> coloring = coloring_of(parts, figure);
   if (coloring && !coloring->categories)
@@ -74,19 +83,15 @@ Panels view_panels(const ViewParts& parts, const PanelOptions& options) {
                       .backward = options.whole ? std::nullopt : std::optional(options.backward),
                       .edges = figure.edges,
                       .balls = figure.balls,
+                      .map = color_map(figure.map),
+                      .radii = radii_of_axes(parts),
                       .coloring = coloring ? &*coloring : nullptr};
-  const auto add = [&](const ViewParts& seen, int level) -> vtkRenderer* {
-    Panel& panel =
+  for (const auto& [seen, level] : panel_parts(parts, figure)) {
+    const Panel& panel =
         result.panels.emplace_back(Panel{make_renderer(result.size), caption_of(seen, level), detail_of(seen, level)});
     add_still_parts(panel.renderer, seen, look);
-    return panel.renderer;
-  };
-  for (const ViewParts& seen : figure.beside ? beside(parts) : one_diagram_each(parts)) {
-    for (const auto& [level, trees] : seen.levels) {
-      vtkRenderer* renderer = add(seen, level);
-      for (const auto& actor : level_actors(trees, look.coloring)) renderer->AddActor(actor);
-    }
-    if (seen.levels.empty()) add(seen, -1);
+    if (level < 0) continue;
+    for (const auto& actor : level_actors(seen.levels.at(level), look.coloring)) panel.renderer->AddActor(actor);
   }
   if (figure.clip)
     for (const Panel& panel : result.panels) clip(panel.renderer, *figure.clip);

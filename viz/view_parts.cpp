@@ -1,9 +1,7 @@
 #include "view_parts.h"
 
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkFeatureEdges.h>
-#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkProperty.h>
@@ -11,16 +9,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
+#include <limits>
 
+#include "cell_actors.h"
 #include "coloring.h"
 
 namespace orchard::detail {
 namespace {
-
-constexpr double kRounding = 1e-6;  // of the diagonal
-constexpr double kShrink = 0.93;    // of a cell, so that one sees where it ends
 
 // "view/KIND/NAME" or "view/level/K/NAME": what follows the kind, if it is this one.
 bool named_as(const std::string& block, const std::string& kind, std::string& rest) {
@@ -30,93 +26,6 @@ bool named_as(const std::string& block, const std::string& kind, std::string& re
   return true;
 }
 
-Eigen::Vector3d corner(vtkDataSet* data, vtkIdType point) {
-  Eigen::Vector3d result;
-  data->GetPoint(point, result.data());
-  return result;
-}
-
-// Neighbours should differ, whatever their numbers.
-Color cell_color(vtkIdType cell) {
-  const auto mixed = static_cast<std::uint64_t>(cell) * 0x9e3779b97f4a7c15U;
-  Color color = kBranchColors.at((mixed >> 40) % kBranchColors.size());
-  for (double& c : color) c = 0.35 + 0.65 * c;
-  return color;
-}
-
-// From a quiet blue for 0 to red for 1.
-Color wrong_color(double part) {
-  constexpr std::array kColors{rgb(0x8fa9c2), rgb(0xd9c27a), rgb(0xe07b39), rgb(0xb3121d)};
-  const double place = std::clamp(part, 0.0, 1.0) * (kColors.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), kColors.size() - 2);
-  Color color{};
-  for (std::size_t c = 0; c < 3; ++c)
-    color[c] = kColors[below][c] + (place - static_cast<double>(below)) * (kColors[below + 1][c] - kColors[below][c]);
-  return color;
-}
-
-// Whether cells are more inaccurate than rounding makes them.
-bool is_wrong(vtkUnstructuredGrid* grid) {
-  return require_array(grid->GetCellData(), "inaccuracy", grid->GetNumberOfCells())->GetRange()[1] >
-         kRounding * grid->GetLength();
-}
-
-using Backward = std::optional<std::array<double, 3>>;
-
-// The polyhedra of the half that is away from the eye, or all of them, each drawn in towards its middle.
-Data parted(vtkUnstructuredGrid* grid, const Backward& backward) {
-  const Eigen::Vector3d to_eye = backward ? Eigen::Vector3d(backward->data()) : Eigen::Vector3d::Zero();
-  const double middle = Eigen::Vector3d(grid->GetCenter()).dot(to_eye);
-  vtkDataArray* inaccuracy = require_array(grid->GetCellData(), "inaccuracy", grid->GetNumberOfCells());
-  const double max = inaccuracy->GetRange()[1];
-  const bool wrong = is_wrong(grid);
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> polygons;
-  std::vector<Color> colors;
-  vtkNew<vtkIdList> corners, stream;
-  for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
-    grid->GetCellPoints(i, corners);
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    for (const vtkIdType id : *corners) center += corner(grid, id) / static_cast<double>(corners->GetNumberOfIds());
-    if (center.dot(to_eye) > middle) continue;
-    Color color = cell_color(i);
-    if (wrong) color = wrong_color(std::sqrt(inaccuracy->GetComponent(i, 0) / max));
-    grid->GetFaceStream(i, stream);
-    vtkIdType at = 1;
-    for (vtkIdType face = 0; face < stream->GetId(0); ++face) {
-      const vtkIdType count = stream->GetId(at++);
-      polygons->InsertNextCell(static_cast<int>(count));
-      for (vtkIdType k = 0; k < count; ++k) {
-        const Eigen::Vector3d place = center + kShrink * (corner(grid, stream->GetId(at++)) - center);
-        polygons->InsertCellPoint(points->InsertNextPoint(place.data()));
-      }
-      colors.push_back(color);
-    }
-  }
-  auto result = Data::New();
-  result->SetPoints(points);
-  result->SetPolys(polygons);
-  set_colors(result->GetCellData(), polygons->GetNumberOfCells(),
-             [&](vtkIdType i) { return colors[static_cast<std::size_t>(i)]; });
-  return result;
-}
-
-vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Backward& backward, double line_width) {
-  auto actor = make_actor(parted(grid, backward), kStone);
-  vtkMapper* mapper = actor->GetMapper();
-  mapper->ScalarVisibilityOn();
-  mapper->SetScalarModeToUseCellFieldData();
-  mapper->SelectColorArray("color");
-  vtkProperty* property = actor->GetProperty();
-  property->SetInterpolationToFlat();
-  property->SetDiffuse(0.72);  // pale colours stay colours where the light is brightest
-  property->EdgeVisibilityOn();
-  property->SetEdgeColor(kInk[0], kInk[1], kInk[2]);
-  property->SetLineWidth(static_cast<float>(0.5 * line_width));
-  return actor;
-}
-
 vtkSmartPointer<vtkActor> make_axis(vtkPolyData* axis, const PartLook& look) {
   if (look.coloring != nullptr && has_colors(*look.coloring, axis)) {
     auto sheet = make_actor(axis, kStone);
@@ -124,9 +33,8 @@ vtkSmartPointer<vtkActor> make_axis(vtkPolyData* axis, const PartLook& look) {
     sheet->GetProperty()->SetLineWidth(static_cast<float>(1.5 * look.line_width));
     return sheet;
   }
-  double range[2];
-  require_array(axis->GetPointData(), "radius", axis->GetNumberOfPoints())->GetRange(range);
-  auto sheet = make_sheet(axis, "radius", viridis(range));
+  require_array(axis->GetPointData(), "radius", axis->GetNumberOfPoints());
+  auto sheet = make_sheet(axis, "radius", transfer_function(*look.map, look.radii.data()));
   sheet->GetProperty()->SetLineWidth(static_cast<float>(1.5 * look.line_width));
   return sheet;
 }
@@ -159,14 +67,14 @@ void add_axis(vtkRenderer* renderer, vtkPolyData* axis, const PartLook& look) {
     renderer->AddActor(make_spheres(axis));
   }
   if (!look.edges) return;
-  renderer->AddActor(axis_lines(axis, false, kInk, 1.5 * look.line_width));
-  renderer->AddActor(axis_lines(axis, true, rgb(0xd55e00), 2 * look.line_width));
+  renderer->AddActor(axis_lines(axis, false, kBorderColor, 1.5 * look.line_width));
+  renderer->AddActor(axis_lines(axis, true, look.map->seams, 2 * look.line_width));
 }
 
-// Any .vtp: faces and lines, or dots where it has points alone.
+// Any .vtp: faces and lines; where it has points alone, spheres of their radii, or else dots.
 void add_data(vtkRenderer* renderer, vtkPolyData* data, const PartLook& look) {
   const bool colored = look.coloring != nullptr && has_colors(*look.coloring, data);
-  if (data->GetNumberOfPolys() + data->GetNumberOfLines() + data->GetNumberOfStrips() == 0) {
+  if (is_point_set(data)) {
     vtkNew<vtkPolyData> dots;
     dots->ShallowCopy(data);
     if (colored) {
@@ -174,13 +82,15 @@ void add_data(vtkRenderer* renderer, vtkPolyData* data, const PartLook& look) {
     } else {
       set_colors(dots->GetPointData(), dots->GetNumberOfPoints(), [](vtkIdType) { return kOriginColors[0]; });
     }
-    renderer->AddActor(make_dots(dots, look.size));
+    renderer->AddActor(is_sphere_set(data) ? make_spheres(dots) : make_dots(dots, look.size));
     return;
   }
-  auto actor = make_actor(data, kStone);
+  const bool bound = is_bound(data);
+  auto actor = make_actor(data, bound ? kGlass : kStone, bound ? look.opacity : 1);
   if (colored) apply(*look.coloring, data, actor);
   actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * look.line_width));
   renderer->AddActor(actor);
+  if (bound) renderer->AddActor(edges(data, kFeatureAngle, 0.8 * look.line_width, 0.5));
   if (look.edges) renderer->AddActor(edges(data, kFeatureAngle, 1.2 * look.line_width));
 }
 
@@ -213,6 +123,17 @@ std::string reach(vtkPolyData* spheres) {
 
 void append(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
 
+// A grid whose cells are polyhedra is a Voronoi diagram.
+void add_data_block(const std::string& name, vtkDataObject* data, ViewParts& parts) {
+  if (vtkPolyData* poly = vtkPolyData::SafeDownCast(data)) parts.data.emplace_back(name, poly);
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
+  if (grid == nullptr || grid->GetNumberOfCells() == 0) return;
+  if (grid->GetCellType(0) == VTK_POLYHEDRON)
+    parts.cells.emplace_back(name, grid);
+  else
+    parts.data.emplace_back(name, as_poly_data(grid));
+}
+
 }  // namespace
 
 ViewParts view_parts(const Blocks& blocks) {
@@ -222,7 +143,7 @@ ViewParts view_parts(const Blocks& blocks) {
     const Data poly = vtkPolyData::SafeDownCast(data);
     if (named_as(block, "mesh", name) && poly != nullptr) parts.meshes.emplace_back(name, poly);
     if (named_as(block, "axis", name) && poly != nullptr) parts.axes.emplace_back(name, poly);
-    if (named_as(block, "data", name) && poly != nullptr) parts.data.emplace_back(name, poly);
+    if (named_as(block, "data", name)) add_data_block(name, data, parts);
     if (named_as(block, "points", name) && poly != nullptr) parts.points.emplace_back(name, poly);
     if (named_as(block, "cells", name) && vtkUnstructuredGrid::SafeDownCast(data) != nullptr)
       parts.cells.emplace_back(name, vtkUnstructuredGrid::SafeDownCast(data));
@@ -235,7 +156,7 @@ ViewParts view_parts(const Blocks& blocks) {
 std::vector<Extent> extents_of(const ViewParts& parts) {
   std::vector<Extent> extents;
   for (const auto* list : {&parts.meshes, &parts.axes, &parts.points, &parts.data})
-    for (const auto& part : *list) extend(extents, part.second, nullptr);
+    for (const auto& part : *list) extend(extents, part.second, is_sphere_set(part.second) ? "radius" : nullptr);
   for (const auto& [level, trees] : parts.levels)
     for (const auto& part : trees) extend(extents, part.second, "radius");
   for (const auto& part : parts.cells) {
@@ -246,6 +167,39 @@ std::vector<Extent> extents_of(const ViewParts& parts) {
     }
   }
   return extents;
+}
+
+std::vector<Extent> extents_of(const ViewParts& parts, const FigureOptions& figure) {
+  std::vector<Extent> extents = extents_of(parts);
+  if (figure.balls)
+    for (const auto& part : parts.axes) extend(extents, part.second, "radius");
+  if (figure.room) {
+    const auto& [a, b, c, d, e, f] = *figure.room;
+    extents.push_back({{a, b, c}, 0});
+    extents.push_back({{d, e, f}, 0});
+  }
+  return extents;
+}
+
+bool is_point_set(vtkPolyData* data) {
+  return data->GetNumberOfPolys() + data->GetNumberOfLines() + data->GetNumberOfStrips() == 0;
+}
+
+bool is_sphere_set(vtkPolyData* data) {
+  vtkDataArray* radii = data->GetPointData()->GetArray("radius");
+  return is_point_set(data) && radii != nullptr && radii->GetNumberOfComponents() == 1;
+}
+
+bool is_bound(vtkPolyData* data) { return data->GetPointData()->HasArray("hypertrapezoid_half") != 0; }
+
+std::array<double, 2> radii_of_axes(const ViewParts& parts) {
+  std::array<double, 2> range{std::numeric_limits<double>::infinity(), 0};
+  for (const auto& part : parts.axes) {
+    const double* own =
+        require_array(part.second->GetPointData(), "radius", part.second->GetNumberOfPoints())->GetRange();
+    range = {std::min(range[0], own[0]), std::max(range[1], own[1])};
+  }
+  return range[0] < range[1] ? range : std::array{0.0, std::max(range[1], 1e-300)};
 }
 
 double size_of(const ViewParts& parts) {
@@ -311,7 +265,7 @@ std::string detail_of(const ViewParts& parts, int level) {
     for (const auto& part : *list) append(detail, counted(part.second->GetNumberOfPoints(), "point"));
   for (const auto& part : parts.cells) {
     append(detail, counted(part.second->GetNumberOfCells(), "cell"));
-    if (!is_wrong(part.second)) continue;
+    if (!is_inaccurate(part.second)) continue;
     char text[64];
     const double max = part.second->GetCellData()->GetArray("inaccuracy")->GetRange()[1];
     std::snprintf(text, sizeof text, "red: inaccurate by %.2g", max);

@@ -35,6 +35,17 @@ ViewParts view_parts(const Blocks& blocks);
 // A length of the model's order, and everything that the camera must keep in view.
 double size_of(const ViewParts& parts);
 std::vector<Extent> extents_of(const ViewParts& parts);
+// The same, and the room that the figure asks for.
+std::vector<Extent> extents_of(const ViewParts& parts, const FigureOptions& figure);
+
+// Whether data has points alone; whether these have radii, so that they are spheres.
+bool is_point_set(vtkPolyData* data);
+bool is_sphere_set(vtkPolyData* data);
+// Whether these are the cubes of a simulation, which bound the motion of the bodies in them.
+bool is_bound(vtkPolyData* data);
+
+// The smallest and the largest radius of all axes: one range for those beside each other.
+std::array<double, 2> radii_of_axes(const ViewParts& parts);
 
 struct Coloring;
 
@@ -45,7 +56,9 @@ struct PartLook {
   std::optional<std::array<double, 3>> backward = {};  // cells are cut open towards it
   bool edges = false;                                  // borders and seams of axes, feature edges of .vtp files
   bool balls = false;                                  // the balls of axes
-  const Coloring* coloring = nullptr;                  // null: each thing in its own colours
+  const ColorMap* map = &kViridis;
+  std::array<double, 2> radii{0, 1};   // at the ends of the map, where axes have their own colours
+  const Coloring* coloring = nullptr;  // null: each thing in its own colours
 };
 
 // What is seen whatever the level. Of meshes beside other things the faces' actors come back, for their opacity.

@@ -78,8 +78,14 @@ inline void set_mesh(vtkPolyData* data, const TriangleMesh& mesh) {
 
 // The first `count` values of each array.
 inline void add_all(vtkFieldData* data, const ViewArrays& arrays, std::size_t count) {
-  for (const ViewArray& array : arrays)
-    add_doubles(data, array.name.c_str(), count, [&](std::size_t i) { return array.values.at(i); });
+  for (const ViewArray& array : arrays) {
+    const char* const name = array.name.c_str();
+    if (array.counts) {
+      add_ints(data, name, count, [&](std::size_t i) { return static_cast<int>(array.values.at(i)); });
+    } else {
+      add_doubles(data, name, count, [&](std::size_t i) { return array.values.at(i); });
+    }
+  }
 }
 
 // One vertex cell per point, so that points are drawn without a filter.

@@ -311,6 +311,13 @@ void add_medial(CLI::App& app, Request& request) {
       ->excludes(command.get_option("--refine"));
   add_threads(command, request);
   command.add_flag("!--no-views", medial.views, "Do not write files for ParaView");
+  command
+      .add_option(
+          "--light", medial.light_balls,
+          "Most balls of MODEL-medial-light.vtp, which stands for an axis with more balls where they are drawn as "
+          "spheres: the largest ball of each region. 0 writes no such file")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100'000'000));
   add_accept(command, medial.accept);
   add_force(command, medial.output);
   add_output_flags(command, medial.output);

@@ -45,6 +45,13 @@ void add_figure(CLI::App& command, ViewCommand& view) {
       .add_option("--range", view.range,
                   "A,B: values at the ends of the colour bar (default: the smallest and largest value)")
       ->needs(color);
+  command
+      .add_option("--map", view.map,
+                  "Map from values to colours. The lightness of each rises or falls all the way, also for colour-blind "
+                  "eyes. viridis, cividis, blues and grey leave seams visible in orange; heat is pale at small values, "
+                  "for errors")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"viridis", "cividis", "blues", "heat", "grey"}));
   CLI::Option* place = command.add_option("--look-at", view.look_at, "X,Y,Z: point in the middle of the picture");
   command
       .add_option("--width", view.width,
@@ -53,7 +60,8 @@ void add_figure(CLI::App& command, ViewCommand& view) {
       ->check(CLI::PositiveNumber);
   command.add_option("--clip", view.clip, "A,B,C,D: cut away all points with A x + B y + C z > D");
   command.add_flag("--edges", view.edges,
-                   "Draw the borders (dark) and seams (orange) of axes and the feature edges of .vtp files");
+                   "Draw the borders (black) and seams (orange) of axes and the feature edges of .vtp files. Pictures "
+                   "of lines always have them");
   command.add_flag("--balls", view.balls, "Draw the balls of axes in place of their sheets");
   command
       .add_option("--layout", view.layout,
@@ -64,6 +72,13 @@ void add_figure(CLI::App& command, ViewCommand& view) {
   command.add_flag("--transparent", view.transparent, "Make the background transparent");
   command.add_option("--turn", view.turn, "Draw this many pictures of a full turn: PICTURE-001.png ..")
       ->check(CLI::Range(2, 3600));
+  CLI::Option* frame =
+      command.add_option("--frame", view.frame, "Time step of series (.pvd) to draw, from 1 (default: the last one)");
+  frame->check(CLI::Range(1, 1'000'000));
+  command
+      .add_flag("--play", view.play,
+                "Draw a picture for each time step of the series (.pvd), with one camera: PICTURE-001.png ..")
+      ->excludes(frame);
 }
 
 void add_view(CLI::App& app, Request& request) {
@@ -72,10 +87,13 @@ void add_view(CLI::App& app, Request& request) {
   ViewCommand& view = request.view;
   command
       .add_option("files", view.files,
-                  "Sphere-trees (.orchard, .sph), medial axes (.ma), Voronoi diagrams (.vor), meshes (.obj, .ply, "
-                  ".stl, .off), points (.xyz) or views (.vtp)")
+                  "Sphere-trees (.orchard, .sph), sphere sets (.txt, .csv, .json), medial axes (.ma), Voronoi diagrams "
+                  "(.vor), meshes (.obj, .ply, .stl, .off), points (.xyz), views (.vtp, .vtu) or series of views, such "
+                  "as simulations (.pvd)")
       ->required();
-  command.add_option("-o,--output", view.picture, "Picture to write (.png). With --window, the key s saves it");
+  command.add_option("-o,--output", view.picture,
+                     "Picture to write: .png, or .svg or .pdf for a picture of lines, which needs no display. With "
+                     "--window, the key s saves it (.png)");
   add_list(
       command, "--level", view.levels,
       "Level of the trees to draw, 0 for the root. Several, such as 1,2,3, get a panel each (default: the deepest)", 0,
@@ -86,7 +104,9 @@ void add_view(CLI::App& app, Request& request) {
   command.add_option("--up", view.up, "Axis that points up")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: fits the model; 1000x800 for a window)");
+  command.add_option(
+      "--size", view.size,
+      "WIDTHxHEIGHT in pixels, or points of a picture of lines (default: fits the model; 1000x800 for a window)");
   command
       .add_option("--opacity", view.opacity,
                   "Opacity of meshes around axes, trees or points. 0 hides the meshes, 1 hides what is inside")
@@ -99,6 +119,7 @@ void add_view(CLI::App& app, Request& request) {
   command.add_flag("--quiet", view.quiet, "Print errors only");
   command.footer(
       "Examples:\n  orchard view out/lamp/lamp.orchard data/lamp.obj -o out/lamp/view.png --level 1,2,3\n"
+      "  orchard view out/lamp/lamp.ma data/lamp.obj -o out/lamp/lines.pdf\n"
       "  orchard view out/lamp/lamp.orchard --window");
   command.callback([&request, &command] {
     request.view.run = invocation_of(command, request.typed);

@@ -199,6 +199,7 @@ struct MedialCommand {
   std::string best = "hausdorff_max";  // of a sweep: the measure that its rows are printed by, the best first
   std::optional<TreeRequest> tree;     // of a sweep: the tree to build from each axis
   bool views = true;                   // ParaView files, where the program was built with them
+  Index light_balls = 20'000;          // of a file for spheres, where the axis has more; 0: no such file
   std::vector<std::string> given;      // the options on the command line, as of BuildCommand
   bool accept = false;                 // as of BuildCommand
   Output output;
@@ -314,17 +315,20 @@ void report(const ReportCommand& command);
 
 struct ViewCommand {
   std::vector<std::filesystem::path> files;  // trees, axes, diagrams, meshes, points: all in one picture
-  std::filesystem::path picture;             // .png; of a window, where s saves to
+  std::filesystem::path picture;             // .png, .svg or .pdf; of a window, where s saves to
   std::vector<Index> levels;                 // of the trees, a panel for each; empty: the deepest
   std::string camera, size;                  // "azimuth,elevation" in degrees, "widthxheight" in pixels; empty: as fits
   std::string up = "y";
   double opacity = 0.16;        // of meshes beside other things
   std::string color, range;     // an array; "a,b"
+  std::string map = "viridis";  // of these colours
   std::string look_at, clip;    // "x,y,z"; "a,b,c,d"
   std::optional<double> width;  // of what is seen around look_at, in mesh units
   std::string layout = "over";  // or beside
   bool edges = false, balls = false, captions = false, transparent = false;
-  Index turn = 0;  // frames of a turntable; 0: one picture
+  Index turn = 0;     // frames of a turntable; 0: one picture
+  Index frame = 0;    // the time step of series (.pvd), from 1; 0: the last one
+  bool play = false;  // a picture for each of them
   bool window = false, quiet = false;
   Invocation run;  // which the picture says
 };

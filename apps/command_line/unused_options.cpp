@@ -120,6 +120,11 @@ void refuse_unused_options(const MedialCommand& command) {
     throw InputError("--export has no effect with --sweep, which writes no axis without --keep");
   if (command.keep && !sweeps) throw InputError("--keep has no effect without --sweep: all files are kept");
   if (among("sort-by", command.given) && !sweeps) throw InputError("--sort-by has no effect without --sweep");
+  if (among("light", command.given) && (sweeps || judges || !command.views))
+    throw InputError(
+        fmt::format("--light has no effect with {}, which writes no views of the axis", sweeps   ? "--sweep"
+                                                                                        : judges ? "--axis"
+                                                                                                 : "--no-views"));
   if (command.picture && (sweeps || (!command.report && !judges)))
     throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
   const FlagNames swept = swept_flags(command);

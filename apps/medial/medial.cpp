@@ -144,16 +144,20 @@ struct Judged {
 };
 
 // The first axis and those beside it in one table, and where the first one is worst: printed, and into `report`.
-void report_quality(const MedialCommand& command, const Destination& destination, const SolidMesh& solid,
-                    const Judged& first, const std::vector<AxisFile>& beside, json& report, const Progress& progress,
-                    ProgressBar& bar) {
+// Returns the axes for a picture.
+std::vector<PicturedAxis> report_quality(const MedialCommand& command, const Destination& destination,
+                                         const SolidMesh& solid, const Judged& first,
+                                         const std::vector<AxisFile>& beside, json& report, const Progress& progress,
+                                         ProgressBar& bar) {
   std::vector<JudgedAxis> axes{{first.name, first.judgement}};
+  std::vector<PicturedAxis> pictured{{"", &first.mesh, first.judgement.quality.worst}};
   json others = json::array();
   StageTimes seconds = first.judgement.seconds;
   const Stopwatch measuring;
   for (const AxisFile& other : beside) {
     const MedialJudgement judgement = judge_beside(command, solid.surface, other.axis.mesh, first.mesh, progress);
     axes.push_back({other.file.string(), judgement});
+    pictured.push_back({other.file.filename().string(), &other.axis.mesh, judgement.quality.worst});
     json row = counts_of(other.axis.mesh);
     row["axis"] = other.file.string();
     row["notes"] = other.axis.notes;
@@ -174,10 +178,11 @@ void report_quality(const MedialCommand& command, const Destination& destination
   if (!beside.empty()) report["beside"] = std::move(others);
   report["worst_places"] = to_json(places);
   report["report_seconds"] = seconds_json(seconds);
-  if (command.output.quiet || command.output.json) return;
+  if (command.output.quiet || command.output.json) return pictured;
   print_table(axes, {"stability_max", "economy_spheres"});
   print(places);
   for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
+  return pictured;
 }
 
 void judge_file(const MedialCommand& command, const Destination& destination, const SolidMesh& solid,
@@ -201,12 +206,13 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
     for (const AxisFile& other : beside) print_notes(other);
   }
   const FewBalls few = make_few_balls(command, solid.surface, mesh, progress);
-  report_quality(command, destination, solid, judged, beside, report, progress, bar);
+  const std::vector<PicturedAxis> pictured =
+      report_quality(command, destination, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_axis_exports(command, mesh, contacts_of(solid.surface, mesh), outputs);
-  const std::string picture = write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
-                                            named(command.axis, "-quality.png"), outputs);
+  const std::string picture =
+      write_picture(command, solid.surface, pictured, nullptr, named(command.axis, "-quality.png"), outputs);
   finish(command, report, picture, outputs);
 }
 
@@ -267,10 +273,9 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());
   }
-  std::vector<WorstPlace> worst;
+  std::vector<PicturedAxis> pictured{{"", &mesh}};
   std::optional<MedialErrors> errors;
   if (judgement) {
-    worst = judgement->quality.worst;
     if (command.views)
       time_stage(judgement->seconds, "arrays of the views",
                  [&] { errors = medial_errors(surface, build, mesh, quality_options(command)); });
@@ -280,7 +285,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                                    .own_points = !command.source.files().empty(),
                                    .cuts_itself = solid.self_intersections.value_or(0) > 0},
                         .name = "this axis"};
-    report_quality(command, destination, solid, judged, beside, report, progress, bar);
+    pictured = report_quality(command, destination, solid, judged, beside, report, progress, bar);
   }
   Outputs outputs(destination);
   write_axis(command, build, mesh, last_line, outputs);
@@ -296,10 +301,10 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                .skeleton = skeleton,
                .mesh = mesh,
                .errors = errors ? &*errors : nullptr,
-               .worst = worst},
+               .worst = pictured.front().worst},
               outputs);
   const std::string picture =
-      write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
+      write_picture(command, surface, pictured, &build.sampling, named(command.mesh, "-medial.png"), outputs);
   finish(command, report, picture, outputs);
   if (!warning.empty() && build.promise.keeps_topology())
     fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);

@@ -6,10 +6,13 @@
 #include <limits>
 
 #include "command_line/interrupt.h"
+#include "medial/light_balls.h"
 #include "output/picture.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/medial/structure.h"
+#include "orchard/viz/light_writer.h"
+#include "orchard/viz/medial_script.h"
 #include "orchard/viz/medial_writer.h"
 #include "orchard/viz/paraview_state.h"
 #include "orchard/viz/render.h"
@@ -92,7 +95,8 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
 
 std::vector<std::string> view_names(const std::filesystem::path& model) {
   std::vector<std::string> names;
-  for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial.pvsm", "-medial-vertices.vtp", "-medial-edges.vtp",
+  for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-parts.vtm", "-medial.pvsm", "-medial-view.py",
+                             "-medial-outline.vtp", "-medial-light.vtp", "-medial-vertices.vtp", "-medial-edges.vtp",
                              "-medial-faces.vtp", "-medial-contacts.vtp", "-medial-mesh.vtp", "-medial-points.vtp",
                              "-medial-thickness.vtp", "-medial-skeleton.vtp", "-medial-worst.vtp", "-medial.png"})
     names.push_back(named(model, ending));
@@ -170,6 +174,35 @@ StateScene state_of(const MedialCommand& command, const MedialViews& views) {
   return scene;
 }
 
+// What a sphere takes to be drawn as a glyph in ParaView without a graphics card: 100,000 took 14 s of two cores' time.
+constexpr double kSecondsPerGlyph = 7e-5;
+
+// The balls for spheres where they are many. Returns their number, 0 if there is no such file.
+Index write_light_balls(const MedialCommand& command, const MedialAxis& axis, Outputs& outputs) {
+  if (command.light_balls == 0 || axis.size() <= command.light_balls) return 0;
+  std::vector<Sphere> all, kept;
+  for (Index i = 0; i < axis.size(); ++i) all.push_back({axis.centers[i], axis.radii[i]});
+  const std::vector<Index> vertices = light_balls(all, command.light_balls);
+  for (const Index vertex : vertices) kept.push_back(all[vertex]);
+  const std::string what = fmt::format(
+      "{} of its {} balls, the largest of each region (--light); all of them as spheres take about {:.1f} s to draw "
+      "without a graphics card",
+      kept.size(), all.size(), kSecondsPerGlyph * static_cast<double>(all.size()));
+  write_balls(outputs.add(named(command.mesh, "-medial-light.vtp"), what), kept, vertices);
+  return static_cast<Index>(kept.size());
+}
+
+// The axis between the lines of its solid, which a .vtm cannot show as transparent; and the parts, each whole.
+void write_collections(const MedialCommand& command, const std::vector<NamedFile>& parts, Outputs& outputs) {
+  std::vector<NamedFile> seen{{"outline of the solid", named(command.mesh, "-medial-outline.vtp")}};
+  for (const NamedFile& part : parts)
+    if (part.name == "medial faces" || part.name == "skeleton" || part.name == "worst places") seen.push_back(part);
+  write_multiblock(outputs.add(named(command.mesh, "-medial.vtm"), "the axis between the lines of its solid"), seen);
+  write_multiblock(
+      outputs.add(named(command.mesh, "-medial-parts.vtm"), "mesh, points, parts of the axis and skeleton at once"),
+      parts);
+}
+
 }  // namespace
 
 void write_views(const MedialCommand& command, const MedialViews& views, Outputs& outputs) {
@@ -194,6 +227,7 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
   write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), axis,
                     views.segments, of_vertices, of_faces);
   write_mesh(add("-mesh.vtp", "mesh"), views.surface);
+  write_outline(add("-outline.vtp", ""), views.surface);
   write_points(add("-points.vtp", "surface points", "the surface points, and which of them repair added"),
                views.build.sampling, of_points);
   add("-vertices.vtp", "medial vertices");
@@ -206,26 +240,33 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
   write_skeleton(add("-skeleton.vtp", "skeleton", "the lines where sheets end and meet"), axis, views.skeleton);
   if (views.errors != nullptr)
     write_worst_places(add("-worst.vtp", "worst places", "where it is worst, numbered as above"), views.worst);
-  write_multiblock(add(".vtm", "", "open this in ParaView: mesh, points, axis and skeleton at once"), shown);
+  const Index light = write_light_balls(command, axis, outputs);
+  write_collections(command, shown, outputs);
   write_paraview_state(add(".pvsm", "", "a double click shows the axis in its transparent solid"),
                        state_of(command, views), command.folder);
+  write_medial_script(add("-view.py", "", "the same by a script: pvbatch .. --preset NAME -o picture.png"),
+                      {.name = named(command.mesh, "-medial"),
+                       .ball = views.surface.bounding_ball(),
+                       .up = parse_up(command.up),
+                       .balls = axis.size(),
+                       .light_balls = light});
 }
 
-std::string write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
-                          const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst,
-                          const std::string& name, Outputs& outputs) {
+std::string write_picture(const MedialCommand& command, const Surface& surface, const std::vector<PicturedAxis>& axes,
+                          const SurfaceSampling* sampling, const std::string& name, Outputs& outputs) {
   if (!command.picture && !(command.report && command.views)) return {};
   SurfaceSampling own;
   if (sampling == nullptr) {
     own = sample_surface(surface, build_options(command.tuning).sampling);
     sampling = &own;
   }
-  const MedialErrorsPicture errors{.surface = &surface,
-                                   .sampling = sampling,
-                                   .mesh = &mesh,
-                                   .coverage = errors_at(surface, mesh, *sampling).coverage,
-                                   .protrusion = protrusion_around(surface, mesh),
-                                   .worst = worst};
+  MedialErrorsPicture errors{.surface = &surface, .sampling = sampling, .axes = {}};
+  for (const PicturedAxis& axis : axes)
+    errors.axes.push_back({.name = axis.name,
+                           .mesh = axis.mesh,
+                           .coverage = errors_at(surface, *axis.mesh, *sampling).coverage,
+                           .protrusion = protrusion_around(surface, *axis.mesh),
+                           .worst = axis.worst});
   PipelinePicture picture;
   picture.title = name.substr(0, name.rfind('.'));
   picture.up = parse_up(command.up);
@@ -237,8 +278,8 @@ std::string write_picture(const MedialCommand& command, const Surface& surface, 
 #else
 void write_views(const MedialCommand&, const MedialViews&, Outputs&) {}
 
-std::string write_picture(const MedialCommand& command, const Surface&, const MedialMesh&, const SurfaceSampling*,
-                          const std::vector<WorstPlace>&, const std::string&, Outputs&) {
+std::string write_picture(const MedialCommand& command, const Surface&, const std::vector<PicturedAxis>&,
+                          const SurfaceSampling*, const std::string&, Outputs&) {
   if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
   return {};
 }

@@ -37,11 +37,17 @@ struct MedialViews {
 // Where the program was built with VTK.
 void write_views(const MedialCommand& command, const MedialViews& views, Outputs& outputs);
 
-// A picture of where the axis is worst, as `name`, with `worst` numbered from 1 on: with --picture, and for the page of
-// --report unless there are no views. Coverage is shown at `sampling`, or at points of its own if that is null. Returns
-// the bytes; empty if nothing was drawn. On a machine that cannot draw, a line says why.
-std::string write_picture(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
-                          const SurfaceSampling* sampling, const std::vector<WorstPlace>& worst,
-                          const std::string& name, Outputs& outputs);
+// An axis of a picture, and where it is worst.
+struct PicturedAxis {
+  std::string name;  // of axes beside the first one
+  const MedialMesh* mesh = nullptr;
+  std::vector<WorstPlace> worst = {};  // empty: not measured
+};
+
+// A picture of where axes are worst, as `name`, with the places of each numbered from 1 on: with --picture, and for the
+// page of --report unless there are no views. Coverage is shown at `sampling`, or at points of its own if that is null.
+// Returns the bytes; empty if nothing was drawn. On a machine that cannot draw, a line says why.
+std::string write_picture(const MedialCommand& command, const Surface& surface, const std::vector<PicturedAxis>& axes,
+                          const SurfaceSampling* sampling, const std::string& name, Outputs& outputs);
 
 }  // namespace orchard::apps

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "input/input_file.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/xml_escaped.h"
+#include "output/array_descriptions.h"
 
 namespace orchard::apps {
 namespace {
@@ -32,16 +34,32 @@ std::string with_ply_comment(std::string bytes, const std::string& line) {
                          comment);
 }
 
-// VTK writes texts as the numbers of their characters, each text with a zero behind it.
+// An array of texts as VTK writes it: the numbers of their characters, each text with a zero behind it.
+std::string text_array(const char* name, const std::vector<std::string>& texts) {
+  std::string array = std::string("<Array type=\"String\" Name=\"") + name + "\" NumberOfTuples=\"" +
+                      std::to_string(texts.size()) + "\" format=\"ascii\">\n";
+  for (const std::string& text : texts) {
+    for (const char c : text) array += std::to_string(static_cast<unsigned char>(c)) + ' ';
+    array += "0\n";
+  }
+  return array + "</Array>\n";
+}
+
 std::string with_field_data(std::string bytes, const std::string& line) {
-  std::string array = "<Array type=\"String\" Name=\"provenance\" NumberOfTuples=\"1\" format=\"ascii\">\n";
-  for (const char c : line) array += std::to_string(static_cast<unsigned char>(c)) + ' ';
-  array += "0\n</Array>\n";
+  std::string array = text_array("provenance", {line});
+  if (const std::vector<std::string> lines = descriptions_in(bytes); !lines.empty())
+    array += text_array("descriptions", lines);
   if (bytes.find("<FieldData>") != std::string::npos) return inserted_behind(std::move(bytes), "<FieldData>\n", array);
   for (const char* const kind : {"<PolyData>\n", "<UnstructuredGrid>\n"})
     if (bytes.find(kind) != std::string::npos)
       return inserted_behind(std::move(bytes), kind, "<FieldData>\n" + array + "</FieldData>\n");
   return bytes;
+}
+
+// A comment before the last lines, which say where the table of objects is: nothing that has a place in it moves.
+std::string with_pdf_comment(std::string bytes, const std::string& line) {
+  const std::size_t at = bytes.rfind("startxref\n");
+  return at == std::string::npos ? bytes : bytes.insert(at, "% " + line + "\n");
 }
 
 // As PNG's specification has it: CRC-32.
@@ -84,7 +102,7 @@ std::string with_metadata(std::string bytes, const std::string& line) {
 using Place = std::string (*)(std::string, const std::string&);
 
 Place place_of(const std::string& extension) {
-  static constexpr std::array<std::pair<std::string_view, Place>, 15> kPlaces{{{".ma", with_last_line},
+  static constexpr std::array<std::pair<std::string_view, Place>, 16> kPlaces{{{".ma", with_last_line},
                                                                                {".vor", with_last_line},
                                                                                {".csv", with_last_line},
                                                                                {".obj", with_last_line},
@@ -97,6 +115,7 @@ Place place_of(const std::string& extension) {
                                                                                {".graphml", with_instruction},
                                                                                {".urdf", with_instruction},
                                                                                {".svg", with_metadata},
+                                                                               {".pdf", with_pdf_comment},
                                                                                {".png", with_png_text},
                                                                                {".ply", with_ply_comment}}};
   for (const auto& [name, place] : kPlaces)

@@ -7,21 +7,18 @@
 #include "command_line/commands.h"
 #include "command_line/number_text.h"
 #include "input/input_file.h"
-#include "input/reading_report.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/mesh_io.h"
+#include "output/array_descriptions.h"
 #include "output/outputs.h"
 #include "output/picture.h"
-#include "output/sphere_lists.h"
 #include "output/stamp.h"
+#include "show/view_files.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include <array>
 #include <numbers>
 
-#include "orchard/medial/medial_mesh.h"
 #include "orchard/viz/view.h"
-#include "orchard/voronoi/diagram_io.h"
 #endif
 
 namespace orchard::apps {
@@ -47,8 +44,18 @@ std::array<double, count> numbers_of(const std::string& option, const std::strin
   return result;
 }
 
+// "radius (mesh units)"; the name alone if the array has no unit that its name does not say.
+std::string title_of(const std::string& array) {
+  const std::optional<ArrayDescription> description = description_of(array);
+  if (!description || description->unit == "-" || description->unit == "count" || description->unit == "code")
+    return array;
+  return array + " (" + description->unit + ")";
+}
+
 Figure figure_of(const ViewCommand& command) {
   Figure figure{.color = command.color,
+                .bar_title = title_of(command.color),
+                .map = command.map,
                 .span = command.width.value_or(0),
                 .edges = command.edges,
                 .balls = command.balls,
@@ -108,27 +115,6 @@ PipelinePicture picture_of(const ViewCommand& command) {
   return picture;
 }
 
-void add(const std::filesystem::path& file, Scene& scene, bool talk) {
-  const std::string extension = lower_extension(file), name = file.filename().string();
-  if (extension == ".orchard" || extension == ".sph") {
-    scene.trees.push_back({name, *read_spheres(file).tree});
-  } else if (extension == ".ma") {
-    scene.axes.push_back({name, read_ma(file)});
-  } else if (extension == ".vtp") {
-    scene.data.push_back({name, file});
-  } else if (extension == ".vor") {
-    scene.diagrams.push_back({name, read_vor(file)});
-  } else {
-    auto [mesh, reading] = read_points_or_mesh_and_report(file);
-    if (talk) print_reading(file, reading);
-    if (mesh.triangles.empty()) {
-      scene.points.push_back({name, std::move(mesh.vertices)});
-    } else {
-      scene.meshes.push_back({name, Surface(std::move(mesh))});
-    }
-  }
-}
-
 // A level below all trees' deepest is a mistake.
 void check_levels(const Scene& scene) {
   if (scene.levels.empty()) return;
@@ -154,58 +140,129 @@ std::filesystem::file_time_type written_at(const std::filesystem::path& file) {
   return std::filesystem::last_write_time(file, ignored);
 }
 
-// The pictures, and how far each is turned, in radians.
-std::vector<std::pair<std::filesystem::path, double>> frames_of(const ViewCommand& command) {
-  if (command.turn == 0) return {{command.picture, 0.0}};
-  std::vector<std::pair<std::filesystem::path, double>> frames;
-  const std::string stem = command.picture.stem().string();
-  for (Index i = 0; i < command.turn; ++i)
-    frames.emplace_back(command.picture.parent_path() / fmt::format("{}-{:03}.png", stem, i + 1),
-                        2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(command.turn));
+// A picture to draw: how far it is turned, in radians, and which time step of each series it shows.
+struct ViewFrame {
+  std::filesystem::path file;
+  double turned = 0;
+  std::size_t step = 0;
+};
+
+// The pictures, and which time step each shows; the last one if none is named.
+std::vector<ViewFrame> frames_of(const ViewCommand& command, std::size_t steps) {
+  const std::size_t shown = command.frame > 0 ? command.frame - 1 : steps == 0 ? 0 : steps - 1;
+  if (command.turn == 0 && !command.play) return {{command.picture, 0.0, shown}};
+  const std::size_t count = command.play ? steps : command.turn;
+  std::vector<ViewFrame> frames;
+  const std::string stem = command.picture.stem().string(), ending = command.picture.extension().string();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turn = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    frames.push_back({command.picture.parent_path() / fmt::format("{}-{:03}{}", stem, i + 1, ending),
+                      command.turn > 0 ? turn : 0, command.play ? i : shown});
+  }
   return frames;
+}
+
+bool is_of_lines(const ViewCommand& command) {
+  const std::string ending = lower_extension(command.picture);
+  return ending == ".svg" || ending == ".pdf";
+}
+
+void check_window(const ViewCommand& command) {
+  if (command.turn > 0 || command.play || command.transparent || !command.color.empty() || !command.clip.empty() ||
+      !command.look_at.empty() || command.edges || command.balls || command.layout == "beside")
+    throw InputError(
+        "view: a --window takes no options of a figure (--color, --look-at, --clip, --edges, --balls, "
+        "--layout, --transparent, --turn, --play); leave --window out for a picture");
+}
+
+// What can be refused before anything is read.
+void check_view(const ViewCommand& command) {
+  if (command.picture.empty() && !command.window)
+    throw InputError("view: name a picture with -o PICTURE.png, or open a --window");
+  const std::string ending = lower_extension(command.picture);
+  if (!command.picture.empty() && ending != ".png" && (command.window || !is_of_lines(command)))
+    throw InputError(command.picture.string() + ": pictures are .png files" +
+                     (command.window ? "" : ", or .svg and .pdf files of lines"));
+  if (command.window) check_window(command);
+  if (!is_of_lines(command)) return;
+  if (!command.color.empty())
+    throw InputError("view: --color colours surfaces, and " + command.picture.string() +
+                     " is a picture of lines; name a .png file");
+  if (command.picture.extension() != ending)
+    throw InputError(command.picture.string() + ": write the ending in small letters, " + ending);
+}
+
+// Cut spheres are no outlines of spheres, and polyhedra in a heap no lines that one could read.
+void check_lines(const ViewCommand& command, const Scene& scene) {
+  if (!is_of_lines(command)) return;
+  if (!scene.diagrams.empty()) throw InputError("view: a picture of lines shows no Voronoi diagram; name a .png file");
+  if (!command.clip.empty() && (!scene.trees.empty() || command.balls))
+    throw InputError("view: --clip cuts no spheres in a picture of lines; name a .png file");
+}
+
+SeriesList read_all_series(const ViewCommand& command) {
+  SeriesList all;
+  for (const std::filesystem::path& file : command.files)
+    if (lower_extension(file) == ".pvd") all.push_back(read_series(file));
+  const std::size_t length = length_of(all);
+  if (all.empty() && (command.play || command.frame > 0))
+    throw InputError("view: --play and --frame belong to a series (.pvd), and there is none among the files");
+  if (command.play && command.turn > 0 && command.turn != length)
+    throw InputError(
+        fmt::format("--turn {}: with --play there is a picture for each of the {} time steps; turn by as "
+                    "many",
+                    command.turn, length));
+  if (command.frame > length)
+    throw InputError(fmt::format("--frame {}: the series has {} time steps", command.frame, length));
+  return all;
+}
+
+void draw_frame(const ViewCommand& command, const ViewFrame& frame, const Scene& scene, PipelinePicture picture,
+                const std::string& line) {
+  const auto before = written_at(frame.file);
+  picture.azimuth += frame.turned;
+  const PictureStatus status =
+      command.window ? show_view(frame.file, scene, picture) : draw_view(frame.file, scene, picture);
+  throw_if_interrupted();
+  // A window leaves a picture only if the user saved one; an older one stays as it is.
+  if (status && !frame.file.empty() && written_at(frame.file) != before) stamp(frame.file, line);
+  if (!status)
+    throw Error(std::string(command.window ? "no window was opened: " : "no picture was made: ") + status.reason);
+  if (!command.window && !command.quiet) fmt::print("  {}\n", frame.file.string());
 }
 
 }  // namespace
 
 void view(const ViewCommand& command) {
-  if (command.picture.empty() && !command.window)
-    throw InputError("view: name a picture with -o PICTURE.png, or open a --window");
-  if (!command.picture.empty() && lower_extension(command.picture) != ".png")
-    throw InputError(command.picture.string() + ": pictures are .png files");
-  if (command.window && (command.turn > 0 || command.transparent || !command.color.empty() || !command.clip.empty() ||
-                         !command.look_at.empty() || command.edges || command.balls || command.layout == "beside"))
-    throw InputError(
-        "view: a --window takes no options of a figure (--color, --look-at, --clip, --edges, --balls, "
-        "--layout, --transparent, --turn); leave --window out for a picture");
+  check_view(command);
   PipelinePicture picture = picture_of(command);
   if (const std::string missing = renderer_missing(); !missing.empty())
     throw InputError((command.window ? "no window can be opened: " : "no picture can be made: ") + missing);
   for (const std::filesystem::path& file : command.files) check_input(file);
+  const SeriesList series = read_all_series(command);
+  const std::vector<ViewFrame> frames = frames_of(command, length_of(series));
   if (!command.picture.empty())
-    for (const auto& frame : frames_of(command)) check_output(frame.first, command.files);
-  const Provenance provenance = provenance_of(command.run, command.files);
+    for (const ViewFrame& frame : frames) check_output(frame.file, command.files);
+  const std::string line = line_of(provenance_of(command.run, command.files));
 
   Scene scene;
   scene.levels = command.levels;
   scene.opacity = command.opacity;
   scene.figure = figure_of(command);
-  for (const std::filesystem::path& file : command.files) add(file, scene, !command.quiet);
+  if (command.play) scene.figure.room = room_of(series);
+  for (const std::filesystem::path& file : command.files)
+    if (lower_extension(file) != ".pvd") add_file(file, scene, !command.quiet);
   check_levels(scene);
+  check_lines(command, scene);
+  const std::size_t still = scene.data.size();
+  show_step(frames.front().step, series, still, scene);
   check_color(scene);
 
   const Writing writing;
   if (command.window) picture.title = "orchard: " + command.files.front().filename().string();
-  for (const auto& [file, turned] : frames_of(command)) {
-    const auto before = written_at(file);
-    PipelinePicture frame = picture;
-    frame.azimuth += turned;
-    const PictureStatus status = command.window ? show_view(file, scene, frame) : draw_view(file, scene, frame);
-    throw_if_interrupted();
-    // A window leaves a picture only if the user saved one; an older one stays as it is.
-    if (status && !file.empty() && written_at(file) != before) stamp(file, line_of(provenance));
-    if (!status)
-      throw Error(std::string(command.window ? "no window was opened: " : "no picture was made: ") + status.reason);
-    if (!command.window && !command.quiet) fmt::print("  {}\n", file.string());
+  for (const ViewFrame& frame : frames) {
+    show_step(frame.step, series, still, scene);
+    draw_frame(command, frame, scene, picture, line);
   }
 }
 

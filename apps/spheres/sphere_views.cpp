@@ -69,7 +69,7 @@ void write_sphere_views(const std::filesystem::path& mesh, const std::string& pr
   const auto name = [&](const char* ending) { return named(mesh, prefix + ending); };
   const SurfaceSampling points = points_of(surface);
   ViewArray gaps{.name = "gap", .values = {}};
-  for (const Point& point : points.points) gaps.values.push_back(gap_from(spheres, point));
+  for (const Point& point : points.points) gaps.values.push_back(std::max(0.0, gap_from(spheres, point)));
   write_mesh(outputs.add(name("-mesh.vtp")), surface);
   write_points(outputs.add(name("-points.vtp")), points, {gaps});
   write_tree_level(outputs.add(name("-spheres.vtp")),
@@ -99,12 +99,8 @@ void draw_holes(const std::filesystem::path& mesh, const std::string& up, const 
   const double diagonal = surface.bounding_box().diagonal().norm();
   const SurfaceSampling points = points_of(surface);
   MedialMesh balls = as_triangles(spheres);
-  MedialErrorsPicture errors{.surface = &surface,
-                             .sampling = &points,
-                             .mesh = &balls,
-                             .coverage = {},
-                             .protrusion = std::vector<double>(balls.centers.size(), 0),
-                             .worst = {}};
+  MedialErrorsOfAxis errors{
+      .mesh = &balls, .coverage = {}, .protrusion = std::vector<double>(balls.centers.size(), 0), .worst = {}};
   for (const Point& point : points.points)
     errors.coverage.push_back(100 / diagonal * std::max(0.0, gap_from(spheres, point)));
   for (std::size_t i = 0; surface.solid() && i < balls.centers.size(); ++i)
@@ -114,7 +110,8 @@ void draw_holes(const std::filesystem::path& mesh, const std::string& up, const 
   picture.title = mesh.stem().string();
   picture.up = parse_up(up);
   picture.progress = cancelled_by_interrupts();
-  if (is_drawn(draw_medial_errors(outputs.staged(name), errors, picture)))
+  if (is_drawn(draw_medial_errors(outputs.staged(name),
+                                  {.surface = &surface, .sampling = &points, .axes = {std::move(errors)}}, picture)))
     outputs.add(name, "where the surface is open and where spheres stick out, as a picture");
 }
 #else

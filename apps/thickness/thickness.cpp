@@ -67,7 +67,8 @@ void write_files(const ThicknessCommand& command, const ThicknessReport& report,
   if (command.views) {
     const auto views = [](const std::vector<MeshArray>& arrays) {
       ViewArrays result;
-      for (const MeshArray& array : arrays) result.push_back({array.name, array.values});
+      for (const MeshArray& array : arrays)
+        result.push_back({array.name, array.values, array.name == "triangle" || array.name == "thin_region"});
       return result;
     };
     write_mesh_with_arrays(outputs.add(names.vtp, "the same; open it in ParaView"), thickness.mesh, views(of_vertices),

@@ -45,7 +45,9 @@ const std::map<std::string, Rule>& rules() {
       {"diagonal", {Unit::length}},
       {"radius", {Unit::length}},
       {"medial_radius", {Unit::length}},
-      {"thickness", {Unit::length}},
+      {"thickness", {.unit = Unit::length, .none = true}},
+      {"ball_diameter", {.unit = Unit::length, .none = true}},
+      {"gap", {Unit::length}},
       {"length", {Unit::length}},
       {"mean_radius", {Unit::length}},
       {"inaccuracy", {.unit = Unit::length, .none = true}},
@@ -76,6 +78,7 @@ const std::map<std::string, Rule>& rules() {
       {"point_b", {.none = true, .counts_in = "-medial-contacts.vtp"}},
       {"vertex", {.counts_in = "-medial-vertices.vtp"}},
       {"segment", {.none = true}},
+      {"thin_region", {.none = true}},
       {"structure", {}},
       {"structure_kind", {.max = 4}},
       {"parent", {.none = true}},
@@ -118,7 +121,9 @@ Views views_of(const TestFolder& folder, double scale) {
     EXPECT_EQ(std::system(command.c_str()), 0) << words;
   };
   run("build l.obj -o out --samples 150 --depth 2 --quiet");
-  run("medial l.obj -o out --samples 150 --report --quality-samples 200 --quiet");
+  run("medial l.obj -o out --samples 150 --report --quality-samples 200 --vertices 30 --light 40 --quiet");
+  run("spheres l.obj -o out --spheres 8 --quiet");
+  run("thickness l.obj -o out --samples 100 --below " + std::to_string(0.9 * scale) + " --quiet");
   run("sample l.obj -o out --samples 150 --quiet");
   run("voronoi l.obj -o out --samples 150 --quiet");
   if (scale == 1) run("simulate box --frames 2 -o out --quiet");  // its ship has a size of its own
@@ -206,6 +211,31 @@ void expect_provenance(const std::string& name, vtkDataSet* view) {
   EXPECT_TRUE(text->GetValue(0).ends_with("}")) << name;
 }
 
+// "NAME [UNIT]: MEANING" of each array, by name.
+std::map<std::string, std::string> descriptions_of(vtkDataSet* view) {
+  std::map<std::string, std::string> lines;
+  auto* texts = vtkStringArray::SafeDownCast(view->GetFieldData()->GetAbstractArray("descriptions"));
+  for (vtkIdType i = 0; texts != nullptr && i < texts->GetNumberOfValues(); ++i) {
+    const std::string line = texts->GetValue(i);
+    lines[line.substr(0, line.find_first_of(" :"))] = line;
+  }
+  return lines;
+}
+
+// What data.md calls the unit of a rule.
+std::string named_unit(Unit unit) {
+  switch (unit) {
+    case Unit::length:
+      return " [mesh units]: ";
+    case Unit::angle:
+      return " [degrees]: ";
+    case Unit::percent:
+      return " [% of the diagonal]: ";
+    default:
+      return ": ";
+  }
+}
+
 TEST(ViewArrays, HoldWhatTheirRuleSays) {
   const TestFolder folder;
   const Views views = views_of(folder, 1);
@@ -224,6 +254,24 @@ TEST(ViewArrays, HoldWhatTheirRuleSays) {
   for (const char* name : {"l-build-points.vtp", "l-medial-points.vtp", "l-sample-points.vtp"})
     expect_point_data_alone(views, name);
   for (const auto& [name, view] : views) expect_provenance(name, view);
+}
+
+TEST(ViewArrays, AreDescribedInTheirFile) {
+  const TestFolder folder;
+  const Views views = views_of(folder, 1);
+  std::size_t described = 0;
+  visit_all(views, [&](const std::string& file, const char* kind, vtkFieldData* data) {
+    const std::map<std::string, std::string> lines = descriptions_of(views.at(file));
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+      const std::string name = data->GetAbstractArray(i)->GetName();
+      if (name == "provenance" || name == "descriptions") continue;
+      SCOPED_TRACE(file + ", " + kind + ", " + name);
+      ASSERT_TRUE(lines.contains(name)) << "docs/reference/arrays.json does not list it";
+      EXPECT_NE(lines.at(name).find(named_unit(rule_of(name).unit)), std::string::npos) << lines.at(name);
+      ++described;
+    }
+  });
+  EXPECT_GT(described, 150u);
 }
 
 TEST(ViewArrays, ScaleWithTheModelIfTheyAreLengthsAndNotOtherwise) {

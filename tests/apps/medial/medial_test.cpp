@@ -317,8 +317,56 @@ TEST(Medial, DrawsWhereItIsWorstWithTheReport) {
   EXPECT_NE(files.at("l-medial.vtm").find("worst places"), std::string::npos);
   for (const char* part : {"/l-medial.vtu", "/l-medial-mesh.vtp", "/l-medial-skeleton.vtp", "/l-medial-worst.vtp"})
     EXPECT_NE(files.at("l-medial.pvsm").find(part), std::string::npos) << part;
+  EXPECT_NE(files.at("l-medial-view.py").find("BALLS, LIGHT_BALLS = "), std::string::npos);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--picture"}).exit_code, 2);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--sweep", "samples=200,300", "--picture"}).exit_code, 2);
+}
+
+TEST(Medial, ThinsTheBallsOfAFileForSpheresAndSaysSo) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const Finished run = here.run({"medial", mesh, "-o", out, "--samples", "150", "--light", "50"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto files = here.files("out");
+  ASSERT_TRUE(files.contains("l-medial-light.vtp"));
+  const std::size_t said = run.out.find(" balls, the largest of each region (--light)");
+  ASSERT_NE(said, std::string::npos) << run.out;
+  const std::string points = "NumberOfPoints=\"";
+  const auto count = [&](const std::string& name) {
+    return std::stoul(files.at(name).substr(files.at(name).find(points) + points.size()));
+  };
+  EXPECT_LE(count("l-medial-light.vtp"), 50u);
+  EXPECT_GE(count("l-medial-light.vtp"), 15u);
+  EXPECT_NE(files.at("l-medial-view.py")
+                .find("BALLS, LIGHT_BALLS = " + std::to_string(count("l-medial-vertices.vtp")) + ", " +
+                      std::to_string(count("l-medial-light.vtp")) + "\n"),
+            std::string::npos);
+  const std::string whole = (here / "whole").string();
+  const Finished all = here.run({"medial", mesh, "-o", whole, "--samples", "150", "--light", "0", "--quiet"});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_FALSE(here.files("whole").contains("l-medial-light.vtp"));
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--light", "10", "--no-views"}).exit_code, 2);
+}
+
+TEST(Medial, DrawsTheAxesBesideItInItsPicture) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const std::string other = here.add("other.ma", std::string("2 1 0\nv .4 .4 .4 .3\nv .6 .4 .4 .3\ne 0 1\n"));
+  const auto height = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"medial",    mesh,        "-o",         out,
+                                 "--samples", "150",       "--report",   "--quality-samples",
+                                 "200",       "--picture", "--no-views", "--quiet"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Finished run = here.run(all);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto files = here.files("out");
+    if (!files.contains("l-medial.png")) return 0;
+    const std::string& png = files.at("l-medial.png");
+    return static_cast<unsigned char>(png[22]) << 8 | static_cast<unsigned char>(png[23]);
+  };
+  const int alone = height({});
+  if (alone == 0) GTEST_SKIP() << "nothing can be drawn here";
+  EXPECT_EQ(height({"--beside", other}), 2 * alone) << "a row for each axis";
 }
 #endif
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 
@@ -94,6 +95,124 @@ TEST(View, MakesFiguresWithAColorBarPartsBesideEachOtherAndNoGround) {
   EXPECT_NE(files.at("v-001.png"), files.at("v-002.png"));
 }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+// Lengths of the lines of a path "M x y l dx dy ..", by the signs and blanks between its numbers.
+std::size_t segments_of(const std::string& svg) {
+  std::size_t numbers = 0;
+  for (std::size_t path = svg.find(" d=\""); path != std::string::npos; path = svg.find(" d=\"", path + 1)) {
+    bool in_line = false, in_number = false;
+    for (std::size_t i = path + 4; svg[i] != '"'; ++i) {
+      if (svg[i] == 'M') in_line = false;
+      const bool digit = std::isdigit(static_cast<unsigned char>(svg[i])) != 0;
+      if (in_line && digit && !in_number) ++numbers;
+      in_number = digit;
+      if (svg[i] == 'l') in_line = true;
+    }
+  }
+  return numbers / 2;
+}
+
+TEST(View, DrawsTheVisibleEdgesOfABoxAsLinesWithoutADisplay) {
+  const Workplace here;
+  const std::string mesh = here.add("box&.obj", test::box({0, 0, 0}, {2, 2, 2})), svg = (here / "v.svg").string();
+  const char* const display = std::getenv("DISPLAY");
+  const std::string before = display == nullptr ? "" : display;
+  unsetenv("DISPLAY");
+  const Finished run = here.run({"view", mesh, "-o", svg, "--captions", "--size", "400x300", "--quiet"});
+  const Finished pdf_run = here.run({"view", mesh, "-o", (here / "v.pdf").string(), "--captions", "--quiet"});
+  if (display != nullptr) setenv("DISPLAY", before.c_str(), 1);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(pdf_run.exit_code, 0) << pdf_run.err;
+  const std::string text = here.files("").at("v.svg"), pdf = here.files("").at("v.pdf");
+  EXPECT_EQ(segments_of(text), 9u) << "three edges of a box are hidden\n" << text;
+  EXPECT_NE(text.find(">box&amp;.obj</text>"), std::string::npos);
+  EXPECT_NE(text.find("width=\"400pt\" height=\"300pt\""), std::string::npos);
+  EXPECT_NE(text.find("<metadata>orchard {"), std::string::npos);
+  EXPECT_TRUE(pdf.starts_with("%PDF-1.4\n") && pdf.ends_with("%%EOF\n"));
+  EXPECT_NE(pdf.find("\n% orchard {"), std::string::npos);
+  const std::size_t table = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
+  EXPECT_EQ(pdf.substr(table, 5), "xref\n") << "the place of the table is where it says";
+  for (std::size_t i = 1, row = table + 9 + 20; i <= 6; ++i, row += 20)
+    EXPECT_TRUE(pdf.substr(std::stoul(pdf.substr(row, 10))).starts_with(std::to_string(i) + " 0 obj")) << i;
+}
+
+TEST(View, DrawsBordersSeamsAndTheSolidInColorsOfTheirOwn) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  ASSERT_EQ(here.run({"medial", mesh, "-o", out, "--samples", "300", "--no-views", "--quiet"}).exit_code, 0);
+  const auto drawn = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"view", out + "/l.ma", mesh, "-o", (here / "v.svg").string(), "--quiet"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Finished run = here.run(all);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return here.files("").at("v.svg");
+  };
+  const std::string text = drawn({});
+  for (const char* color : {"#000000", "#d55e00", "#9aa3ad"})
+    EXPECT_NE(text.find(std::string("stroke=\"") + color), std::string::npos) << color;
+  EXPECT_EQ(text.find("<text"), std::string::npos) << "captions come on request";
+  EXPECT_EQ(drawn({"--opacity", "0"}).find("#9aa3ad"), std::string::npos) << "the solid is hidden";
+  EXPECT_EQ(count_of(drawn({"--layout", "beside"}), "<path"), count_of(text, "<path"));
+  EXPECT_LT(drawn({"--look-at", "0,0,0", "--width", "0.1"}).size(), text.size()) << "lines end at the sides";
+  EXPECT_GT(segments_of(drawn({"--balls"})), 60u) << "outlines of balls";
+}
+
+TEST(View, DrawsSphereSetsAndSimulations) {
+  if (no_display()) GTEST_SKIP() << "Xvfb is not in PATH";
+  const Workplace here;
+  const std::string spheres = here.add("set.txt", std::string("0 0 0 1\n3 0 0 1\n"));
+  const std::string picture = (here / "v.png").string(), out = (here / "out").string();
+  Finished run = here.run({"view", spheres, "-o", picture, "--size", "300x150", "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_GT(here.files("").at("v.png").size(), 3000u) << "shaded spheres, not dots";
+  ASSERT_EQ(here.run({"simulate", "box", "--frames", "3", "-o", out, "--quiet"}).exit_code, 0);
+  run = here.run({"view", out + "/box-run.pvd", "-o", picture, "--play", "--color", "answer", "--size", "160x120"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  auto files = here.files("");
+  ASSERT_TRUE(files.contains("v-001.png") && files.contains("v-003.png") && !files.contains("v-004.png"));
+  EXPECT_NE(files.at("v-001.png"), files.at("v-003.png"));
+  run = here.run({"view", out + "/box-run.pvd", "-o", (here / "t.png").string(), "--turn", "2", "--size", "160x120"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  files = here.files("");
+  EXPECT_NE(files.at("t-001.png"), files.at("t-002.png"));
+  const struct {
+    std::vector<std::string> arguments;
+    const char* named;
+  } cases[] = {
+      {{out + "/box-run.pvd", "--frame", "9"}, "the series has 3 time steps"},
+      {{spheres, "--play"}, "belong to a series"},
+      {{here.add("a.pvd", std::string("<VTKFile>")), "--frame", "1"}, "no collection"},
+      {{here.add("b.pvd", std::string("<VTKFile><Collection/></VTKFile>"))}, "no time step"},
+      {{here.add("c.pvd", std::string("<VTKFile><Collection><DataSet file=\"gone.vtp\"/></Collection></VTKFile>"))},
+       "gone.vtp"}};
+  for (const auto& [arguments, named] : cases) {
+    std::vector<std::string> all{"view", "-o", picture};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Finished refused = here.run(all);
+    EXPECT_EQ(refused.exit_code, 2) << named;
+    EXPECT_NE(refused.err.find(named), std::string::npos) << refused.err;
+  }
+}
+
+TEST(View, ColorsByTheMapThatIsNamed) {
+  if (no_display()) GTEST_SKIP() << "Xvfb is not in PATH";
+  const Workplace here;
+  const std::string axis = here.add("rod.ma", std::string("3 2 0\nv 1 1 1 1\nv 3 1 1 1\nv 5 1 1 .5\ne 0 1\ne 1 2\n"));
+  const auto drawn = [&](const std::string& map) {
+    const Finished run = here.run({"view", axis, "-o", (here / "v.png").string(), "--balls", "--color", "radius",
+                                   "--map", map, "--size", "200x100", "--quiet"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return here.files("").at("v.png");
+  };
+  EXPECT_NE(drawn("viridis"), drawn("heat"));
+  EXPECT_EQ(here.run({"view", axis, "-o", (here / "v.png").string(), "--map", "jet"}).exit_code, 2);
+}
+
 TEST(View, RefusesWhatItCannotDraw) {
   const Workplace here;
   const std::string mesh = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
@@ -104,6 +223,10 @@ TEST(View, RefusesWhatItCannotDraw) {
     const char* named;
   } cases[] = {{{tree}, "-o PICTURE.png"},
                {{tree, "-o", (here / "view.jpg").string()}, "pictures are .png"},
+               {{tree, "-o", (here / "v.svg").string(), "--color", "radius"}, "a picture of lines"},
+               {{tree, "-o", (here / "v.SVG").string()}, "small letters"},
+               {{tree, "-o", (here / "v.pdf").string(), "--clip", "1,0,0,0"}, "cuts no spheres"},
+               {{tree, "-o", (here / "v.pdf").string(), "--window"}, "pictures are .png files"},
                {{tree, "-o", picture, "--level", "9"}, "the deepest level there is is 2"},
                {{mesh, "-o", picture, "--level", "1"}, "there is no tree among the files"},
                {{tree, "-o", picture, "--camera", "30"}, "two angles"},

@@ -50,10 +50,9 @@ std::string renderer_missing(const PipelinePicture& picture = {});
 // called from several threads.
 PictureStatus draw_pipeline(const std::filesystem::path& png, const PipelinePicture& picture);
 
-// The values of a picture of the errors of a medial axis.
-struct MedialErrorsPicture {
-  const Surface* surface = nullptr;
-  const SurfaceSampling* sampling = nullptr;  // The surface points at which coverage is shown.
+// A medial axis and its errors.
+struct MedialErrorsOfAxis {
+  std::string name = {};  // The caption, if the picture shows several axes; "this axis" is the first one.
   const MedialMesh* mesh = nullptr;
   std::vector<double> coverage;  // For each point, in % of the diagonal.
   // For each vertex of the medial mesh, the largest protrusion of the balls around it, in % of the diagonal.
@@ -61,8 +60,16 @@ struct MedialErrorsPicture {
   std::vector<WorstPlace> worst;  // The worst places, numbered from 1.
 };
 
+// The values of a picture of the errors of medial axes of one solid.
+struct MedialErrorsPicture {
+  const Surface* surface = nullptr;
+  const SurfaceSampling* sampling = nullptr;  // The surface points at which coverage is shown.
+  std::vector<MedialErrorsOfAxis> axes;       // One row of panels each; there is at least one.
+};
+
 // Draws the surface coloured by coverage and the axis coloured by protrusion, each from the front and from behind, with
-// the numbers of the worst places on the side that they face. picture.values is ignored. Otherwise works as
+// the numbers of the worst places beside them, on the side that they face. The colours of all axes have one range.
+// picture.values is ignored. Otherwise works as
 // draw_pipeline().
 PictureStatus draw_medial_errors(const std::filesystem::path& png, const MedialErrorsPicture& errors,
                                  const PipelinePicture& picture);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "orchard/geometry/mesh.h"
 #include "orchard/medial/medial_mesh.h"
 #include "orchard/spheretree/tree.h"
 #include "orchard/viz/render.h"
@@ -27,17 +28,22 @@ struct Figure {
   // of tree levels (write_tree_level) or of .vtp files. A quantity gets a colour bar. If this is empty, axes are
   // coloured by radius and trees by branch, without a bar.
   std::string color = {};
+  // The title of the colour bar; if it is empty, the name of the array.
+  std::string bar_title = {};
+  // The map from values to colours: one of color_map_names().
+  std::string map = "viridis";
   // The range of the colours; without a value, the range of all values.
   std::optional<std::array<double, 2>> range = {};
   std::optional<Point> look_at = {};  // The middle of the picture; without a value, the middle of everything.
   double span = 0;                    // The extent that is shown, in mesh units; 0 shows everything.
   std::optional<std::array<double, 4>> clip = {};  // a, b, c, d: parts with a x + b y + c z > d are cut away.
-  bool edges = false;        // Borders (dark) and seams (orange) of axes, and feature edges of .vtp files.
-  bool balls = false;        // The balls of axes instead of their sheets.
-  bool beside = false;       // A panel for each item, with the meshes around it, instead of one panel for all.
-  bool captions = true;      // Captions below the panels.
-  bool transparent = false;  // No white background.
-  bool steady = false;       // Enough room for all items from all directions, for turntables.
+  std::optional<Box> room = {};  // A box that must fit into the picture beside the items: for pictures of a series.
+  bool edges = false;            // Borders (black) and seams (orange) of axes, and feature edges of .vtp files.
+  bool balls = false;            // The balls of axes instead of their sheets.
+  bool beside = false;           // A panel for each item, with the meshes around it, instead of one panel for all.
+  bool captions = true;          // Captions below the panels.
+  bool transparent = false;      // No white background.
+  bool steady = false;           // Enough room for all items from all directions, for turntables.
 };
 
 // The items of a picture.
@@ -47,7 +53,8 @@ struct Scene {
   std::vector<Named<MedialMesh>> axes;
   std::vector<Named<VoronoiDiagram>> diagrams;  // Cells, cut open, coloured by inaccuracy if any; a panel each.
   std::vector<Named<std::vector<Point>>> points;
-  std::vector<Named<std::filesystem::path>> data;  // .vtp files, unchanged.
+  // .vtp and .vtu files, unchanged. Points alone are dots, or spheres if they have an array `radius`.
+  std::vector<Named<std::filesystem::path>> data;
   // The levels of the trees, with a panel for each. A level below the deepest one of a tree shows its leaves. If this
   // is empty, the deepest level is shown.
   std::vector<Index> levels;
@@ -59,8 +66,19 @@ struct Scene {
 // files that cannot be read have no arrays.
 std::vector<std::string> color_arrays(const Scene& scene);
 
-// Draws a .png file. Uses all members of `picture` except the values.
-PictureStatus draw_view(const std::filesystem::path& png, const Scene& scene, const PipelinePicture& picture);
+// Returns the names that Figure::map may have. The lightness of each map rises or falls from one end to the other, also
+// for colour-blind eyes.
+std::vector<std::string> color_map_names();
+
+// Returns the bounding box of .vtp and .vtu files, radii included where points are spheres. Files that cannot be read
+// add nothing.
+Box bounds_of_data(const std::vector<std::filesystem::path>& files);
+
+// Draws a .png file, or a picture of lines: .svg or .pdf. Uses all members of `picture` except the values. A picture of
+// lines has the outlines and sharp edges of meshes and spheres, the borders, seams and curves of axes, and captions as
+// text; what is hidden is left out, and its sizes are points in place of pixels. It needs no display, ignores the
+// colours of the figure, and cannot show Voronoi diagrams.
+PictureStatus draw_view(const std::filesystem::path& picture_file, const Scene& scene, const PipelinePicture& picture);
 
 // Opens a window on $DISPLAY and returns when it is closed. A status without a picture states why there was no window.
 // Ignores picture.timeout and picture.progress.

@@ -19,6 +19,7 @@ namespace orchard {
 struct ViewArray {
   std::string name;
   std::vector<double> values;
+  bool counts = false;  // Whether the values are whole numbers, which the file has as 32-bit integers.
 };
 using ViewArrays = std::vector<ViewArray>;
 
