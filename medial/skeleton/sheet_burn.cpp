@@ -1,0 +1,161 @@
+#include "sheet_burn.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "orchard/geometry/disjoint_sets.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kNotBurned = std::numeric_limits<double>::infinity();
+// The corners at the ends of side i of a triangle, and the one across from it (CellIncidence::sides).
+constexpr std::array<std::array<Index, 3>, 3> kCornersOfSide{{{0, 1, 2}, {0, 2, 1}, {1, 2, 0}}};
+
+// When a straight front that is at a and b at the given times reaches c.
+double arrival_at(const Point& a, double time_a, const Point& b, double time_b, const Point& c) {
+  const Vector along = b - a, to = c - a;
+  const double length = along.norm(), slope = (time_b - time_a) / length;
+  const double by_edges = std::min(time_a + to.norm(), time_b + (c - b).norm());
+  if (!(length > 0) || !(std::abs(slope) < 1)) return by_edges;
+  const double x = to.dot(along) / length, y = along.cross(to).norm() / length;
+  const double rise = std::sqrt(1 - slope * slope), source = x - y * slope / rise;
+  return source >= 0 && source <= length ? time_a + slope * x + rise * y : by_edges;
+}
+
+class SheetBurner {
+ public:
+  SheetBurner(const MedialMesh& mesh, const CellIncidence& at)
+      : mesh_(mesh), at_(at), sectors_(3 * mesh.triangles.size()), arrivals_(3 * mesh.triangles.size(), kNotBurned) {
+    result_.isolated.assign(mesh.edges.size(), std::numeric_limits<double>::quiet_NaN());
+    result_.edge_alive.assign(mesh.edges.size(), 1);
+    result_.triangle_alive.assign(mesh.triangles.size(), 1);
+  }
+
+  SheetBurn run() {
+    join_sectors();
+    light_borders();
+    while (!queue_.empty()) {
+      const auto [time, edge] = queue_.top();
+      queue_.pop();
+      const Index triangle = result_.edge_alive[edge] ? only(at_.triangles_at[edge], result_.triangle_alive) : kNone;
+      if (triangle == kNone) continue;
+      now_ = std::max(now_, time);
+      burn(triangle, edge);
+    }
+    set_vertex_times();
+    return std::move(result_);
+  }
+
+ private:
+  Index side_of(Index triangle, Index edge) const {
+    const auto& sides = at_.sides[triangle];
+    return sides[0] == edge ? 0 : sides[1] == edge ? 1 : 2;
+  }
+  Index corner_at(Index triangle, Index vertex) const {
+    const auto& corners = mesh_.triangles[triangle];
+    return 3 * triangle + (corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2);
+  }
+  double& arrival(Index corner) { return arrivals_[sectors_.root(corner)]; }
+
+  // The corners around a vertex that are joined across edges with two triangles burn as one.
+  void join_sectors() {
+    for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
+      const auto triangles = at_.triangles_at[edge];
+      if (triangles.size() != 2) continue;
+      for (const Index vertex : mesh_.edges[edge])
+        sectors_.unite(corner_at(triangles[0], vertex), corner_at(triangles[1], vertex));
+    }
+  }
+
+  void light_borders() {
+    for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
+      const auto triangles = at_.triangles_at[edge];
+      const auto [a, b] = mesh_.edges[edge];
+      if (triangles.empty()) result_.isolated[edge] = 0.5 * (mesh_.radii[a] + mesh_.radii[b]);
+      if (triangles.size() != 1) continue;
+      for (const Index vertex : {a, b}) {
+        double& time = arrival(corner_at(triangles[0], vertex));
+        time = std::min(time, mesh_.radii[vertex]);
+      }
+    }
+    for (const Index edge : at_.border_edges()) offer(edge, at_.triangles_at[edge][0]);
+  }
+
+  double time_across(Index triangle, Index edge) {
+    const auto& [i, k, m] = kCornersOfSide[side_of(triangle, edge)];
+    const auto& corners = mesh_.triangles[triangle];
+    const auto& at = mesh_.centers;
+    return arrival_at(at[corners[i]], arrival(3 * triangle + i), at[corners[k]], arrival(3 * triangle + k),
+                      at[corners[m]]);
+  }
+
+  // By the time at which all corners burn.
+  void offer(Index edge, Index triangle) {
+    const auto& [i, k, m] = kCornersOfSide[side_of(triangle, edge)];
+    const double across = std::min(arrival(3 * triangle + m), time_across(triangle, edge));
+    queue_.emplace(std::max({arrival(3 * triangle + i), arrival(3 * triangle + k), across}), edge);
+  }
+
+  void burn(Index triangle, Index edge) {
+    const Index corner = 3 * triangle + kCornersOfSide[side_of(triangle, edge)][2];
+    const double across = time_across(triangle, edge);
+    arrival(corner) = std::min(arrival(corner), across);
+    result_.triangle_alive[triangle] = result_.edge_alive[edge] = 0;
+    for (const Index side : at_.sides[triangle]) {
+      if (side == edge) continue;
+      const auto triangles = at_.triangles_at[side];
+      const auto left =
+          std::count_if(triangles.begin(), triangles.end(), [&](Index t) { return result_.triangle_alive[t] != 0; });
+      if (left == 0) result_.isolated[side] = now_;
+      if (left != 1) continue;
+      const Index next = only(triangles, result_.triangle_alive);
+      if (triangles.size() > 2) cross(side, next);
+      offer(side, next);
+    }
+  }
+
+  // Into the last sheet at an edge, when the others are burned.
+  void cross(Index edge, Index next) {
+    for (const Index vertex : mesh_.edges[edge]) {
+      double latest = 0;
+      for (const Index triangle : at_.triangles_at[edge]) {
+        if (triangle != next) latest = std::max(latest, arrival(corner_at(triangle, vertex)));
+      }
+      double& time = arrival(corner_at(next, vertex));
+      time = std::min(time, latest);
+    }
+  }
+
+  void set_vertex_times() {
+    std::vector<double>& times = result_.vertex_times;
+    times.assign(mesh_.centers.size(), -kNotBurned);
+    for (Index triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
+      for (Index k = 0; k < 3; ++k) {
+        double& time = times[mesh_.triangles[triangle][k]];
+        time = std::max(time, arrival(3 * triangle + k));
+      }
+    }
+    for (Index vertex = 0; vertex < mesh_.size(); ++vertex)
+      times[vertex] = std::max(times[vertex], mesh_.radii[vertex]);
+  }
+
+  const MedialMesh& mesh_;
+  const CellIncidence& at_;
+  DisjointSets sectors_;          // of the corners of triangles
+  std::vector<double> arrivals_;  // of each sector, at its root
+  std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
+  double now_ = 0;
+  SheetBurn result_;
+};
+
+}  // namespace
+
+SheetBurn burn_sheets(const MedialMesh& mesh, const CellIncidence& at) { return SheetBurner(mesh, at).run(); }
+
+}  // namespace orchard::detail

@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "../axis/incidence.h"
+#include "orchard/medial/medial_mesh.h"
+
+namespace orchard::detail {
+
+// What is left of a complex after its sheets burned from their borders, and when that was.
+struct SheetBurn {
+  // The time at which each edge lost its last triangle; its mean radius for an edge that had none. It is NaN for an
+  // edge that is gone or still has triangles.
+  std::vector<double> isolated;
+  std::vector<std::uint8_t> edge_alive, triangle_alive;
+  // The time at which the fire has reached a vertex in all sheets around it; its radius for a vertex without sheets,
+  // infinity on closed sheets.
+  std::vector<double> vertex_times;
+};
+
+// Burns the triangles of a complete mesh. Every triangle disappears with an edge that no other triangle has any more,
+// in an elementary collapse, so what is left has the homotopy type of the mesh. All vertices stay.
+// The front is computed in the plane of each triangle, as a straight one between the times at the two ends of an edge.
+// Where at least three sheets meet, the fire goes on into the last of them when the others are burned. O(n log n).
+SheetBurn burn_sheets(const MedialMesh& mesh, const CellIncidence& at);
+
+}  // namespace orchard::detail
