@@ -23,6 +23,8 @@ struct Request {
   MedialCommand medial;
   LeaderboardCommand leaderboard;
   ThicknessCommand thickness;
+  SkeletonCommand skeleton;
+  SegmentCommand segment;
   ViewCommand view;
   std::string shell, format;  // of completion and reference
   ProfileCommand profile;

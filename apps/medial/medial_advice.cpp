@@ -49,8 +49,8 @@ std::string about_protrusion(const WorstPlace& place, const AxisOrigin& origin) 
 
 std::string about_coverage(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
   const MedialTuning& tuning = *origin.tuning;
-  if (tuning.prune_degrees > 0) return fmt::format("--prune-angle {:.3g}", 0.5 * tuning.prune_degrees);
-  if (tuning.options.prune.scale > 1) return "--prune-scale 1";
+  if (tuning.prune_degrees > 0) return fmt::format("--prune angle={:.3g}", 0.5 * tuning.prune_degrees);
+  if (tuning.options.prune.scale > 1) return "--prune scale=1";
   if (!tuning.refine) return "no --raw, or " + more_points(origin);
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double turn = sharpest_edge_near(surface, place.position, 1e-9 * diagonal + 0.5 * place.value * diagonal);

@@ -25,8 +25,7 @@ struct Dimension {
 Dimension parse(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw InputError("--sweep " + text + ": expected NAME=VALUE,VALUE,..");
-  std::string name = text.substr(0, equals);
-  if (name == "prune") name = "prune-angle";
+  const std::string name = text.substr(0, equals);
   const auto& flags = tuning_flags();
   const auto flag = std::find_if(flags.begin(), flags.end(), [&](const TuningFlag& f) { return f.name == name; });
   if (flag == flags.end()) {

@@ -315,7 +315,7 @@ TEST(Medial, DrawsWhereItIsWorstWithTheReport) {
   EXPECT_NE(files.at("l-medial-points.vtp").find("\"repair_pass\""), std::string::npos);
   EXPECT_NE(files.at("l-medial-worst.vtp").find("\"number\""), std::string::npos);
   EXPECT_NE(files.at("l-medial.vtm").find("worst places"), std::string::npos);
-  for (const char* part : {"/l-medial.vtu", "/l-medial-mesh.vtp", "/l-medial-skeleton.vtp", "/l-medial-worst.vtp"})
+  for (const char* part : {"/l-medial.vtu", "/l-medial-mesh.vtp", "/l-medial-structure.vtp", "/l-medial-worst.vtp"})
     EXPECT_NE(files.at("l-medial.pvsm").find(part), std::string::npos) << part;
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--picture"}).exit_code, 2);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--sweep", "samples=200,300", "--picture"}).exit_code, 2);
