@@ -13,6 +13,11 @@ namespace {
 // A sheet is nearly a curve where it burns within this fraction of its radius.
 constexpr double kNarrow = 0.1;
 constexpr double kLeastRatio = 0.2;  // of SkeletonOptions::ratio
+// Of the options' thresholds: below this share of them, ends of curves are noise of the triangulation.
+constexpr double kNoise = 0.5;
+
+// The length of the mean front up to which fires meet at a place, and from which one fire passes.
+constexpr double kFiresMeet = 0.3, kFirePasses = 0.7;
 
 class CurveBurner {
  public:
@@ -29,7 +34,9 @@ class CurveBurner {
 
   PrunedCurves run() {
     burn_all();
-    remove_insignificant();
+    remove_noise();
+    while (remove_branches()) {
+    }
     restore_ends();
     for (Index edge = 0; edge < mesh_.edges.size(); ++edge)
       result_.significance.push_back(result_.edge_alive[edge] ? significance(edge) : 0);
@@ -65,6 +72,20 @@ class CurveBurner {
     return gain >= (is_narrow(edge) ? kLeastRatio : ratio_) * removed_at_[edge];
   }
 
+  // How long the fire takes along an edge from its end: where fires meet head-on, as long as the edge; elsewhere, as
+  // far as the edge runs along with the mean front. Where fires meet at an angle, that front runs along the curve on
+  // which they meet, and edges of the triangulation wind around it. Where one fire passes, this is how long it takes
+  // itself.
+  double duration(Index edge, Index end) const {
+    const Index inner = other_end(edge, end);
+    const Vector front = 0.5 * (burn_.vertex_fronts[end] + burn_.vertex_fronts[inner]);
+    const double strength = front.norm();
+    const double meets = std::clamp((kFirePasses - strength) / (kFirePasses - kFiresMeet), 0.0, 1.0);
+    if (is_bare(edge) || meets == 1) return length(edge);
+    const double along = std::max(0.0, (mesh_.centers[inner] - mesh_.centers[end]).dot(front) / strength);
+    return meets * length(edge) + (1 - meets) * along;
+  }
+
   std::vector<Index> degrees() const {
     std::vector<Index> degrees(mesh_.centers.size(), 0);
     for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
@@ -84,7 +105,7 @@ class CurveBurner {
     const auto offer = [&](Index vertex) {
       if (degree[vertex] != 1) return;
       const Index edge = only(at_.edges_at[vertex], alive);
-      queue.emplace(std::max(burn_.isolated[edge], exposed[vertex] + length(edge)), edge);
+      queue.emplace(std::max(burn_.isolated[edge], exposed[vertex] + duration(edge, vertex)), edge);
     };
     for (Index vertex = 0; vertex < mesh_.size(); ++vertex) offer(vertex);
     while (!queue.empty()) {
@@ -104,15 +125,58 @@ class CurveBurner {
     }
   }
 
-  void remove_insignificant() {
+  bool is_noise(Index edge) const {
+    const double gain = significance(edge);
+    return !is_bare(edge) && (gain < kNoise * erosion_ || gain < kNoise * ratio_ * removed_at_[edge]);
+  }
+
+  void remove(Index edge, Index end) {
+    result_.edge_alive[edge] = result_.vertex_alive[end] = 0;
+    --degree_[end], --degree_[other_end(edge, end)];
+  }
+
+  void remove_noise() {
     result_.edge_alive = burn_.edge_alive;
     result_.vertex_alive.assign(mesh_.centers.size(), 1);
     degree_ = degrees();
     for (const auto& [edge, end] : order_) {
-      if (degree_[end] != 1 || is_significant(edge)) continue;
-      result_.edge_alive[edge] = result_.vertex_alive[end] = 0;
-      --degree_[end], --degree_[other_end(edge, end)];
+      if (degree_[end] == 1 && is_noise(edge)) remove(edge, end);
     }
+  }
+
+  // Marks the edges from an end of a curve to where it branches, if none of them is significant.
+  void mark_branch(Index end, std::vector<std::uint8_t>& marked) const {
+    std::vector<Index> branch;
+    Index edge = only(at_.edges_at[end], result_.edge_alive);
+    for (;;) {
+      if (is_significant(edge)) return;
+      branch.push_back(edge);
+      end = other_end(edge, end);
+      if (degree_[end] != 2) break;
+      for (const Index next : at_.edges_at[end]) {
+        if (result_.edge_alive[next] && next != edge) {
+          edge = next;
+          break;
+        }
+      }
+    }
+    for (const Index e : branch) marked[e] = 1;
+  }
+
+  // All at once, so that of equal branches none is taken for the end of the curve that they branch from. Returns
+  // whether there was one.
+  bool remove_branches() {
+    std::vector<std::uint8_t> marked(mesh_.edges.size(), 0);
+    for (Index vertex = 0; vertex < mesh_.size(); ++vertex) {
+      if (result_.vertex_alive[vertex] && degree_[vertex] == 1) mark_branch(vertex, marked);
+    }
+    bool removed = false;
+    for (const auto& [edge, end] : order_) {
+      if (!marked[edge] || !result_.edge_alive[edge]) continue;
+      remove(edge, end);
+      removed = true;
+    }
+    return removed;
   }
 
   // Along the way on which the fire came.

@@ -28,6 +28,18 @@ double arrival_at(const Point& a, double time_a, const Point& b, double time_b, 
   return source >= 0 && source <= length ? time_a + slope * x + rise * y : by_edges;
 }
 
+// The gradient of times that are linear in a triangle; no longer than 1, as no fire is slower.
+Vector gradient_of(const std::array<Point, 3>& corners, const std::array<double, 3>& times) {
+  const Vector e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], normal = e1.cross(e2);
+  const double squared = normal.squaredNorm();
+  if (!(squared > 0)) return Vector::Zero();
+  const Vector gradient =
+      ((times[1] - times[0]) * e2.cross(normal) + (times[2] - times[0]) * normal.cross(e1)) / squared;
+  const double length = gradient.norm();
+  if (!std::isfinite(length)) return Vector::Zero();
+  return gradient / std::max(1.0, length);
+}
+
 class SheetBurner {
  public:
   SheetBurner(const MedialMesh& mesh, const CellIncidence& at)
@@ -46,9 +58,9 @@ class SheetBurner {
       const Index triangle = result_.edge_alive[edge] ? only(at_.triangles_at[edge], result_.triangle_alive) : kNone;
       if (triangle == kNone) continue;
       now_ = std::max(now_, time);
-      burn(triangle, edge);
+      burn(triangle, first_free_side(triangle));
     }
-    set_vertex_times();
+    set_vertices();
     return std::move(result_);
   }
 
@@ -85,6 +97,20 @@ class SheetBurner {
       }
     }
     for (const Index edge : at_.border_edges()) offer(edge, at_.triangles_at[edge][0]);
+  }
+
+  // Of the sides that no other triangle has any more, the one that the fire reached first.
+  Index first_free_side(Index triangle) {
+    Index best = kNone;
+    std::pair<double, double> least;
+    for (Index k = 0; k < 3; ++k) {
+      const Index side = at_.sides[triangle][k];
+      if (only(at_.triangles_at[side], result_.triangle_alive) != triangle) continue;
+      const double a = arrival(3 * triangle + kCornersOfSide[k][0]), b = arrival(3 * triangle + kCornersOfSide[k][1]);
+      const std::pair<double, double> times{std::max(a, b), std::min(a, b)};
+      if (best == kNone || times < least) best = side, least = times;
+    }
+    return best;
   }
 
   double time_across(Index triangle, Index edge) {
@@ -132,17 +158,27 @@ class SheetBurner {
     }
   }
 
-  void set_vertex_times() {
+  void set_vertices() {
     std::vector<double>& times = result_.vertex_times;
     times.assign(mesh_.centers.size(), -kNotBurned);
+    std::vector<Vector>& fronts = result_.vertex_fronts;
+    fronts.assign(mesh_.centers.size(), Vector::Zero());
+    std::vector<double> counts(mesh_.centers.size(), 0);
     for (Index triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
+      const auto& [a, b, c] = mesh_.triangles[triangle];
+      const std::array own{arrival(3 * triangle), arrival(3 * triangle + 1), arrival(3 * triangle + 2)};
+      const Vector front = gradient_of({mesh_.centers[a], mesh_.centers[b], mesh_.centers[c]}, own);
       for (Index k = 0; k < 3; ++k) {
-        double& time = times[mesh_.triangles[triangle][k]];
-        time = std::max(time, arrival(3 * triangle + k));
+        const Index vertex = mesh_.triangles[triangle][k];
+        times[vertex] = std::max(times[vertex], own[k]);
+        fronts[vertex] += front;
+        ++counts[vertex];
       }
     }
-    for (Index vertex = 0; vertex < mesh_.size(); ++vertex)
+    for (Index vertex = 0; vertex < mesh_.size(); ++vertex) {
       times[vertex] = std::max(times[vertex], mesh_.radii[vertex]);
+      if (counts[vertex] > 0) fronts[vertex] /= counts[vertex];
+    }
   }
 
   const MedialMesh& mesh_;

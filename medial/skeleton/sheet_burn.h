@@ -16,10 +16,14 @@ struct SheetBurn {
   // The time at which the fire has reached a vertex in all sheets around it; its radius for a vertex without sheets,
   // infinity on closed sheets.
   std::vector<double> vertex_times;
+  // The mean direction of the fronts in the triangles around each vertex. Its length is about 1 where one fire passes,
+  // and 0 where two meet head-on or there are no triangles.
+  std::vector<Vector> vertex_fronts;
 };
 
 // Burns the triangles of a complete mesh. Every triangle disappears with an edge that no other triangle has any more,
 // in an elementary collapse, so what is left has the homotopy type of the mesh. All vertices stay.
+// Of several such edges it is the one that burned first, so that what is left runs along with the fire.
 // The front is computed in the plane of each triangle, as a straight one between the times at the two ends of an edge.
 // Where at least three sheets meet, the fire goes on into the last of them when the others are burned. O(n log n).
 SheetBurn burn_sheets(const MedialMesh& mesh, const CellIncidence& at);

@@ -369,19 +369,19 @@ TEST(Medial, TakesTheUsersDiagramAsItIs) {
 TEST(Medial, SweepsAllCombinationsIntoOneTableAndAPlotForEachMetric) {
   const Workplace here;
   const Finished run = here.run({"medial", here.add("l.obj", test::l_shape()), "-o", (here / "out").string(), "--sweep",
-                                 "samples=100,200", "--sweep", "prune=0,30,60", "--quality-samples", "300", "--quiet"});
+                                 "samples=100,200", "--sweep", "prune angle=0,30,60", "--quality-samples", "300", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   const auto files = here.files("out");
   const std::string csv = test::without_provenance(files.at("l-sweep.csv"));
   EXPECT_EQ(lines(csv), 7u);
-  EXPECT_EQ(csv.substr(0, 20), "samples,prune-angle,");
+  EXPECT_EQ(csv.substr(0, 20), "samples,prune angle,");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','),
             7 * std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ','));
   for (const char* metric : {"coverage_max", "protrusion_mean", "stability_max", "economy_spheres", "seconds"}) {
     const std::string& svg = files.at("l-sweep-" + std::string(metric) + ".svg");
     EXPECT_NE(svg.find("</svg>"), std::string::npos);
-    EXPECT_NE(svg.find("prune-angle 30"), std::string::npos);
+    EXPECT_NE(svg.find("prune angle 30"), std::string::npos);
   }
 }
 
@@ -390,7 +390,7 @@ TEST(Medial, GivesTheSameBytesOnAnyNumberOfThreads) {
   const std::string mesh = here.add("torus.obj", test::torus(20, 10));
   const auto axis = [&](const char* threads) {
     const Finished run = here.run({"medial", mesh, "-o", (here / "out").string(), "--samples", "400", "--quiet",
-                                   "--no-views", "--prune-angle", "20", "--threads", threads});
+                                   "--no-views", "--prune", "angle=20", "--threads", threads});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return here.files("out").at("torus.ma");
   };
@@ -461,7 +461,7 @@ TEST(Medial, RefusesBadOptionsInOneLine) {
     EXPECT_EQ(run.exit_code, 2) << options[1];
     EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
   }
-  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--prune-angle", "200"}).exit_code, 2);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--prune", "angle=200"}).exit_code, 2);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--samples", "20.5"}).exit_code, 2);
 }
 
