@@ -10,7 +10,7 @@
 namespace orchard::detail {
 namespace {
 
-// A sheet is nearly a curve where it burns within this fraction of its radius.
+// A sheet is nearly a curve where its fire comes from no farther than this fraction of its radius, and an edge.
 constexpr double kNarrow = 0.1;
 constexpr double kLeastRatio = 0.2;  // of SkeletonOptions::ratio
 // Of the options' thresholds: below this share of them, ends of curves are noise of the triangulation.
@@ -63,7 +63,7 @@ class CurveBurner {
   bool is_narrow(Index edge) const {
     const auto [a, b] = mesh_.edges[edge];
     const double radius = 0.5 * (mesh_.radii[a] + mesh_.radii[b]);
-    return burn_.isolated[edge] <= (1 + kNarrow) * radius + edge_length_;
+    return std::max(burn_.vertex_widths[a], burn_.vertex_widths[b]) <= kNarrow * radius + edge_length_;
   }
   bool is_significant(Index edge) const {
     const double gain = significance(edge);

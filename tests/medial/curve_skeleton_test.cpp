@@ -26,12 +26,6 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
   return (p - (a + t * (b - a))).norm();
 }
 
-double total_length(const CurveSkeleton& skeleton) {
-  double length = 0;
-  for (const auto& arc : skeleton.arcs) length += arc.length;
-  return length;
-}
-
 Topology topology_of(const CurveSkeleton& skeleton) { return topology(medial_mesh(skeleton)); }
 
 MedialMesh axis_of(const Surface& surface, Index points = 2000) {
