@@ -10,8 +10,9 @@
 namespace orchard::detail {
 namespace {
 
-// A sheet is nearly a curve where its fire comes from no farther than this fraction of its radius, and an edge.
-constexpr double kNarrow = 0.1;
+// A sheet is nearly a curve where its fire comes from no farther than this fraction of its radius, and an edge, which
+// counts for at most another fraction of the radius.
+constexpr double kNarrow = 0.1, kNarrowEdge = 0.25;
 constexpr double kLeastRatio = 0.2;  // of SkeletonOptions::ratio
 // Of the options' thresholds: below this share of them, ends of curves are noise of the triangulation.
 constexpr double kNoise = 0.5;
@@ -63,7 +64,8 @@ class CurveBurner {
   bool is_narrow(Index edge) const {
     const auto [a, b] = mesh_.edges[edge];
     const double radius = 0.5 * (mesh_.radii[a] + mesh_.radii[b]);
-    return std::max(burn_.vertex_widths[a], burn_.vertex_widths[b]) <= kNarrow * radius + edge_length_;
+    return std::max(burn_.vertex_widths[a], burn_.vertex_widths[b]) <=
+           kNarrow * radius + std::min(edge_length_, kNarrowEdge * radius);
   }
   bool is_significant(Index edge) const {
     const double gain = significance(edge);
