@@ -7,7 +7,6 @@
 #include "canonical_frame.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
-#include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/proven.h"
 #include "tightened/tightened_in_frame.h"
 #include "tightened/tree_looseness.h"
@@ -17,10 +16,18 @@ namespace {
 
 constexpr double kSamplesPerLeaf = 20;
 constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
-constexpr double kCoolStart = 0.05;    // first acceptance where annealing is not to forget what it starts from
 
-TightenOptions tightening_options(const SphereTreeOptions& o) {
-  return {o.depth, o.branching, o.spheres, o.effort, o.objective, o.refinement, o.seed};
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+
+const Refinement& refinement_of(const TreeOptions& options) {
+  return std::visit([](const auto& of_method) -> const Refinement& { return of_method.refinement; }, options);
+}
+
+bool is_plain(const OctreeOptions& options) {
+  return options.branching == 8 && options.refinement.error == 0 && options.refinement.regions.empty();
 }
 
 // Trees are built in the surface's frame, so that they do not depend on where it lies and how large it is: all but
@@ -30,23 +37,24 @@ class TreeBuilder {
   TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
       : given_(surface),
         framed_(surface),
-        surface_(in_frame(options) ? framed_.surface() : surface),
+        method_(method_of(options.tree)),
+        surface_(in_frame() ? framed_.surface() : surface),
         options_(options),
         progress_(progress) {
-    if (in_frame(options)) options_.refinement = framed_.in(options.refinement);
-    build_.method = options.method;
-    build_.effort = options.effort;
-    build_.seed = options.seed;
+    build_.tree_options = options.tree;
+    if (in_frame())
+      std::visit([&](auto& of_method) { of_method.refinement = framed_.in(of_method.refinement); }, options_.tree);
   }
 
   SphereTreeBuild run(MedialBuildInput input) {
     stage("octree to compare with",
-          [&] { build_.octree = octree(framed_.surface(), {.depth = options_.depth}, progress_); });
-    if (samples_surface(options_.method)) start_from(std::move(input));
+          [&] { build_.octree = octree(framed_.surface(), {.depth = depth_of(options_.tree)}, progress_); });
+    if (samples_surface(method_)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {
-      if (options_.method == TreeMethod::octree) return;  // nothing is open, as require_proof() finds
-      const bool grows = options_.method == TreeMethod::merging && options_.closing == MergeClosing::growth;
+      if (method_ == TreeMethod::octree) return;  // nothing is open, as require_proof() finds
+      const auto* merging = std::get_if<MergeOptions>(&options_.tree);
+      const bool grows = merging != nullptr && merging->closing == MergeClosing::growth;
       build_.cover = grows ? grow_to_cover(build_.tree, surface_, kGrowthFactor, progress_)
                            : cover(build_.tree, surface_, progress_);
     });
@@ -54,8 +62,8 @@ class TreeBuilder {
     stage("redundant spheres",
           [&] { build_.redundancy = remove_redundant(build_.tree, surface_, options_.redundancy, progress_); });
     if (options_.anneal) stage("annealing afterwards", [&] { anneal(); });
-    if (options_.descent > 0) stage("random descent", [&] { descend(); });
-    if (in_frame(options_)) framed_.take_out(build_.tree);
+    if (options_.descent) stage("random descent", [&] { descend(); });
+    if (in_frame()) framed_.take_out(build_.tree);
     framed_.take_out(build_.octree);
     stage("measuring", [&] {
       measure(build_.tree, given_, progress_);
@@ -73,17 +81,17 @@ class TreeBuilder {
     time_stage(build_.seconds, name, std::forward<Function>(function));
   }
 
-  static bool in_frame(const SphereTreeOptions& options) { return options.method != TreeMethod::merging; }
+  bool in_frame() const { return method_ != TreeMethod::merging; }
 
   // Points of the surface, and the axis unless the tree does without.
   void start_from(MedialBuildInput input) {
     MedialBuildOptions medial = options_.medial;
     if (options_.samples_by_need) {
-      const Index samples = samples_needed(options_);
+      const Index samples = samples_needed(options_.tree);
       medial.sampling.edge_points = samples / 5;
       medial.sampling.face_points = samples - samples / 5;
     }
-    if (options_.method == TreeMethod::merging) return make_axis(medial, std::move(input));
+    if (method_ == TreeMethod::merging) return make_axis(medial, std::move(input));
     const bool imports = input.mesh.has_value();
     if (!imports) take_points(medial, input);
     if (imports || options_.axis) make_axis(medial, std::move(input));
@@ -134,46 +142,44 @@ class TreeBuilder {
   }
 
   void make_tree() {
-    const SphereTreeOptions& o = options_;
-    switch (o.method) {
-      case TreeMethod::octree:
-        stage("octree", [&] {
-          const bool is_plain = o.branching == 8 && o.refinement.error == 0 && o.refinement.regions.empty();
-          build_.tree = is_plain ? build_.octree : octree(surface_, {o.depth, o.refinement, o.branching}, progress_);
-        });
-        break;
-      case TreeMethod::merging:
-        stage("merging", [&] {
-          const MergeOptions merging{o.depth, o.branching, o.refinement, o.closing};
-          keep(merge_tree(surface_, build_.medial->axis, merging, progress_), build_.merging);
-        });
-        break;
-      case TreeMethod::annealing:
-        stage("annealing", [&] { keep(annealed_tree(surface_, annealing_options(o), progress_), build_.annealing); });
-        break;
-      case TreeMethod::tightened:
-        stage("tightening", [&] {
-          keep(detail::tightened_in_frame(surface_, sampling_, tightening_options(o), progress_), build_.tightening);
-        });
-        break;
-    }
+    std::visit(
+        Overloaded{[&](const OctreeOptions& octree_options) {
+                     stage("octree", [&] {
+                       build_.tree =
+                           is_plain(octree_options) ? build_.octree : octree(surface_, octree_options, progress_);
+                     });
+                   },
+                   [&](const MergeOptions& merging) {
+                     stage("merging", [&] {
+                       keep(merge_tree(surface_, build_.medial->axis, merging, progress_), build_.merging);
+                     });
+                   },
+                   [&](const AnnealingOptions& annealing) {
+                     stage("annealing", [&] { keep(annealed_tree(surface_, annealing, progress_), build_.annealing); });
+                   },
+                   [&](const TightenOptions& tightening) {
+                     stage("tightening", [&] {
+                       keep(detail::tightened_in_frame(surface_, sampling_, tightening, progress_), build_.tightening);
+                     });
+                   }},
+        options_.tree);
   }
 
   void anneal() {
-    if (options_.method == TreeMethod::annealing) return;
-    build_.annealing = anneal_tree(build_.tree, surface_, annealing_options(options_), progress_);
+    if (method_ == TreeMethod::annealing) return;
+    build_.annealing = anneal_tree(build_.tree, surface_, *options_.anneal, progress_);
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
   void descend() {
-    build_.descent = random_descent(build_.tree, surface_, {options_.descent, options_.seed}, progress_);
+    build_.descent = random_descent(build_.tree, surface_, *options_.descent, progress_);
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
   // Whether no level may be looser than the one above it or than the octree's.
   bool is_compared() const {
-    return options_.method == TreeMethod::tightened && options_.descent == 0 && !options_.anneal &&
-           detail::goes_on_everywhere(options_.refinement);
+    return method_ == TreeMethod::tightened && !options_.descent && !options_.anneal &&
+           detail::goes_on_everywhere(refinement_of(options_.tree));
   }
 
   void put_back(const SphereTree& whole) {
@@ -187,7 +193,7 @@ class TreeBuilder {
   // for a tree that was closed in the frame.
   void require_proof() {
     ProvenTree proven = pack_proven(build_.tree, given_, progress_);
-    if (proven.proof.triangles_uncovered > 0 && in_frame(options_)) {
+    if (proven.proof.triangles_uncovered > 0 && in_frame()) {
       cover(build_.tree, given_, progress_);
       measure(build_.tree, given_, progress_);
       proven = pack_proven(build_.tree, given_, progress_);
@@ -204,6 +210,7 @@ class TreeBuilder {
 
   const Surface& given_;
   const detail::FramedSurface framed_;
+  const TreeMethod method_;
   const Surface& surface_;  // that the tree is built on
   SphereTreeOptions options_;
   const Progress& progress_;
@@ -213,57 +220,41 @@ class TreeBuilder {
 
 }  // namespace
 
-AnnealingOptions annealing_options(const SphereTreeOptions& o) {
-  AnnealingOptions annealing;
-  annealing.depth = o.depth;
-  annealing.branching = o.branching;
-  annealing.energy = o.energy;
-  annealing.distance = o.distance;
-  annealing.refinement = o.refinement;
-  annealing.seed = o.seed;
-  if (o.redundancy == Selection::independent) annealing.redundancy = Selection::independent;
-  if (o.effort != Effort::high) {
-    const bool low = o.effort == Effort::low;
-    annealing.max_accepted = annealing.max_rejected = low ? 30 : 60;
-    annealing.iterations_first = low ? 40 : 80;
-    annealing.iterations = low ? 20 : 30;
-    annealing.cooling = low ? 0.8 : 0.85;
-  }
-  if (o.method != TreeMethod::annealing) annealing.first_acceptance = kCoolStart;
-  const auto set = [](auto& number, const auto& given) { number = given.value_or(number); };
-  const AnnealingTuning& t = o.annealing;
-  set(annealing.move, t.move);
-  set(annealing.min_scale, t.min_scale);
-  set(annealing.max_scale, t.max_scale);
-  set(annealing.first_trials, t.first_trials);
-  set(annealing.first_acceptance, t.first_acceptance);
-  set(annealing.max_accepted, t.max_accepted);
-  set(annealing.max_rejected, t.max_rejected);
-  set(annealing.max_uncovering, t.max_uncovering);
-  set(annealing.cooling, t.cooling);
-  set(annealing.iterations_first, t.iterations_first);
-  set(annealing.iterations, t.iterations);
-  return annealing;
+TreeMethod method_of(const TreeOptions& options) {
+  return std::visit(Overloaded{[](const TightenOptions&) { return TreeMethod::tightened; },
+                               [](const MergeOptions&) { return TreeMethod::merging; },
+                               [](const AnnealingOptions&) { return TreeMethod::annealing; },
+                               [](const OctreeOptions&) { return TreeMethod::octree; }},
+                    options);
+}
+
+Index depth_of(const TreeOptions& options) {
+  const auto* tightened = std::get_if<TightenOptions>(&options);
+  if (tightened != nullptr && !tightened->spheres.empty()) return static_cast<Index>(tightened->spheres.size());
+  return std::visit([](const auto& of_method) { return of_method.depth; }, options);
 }
 
 bool samples_surface(TreeMethod method) { return method == TreeMethod::tightened || method == TreeMethod::merging; }
 
-Index samples_needed(const SphereTreeOptions& options) {
-  if (options.method != TreeMethod::tightened) return 5000;
-  const double leaves = options.spheres.empty() ? std::pow(static_cast<double>(options.branching), options.depth)
-                                                : static_cast<double>(options.spheres.back());
+Index samples_needed(const TreeOptions& options) {
+  const auto* tightened = std::get_if<TightenOptions>(&options);
+  if (tightened == nullptr) return 5000;
+  const double leaves = tightened->spheres.empty()
+                            ? std::pow(static_cast<double>(tightened->branching), tightened->depth)
+                            : static_cast<double>(tightened->spheres.back());
   return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, 10'000.0, 200'000.0));
 }
 
-void require_sizes(const SphereTreeOptions& options) {
-  if (options.method == TreeMethod::tightened) return require_sizes(tightening_options(options));
-  if (options.branching < 2 || options.branching > kMaxFanOut)
+void require_sizes(const TreeOptions& options) {
+  if (const auto* tightened = std::get_if<TightenOptions>(&options)) return require_sizes(*tightened);
+  const Index branching = std::visit([](const auto& of_method) { return of_method.branching; }, options);
+  if (branching < 2 || branching > kMaxFanOut)
     throw InputError("branching must lie between 2 and " + std::to_string(kMaxFanOut));
 }
 
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options, const Progress& progress,
                                   MedialBuildInput input) {
-  require_sizes(options);
+  require_sizes(options.tree);
   return TreeBuilder(surface, options, progress).run(std::move(input));
 }
 

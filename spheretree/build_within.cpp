@@ -14,17 +14,19 @@ class Attempts {
  public:
   Attempts(double seconds, const Surface& surface, const SphereTreeOptions& options, const Progress& progress,
            const MedialBuildInput& input)
-      : seconds_(seconds), surface_(surface), options_(options), progress_(progress), input_(input) {}
+      : seconds_(seconds),
+        surface_(surface),
+        options_(options),
+        tightening_(std::get<TightenOptions>(options.tree)),
+        progress_(progress),
+        input_(input) {}
 
   SphereTreeBuild run() {
     SphereTreeOptions octree = options_;
-    octree.method = TreeMethod::octree;
-    octree.branching = 8;
-    octree.spheres.clear();
+    octree.tree = OctreeOptions{.depth = depth_of(tightening_), .refinement = tightening_.refinement};
     best_.emplace(build_sphere_tree(surface_, octree, progress_));
-    options_.method = TreeMethod::tightened;
     for (const Effort effort : {Effort::low, Effort::standard}) attempt(effort);
-    for (; !over(); ++options_.seed) attempt(Effort::high);
+    for (; !over(); next_seed()) attempt(Effort::high);
     return std::move(*best_);
   }
 
@@ -32,9 +34,17 @@ class Attempts {
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return elapsed() >= seconds_; }
 
+  // Of the steps that follow the builder, too.
+  void next_seed() {
+    ++tightening_.seed;
+    if (options_.anneal) ++options_.anneal->seed;
+    if (options_.descent) ++options_.descent->seed;
+  }
+
   void attempt(Effort effort) {
     if (over()) return;
-    options_.effort = effort;
+    tightening_.effort = effort;
+    options_.tree = tightening_;
     const auto until_over = [&](std::string_view stage, double) {
       if (progress_ && !progress_(stage, std::min(1.0, elapsed() / seconds_))) stopped_ = true;
       return !stopped_ && !over();
@@ -55,6 +65,7 @@ class Attempts {
   const double seconds_;
   const Surface& surface_;
   SphereTreeOptions options_;
+  TightenOptions tightening_;
   const Progress& progress_;
   const MedialBuildInput& input_;
   const Clock::time_point start_ = Clock::now();
@@ -67,6 +78,8 @@ class Attempts {
 SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options,
                                          const Progress& progress, const MedialBuildInput& input) {
   if (!(seconds >= 0)) throw InputError("the time for a tree: a number of seconds, at least 0");
+  if (method_of(options.tree) != TreeMethod::tightened)
+    throw InputError("a tree within a time limit is a tightened one: give the options of that method");
   return Attempts(seconds, surface, options, progress, input).run();
 }
 

@@ -50,8 +50,8 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
   add_join(command, sample.join);
 }
 
-void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
-  const auto wanted = [&tree]() -> SphereTreeOptions& {
+void add_sweep_tree(CLI::App& command, std::optional<TreeRequest>& tree) {
+  const auto wanted = [&tree]() -> TreeRequest& {
     if (!tree) tree.emplace();
     return *tree;
   };

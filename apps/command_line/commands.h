@@ -18,6 +18,7 @@
 #include "robot/bodies.h"
 #include "robot/command/robot_reading.h"
 #include "robot/formats.h"
+#include "trees/tree_request.h"
 
 // The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
 // exit code and one line on stderr.
@@ -33,7 +34,7 @@ struct Output {
 struct BuildCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
-  SphereTreeOptions options;      // but for options.medial, which the tuning says
+  TreeRequest tree;
   std::optional<double> seconds;  // what there is after that time
   MedialTuning tuning;
   AxisSource source;
@@ -180,17 +181,17 @@ struct MedialCommand {
   std::string up = "y";                       // the mesh's axis that points up in the picture
   Index quality_samples = 100'000;            // surface points of the judgement
   Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
-  double few_error = 0;                   // percent of the diagonal that the simplified axis may be off; 0: not asked
-  std::string few_kind = "medial";        // what the balls of the simplified axis may be: medial or free
-  bool curve = false;                     // simplify to ever fewer vertices, and write how far off each is
-  std::filesystem::path envelope;         // .obj: the surface of what the axis stands for; empty: none
-  double envelope_cell = 0.5;             // % of the diagonal
-  std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
-  std::string best = "hausdorff_max";     // of a sweep: the measure that its rows are printed by, the best first
-  std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
-  bool views = true;                      // ParaView files, where the program was built with them
-  std::vector<std::string> given;         // the options on the command line, as of BuildCommand
-  bool accept = false;                    // as of BuildCommand
+  double few_error = 0;                // percent of the diagonal that the simplified axis may be off; 0: not asked
+  std::string few_kind = "medial";     // what the balls of the simplified axis may be: medial or free
+  bool curve = false;                  // simplify to ever fewer vertices, and write how far off each is
+  std::filesystem::path envelope;      // .obj: the surface of what the axis stands for; empty: none
+  double envelope_cell = 0.5;          // % of the diagonal
+  std::vector<std::string> sweep;      // NAME=VALUE,VALUE,..
+  std::string best = "hausdorff_max";  // of a sweep: the measure that its rows are printed by, the best first
+  std::optional<TreeRequest> tree;     // of a sweep: the tree to build from each axis
+  bool views = true;                   // ParaView files, where the program was built with them
+  std::vector<std::string> given;      // the options on the command line, as of BuildCommand
+  bool accept = false;                 // as of BuildCommand
   Output output;
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line

@@ -21,7 +21,7 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("-o,--output", build.folder, "Folder that receives the tree, the views and the report")
       ->required();
   add_mesh_options(command, build.reading);
-  add_tree_options(command, build.options);
+  add_tree_options(command, build.tree);
   command
       .add_option(
           "--time", build.seconds,
@@ -56,8 +56,6 @@ void add_build(CLI::App& app, Request& request) {
   command.callback([&request, &command] {
     request.build.output.run = invocation_of(command, request.typed);
     request.build.given = given_of(command);
-    SphereTreeOptions& options = request.build.options;
-    if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
     request.run = [&request] { request.exit_code = orchard::apps::build(request.build); };
   });
 }

@@ -34,6 +34,8 @@ const std::map<std::string, Selection> kSelections{
     {"independent", Selection::independent}, {"acyclic", Selection::acyclic}, {"exhaustive", Selection::exhaustive}};
 const std::map<std::string, MergeClosing> kClosings{{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}};
 
+constexpr const char* kSchedule = "Annealing schedule (in place of --effort; defaults are the dissertation's)";
+
 template <class Value>
 const char* key_of(const std::map<std::string, Value>& names, Value value) {
   for (const auto& [key, candidate] : names)
@@ -78,38 +80,52 @@ Refinement::Region parse_region(const std::string& text) {
   return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
 }
 
+// A number of the annealing's schedule, kept until the effort is known.
+template <class Number>
+void add_schedule(CLI::App& command, TreeRequest& tree, const char* option, Number AnnealingOptions::*number,
+                  const char* what, const CLI::Validator& check) {
+  command
+      .add_option_function<Number>(
+          option,
+          [&tree, number](const Number& value) {
+            tree.schedule.push_back([number, value](AnnealingOptions& options) { options.*number = value; });
+          },
+          what)
+      ->check(check)
+      ->group(kSchedule);
+}
+
 // The numbers of dissertation 5.3.1, in place of the effort's.
-void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
-  AnnealingTuning& tuning = options.annealing;
-  constexpr const char* group = "Annealing schedule (in place of --effort; defaults are the dissertation's)";
+void add_annealing_options(CLI::App& command, TreeRequest& tree) {
   const auto share = NumberValidator(CLI::Range(1e-6, 1 - 1e-6));
   const auto count = CLI::Range(1, 1'000'000);
-  const auto add = [&](const char* option, auto& value, const char* what, const auto& check) {
-    command.add_option(option, value, what)->check(check)->group(group);
+  const auto add = [&](const char* option, auto number, const char* what, const auto& check) {
+    add_schedule(command, tree, option, number, what, check);
   };
-  add_choice(command, "--anneal-distance", kDistances, options.distance,
+  add_choice(command, "--anneal-distance", kDistances, tree.distance,
              "Looseness of a sphere: by Lemma 5.1 (lemma, default), at 20 points (samples), or at these and corrected "
              "(corrected-samples)")
-      ->group(group);
-  add("--anneal-move", tuning.move, "Longest translation of one change, in radii of the parent [0.035]",
+      ->group(kSchedule);
+  add("--anneal-move", &AnnealingOptions::move, "Longest translation of one change, in radii of the parent [0.035]",
       NumberValidator(CLI::Range(0.0, 1.0)));
-  add("--anneal-min-scale", tuning.min_scale, "Smallest factor of one change of a radius [0.95]",
+  add("--anneal-min-scale", &AnnealingOptions::min_scale, "Smallest factor of one change of a radius [0.95]",
       NumberValidator(CLI::Range(0.01, 1.0)));
-  add("--anneal-max-scale", tuning.max_scale, "Largest factor of one change of a radius [1.053]",
+  add("--anneal-max-scale", &AnnealingOptions::max_scale, "Largest factor of one change of a radius [1.053]",
       NumberValidator(CLI::Range(1.0, 100.0)));
-  add("--anneal-first-trials", tuning.first_trials, "Changes from which the first temperature is estimated [40]",
-      count);
-  add("--anneal-first-acceptance", tuning.first_acceptance,
+  add("--anneal-first-trials", &AnnealingOptions::first_trials,
+      "Changes from which the first temperature is estimated [40]", count);
+  add("--anneal-first-acceptance", &AnnealingOptions::first_acceptance,
       "Probability that a rise of average size is accepted at the first temperature [0.9]", share);
-  add("--anneal-max-accepted", tuning.max_accepted, "Largest number of accepted changes at one temperature [200]",
-      count);
-  add("--anneal-max-rejected", tuning.max_rejected, "Largest number of rejected changes at one temperature [200]",
-      count);
-  add("--anneal-max-uncovering", tuning.max_uncovering,
+  add("--anneal-max-accepted", &AnnealingOptions::max_accepted,
+      "Largest number of accepted changes at one temperature [200]", count);
+  add("--anneal-max-rejected", &AnnealingOptions::max_rejected,
+      "Largest number of rejected changes at one temperature [200]", count);
+  add("--anneal-max-uncovering", &AnnealingOptions::max_uncovering,
       "Largest number of changes at one temperature that uncover the surface and are retried [20000]", count);
-  add("--anneal-cooling", tuning.cooling, "Factor from one temperature to the next [0.9]", share);
-  add("--anneal-first-iterations", tuning.iterations_first, "Number of temperatures on the first level [100]", count);
-  add("--anneal-iterations", tuning.iterations, "Number of temperatures on each level below [50]", count);
+  add("--anneal-cooling", &AnnealingOptions::cooling, "Factor from one temperature to the next [0.9]", share);
+  add("--anneal-first-iterations", &AnnealingOptions::iterations_first,
+      "Number of temperatures on the first level [100]", count);
+  add("--anneal-iterations", &AnnealingOptions::iterations, "Number of temperatures on each level below [50]", count);
 }
 
 }  // namespace
@@ -119,61 +135,61 @@ const char* name(Effort effort) { return key_of(kEfforts, effort); }
 const char* name(Objective objective) { return key_of(kObjectives, objective); }
 const char* name(Selection selection) { return key_of(kSelections, selection); }
 
-void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
-  add_choice(command, "--method", kMethods, options.method,
+void add_tree_options(CLI::App& command, TreeRequest& tree) {
+  add_choice(command, "--method", kMethods, tree.method,
              "Construction method: tightened (default, the tightest trees), merging (along the medial axis), annealing "
              "(the dissertation's) or octree (the fastest)");
   auto* depth =
       command
-          .add_option("--depth", options.depth,
+          .add_option("--depth", tree.depth,
                       "Largest number of levels below the root. Each level costs about --branching times the one above")
           ->check(CLI::Range(1, 20))
           ->capture_default_str();
   auto* branching = command
-                        .add_option("--branching", options.branching,
+                        .add_option("--branching", tree.branching,
                                     "Children per sphere: the average for tightened and merging, which give more where "
                                     "they help, and the most for the others. Above 64 for tightened only")
                         ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
                         ->capture_default_str();
-  add_list(command, "--spheres", options.spheres,
+  add_list(command, "--spheres", tree.spheres,
            "tightened: largest number of spheres of each level, N1,N2,.., in place of --depth and --branching")
       ->excludes(depth)
       ->excludes(branching);
-  add_choice(command, "--effort", kEfforts, options.effort,
+  add_choice(command, "--effort", kEfforts, tree.effort,
              "How long to search. Times are about 1 : 2 : 6 for tightened and 1 : 3 : 17 for annealing, where high is "
              "the dissertation's schedule");
-  add_choice(command, "--objective", kObjectives, options.objective,
+  add_choice(command, "--objective", kObjectives, tree.objective,
              "tightened: what to minimise, the maximum inaccuracy, the mean inaccuracy, the outside volume or a "
              "balance of them (default)");
-  add_choice(command, "--closing", kClosings, options.closing,
+  add_choice(command, "--closing", kClosings, tree.closing,
              "merging: how spheres are closed over the surface, fitted again (refit, default) or grown by a tenth at a "
              "time (growth, the dissertation's)");
   add_choice(
-      command, "--energy", kEnergies, options.energy,
+      command, "--energy", kEnergies, tree.energy,
       "annealing: looseness of a set of siblings, that of the loosest (maximum, default) or of all together (sum)");
-  add_annealing_options(command, options);
-  add_choice(command, "--redundant", kSelections, options.redundancy,
+  add_annealing_options(command, tree);
+  add_choice(command, "--redundant", kSelections, tree.redundancy,
              "Which redundant spheres to remove: all that can be (exhaustive, default), chains without cycles "
              "(acyclic), or only those on which no other removal depends (independent, the dissertation's)");
-  command.add_flag("--anneal", options.anneal,
+  command.add_flag("--anneal", tree.anneal,
                    "Anneal each set of siblings of the tree that the method has built, which makes none looser. Takes "
                    "about as long as --method annealing");
   command
-      .add_option("--descent", options.descent,
+      .add_option("--descent", tree.descent_trials,
                   "Trials per sphere of a random descent that follows any method. More trials tighten the tree a "
                   "little and take longer")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
   command
       .add_option(
-          "--error", options.refinement.error,
+          "--error", tree.refinement.error,
           "Do not refine spheres whose inaccuracy is at most this, in mesh units (default: refine all down to --depth)")
       ->check(NumberValidator(CLI::NonNegativeNumber));
   command
       .add_option_function<std::vector<std::string>>(
           "--region",
-          [&options](const std::vector<std::string>& regions) {
-            for (const std::string& region : regions) options.refinement.regions.push_back(parse_region(region));
+          [&tree](const std::vector<std::string>& regions) {
+            for (const std::string& region : regions) tree.refinement.regions.push_back(parse_region(region));
           },
           "x,y,z,r=E: use E in place of --error for spheres that meet this ball. May be repeated")
       ->allow_extra_args(false);

@@ -89,13 +89,13 @@ void refuse_unused_in_sweep(const MedialCommand& command, const Names& swept) {
 }  // namespace
 
 void refuse_unused_options(const BuildCommand& command) {
-  const TreeMethod method = command.options.method;
-  if (command.options.anneal && method == TreeMethod::annealing)
+  const TreeMethod method = command.tree.method;
+  if (command.tree.anneal && method == TreeMethod::annealing)
     throw InputError("--anneal has no effect on --method annealing, which anneals anyway; leave it out");
   for (const auto& [option, methods] : own_options()) {
     const auto is_for = [&, &own = methods](TreeMethod m) { return std::find(own.begin(), own.end(), m) != own.end(); };
     const bool anneals = is_for(TreeMethod::annealing);
-    if (!among(option, command.given) || is_for(method) || (anneals && command.options.anneal)) continue;
+    if (!among(option, command.given) || is_for(method) || (anneals && command.tree.anneal)) continue;
     throw InputError(fmt::format("--{} has no effect on --method {}; it is for {}{}", option, name(method),
                                  names_of(methods), anneals ? ", and for others with --anneal" : ""));
   }

@@ -15,10 +15,7 @@ runtime::PackedSphereTree ship_tree() {
     mesh.triangles.push_back({i, next, 4});
     mesh.triangles.push_back({next, i, 5});
   }
-  SphereTreeOptions options;
-  options.method = TreeMethod::octree;
-  options.depth = 3;
-  return build_sphere_tree(Surface(std::move(mesh)), options).packed;
+  return build_sphere_tree(Surface(std::move(mesh)), {.tree = OctreeOptions{.depth = 3}}).packed;
 }
 
 }  // namespace orchard::apps

@@ -138,12 +138,11 @@ MedialTuning tuning_of(const MedialCommand& command, const std::vector<Dimension
 }
 
 // From the very axis: its diagram is taken over.
-SphereTreeBuild tree_of(const SphereTreeOptions& wanted, const Surface& surface, const MedialBuildOptions& medial,
+SphereTreeBuild tree_of(const TreeRequest& wanted, const Surface& surface, const MedialBuildOptions& medial,
                         MedialBuild build, const Progress& progress) {
-  SphereTreeOptions options = wanted;
+  SphereTreeOptions options = tree_options(wanted, medial.sampling.seed);
   options.medial = medial;
   options.samples_by_need = false;
-  options.seed = medial.sampling.seed;
   MedialBuildInput input;
   input.diagram = {std::move(build.diagram), std::move(build.sampling)};
   return build_sphere_tree(surface, options, progress, std::move(input));

@@ -73,11 +73,11 @@ Broken broken(const FewBalls& few, const SimplifyOptions& options, const Topolog
   return result;
 }
 
-Broken broken(const SphereTreeBuild& build, const SphereTreeOptions& options) {
+Broken broken(const SphereTreeBuild& build, const Refinement& refinement) {
   Index loose = 0, limited_leaves = 0;
   double worst = 0, allowed_there = 0;
   for (const SphereNode& node : build.tree.nodes) {
-    const double allowed = options.refinement.allowed(node.sphere);
+    const double allowed = refinement.allowed(node.sphere);
     if (node.child_count > 0 || !(allowed > 0)) continue;
     ++limited_leaves;
     if (node.inaccuracy <= allowed) continue;

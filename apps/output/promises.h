@@ -30,7 +30,7 @@ nlohmann::json to_json(const PromiseCheck& check);
 Broken broken(const FewBalls& few, const SimplifyOptions& options, const Topology& wanted);
 
 // Of a tree: where a node without children is looser than --error or --region allow. Lengths in mesh units.
-Broken broken(const SphereTreeBuild& build, const SphereTreeOptions& options);
+Broken broken(const SphereTreeBuild& build, const Refinement& refinement);
 
 // The last line of a command that broke a promise, without its newline; empty if none is broken.
 std::string in_one_line(const Broken& broken);

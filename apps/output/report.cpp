@@ -161,32 +161,37 @@ json mesh_json(const Surface& surface) {
           {"bounding_ball", {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius}}};
 }
 
-json build_json(const Surface& surface, const SphereTreeOptions& options, const SphereTreeBuild& result,
-                double wrap_distance) {
+json build_json(const Surface& surface, const TreeRequest& tree, const SphereTreeOptions& options,
+                const SphereTreeBuild& result, double wrap_distance) {
   const double radius = surface.bounding_radius();
   json report;
   report["mesh"] = mesh_json(surface);
-  report["options"] = {
-      {"method", name(result.method)},         {"depth", options.depth},
-      {"branching", options.branching},        {"effort", name(result.effort)},
-      {"objective", name(options.objective)},  {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
-      {"redundant", name(options.redundancy)}, {"seed", result.seed}};
-  if (!options.spheres.empty()) report["options"]["spheres"] = options.spheres;
+  const TreeMethod method = method_of(result.tree_options);
+  const auto* tightened = std::get_if<TightenOptions>(&result.tree_options);  // with --time these are the best ones
+  report["options"] = {{"method", name(method)},
+                       {"depth", levels_of(tree)},
+                       {"branching", tree.branching},
+                       {"effort", name(tightened ? tightened->effort : tree.effort)},
+                       {"objective", name(tree.objective)},
+                       {"closing", tree.closing == MergeClosing::refit ? "refit" : "growth"},
+                       {"redundant", name(tree.redundancy)},
+                       {"seed", tightened ? tightened->seed : options.medial.sampling.seed}};
+  if (!tree.spheres.empty()) report["options"]["spheres"] = tree.spheres;
   if (result.points > 0) report["options"]["samples"] = result.points;
   if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
   if (!result.medial && result.points > 0) report["surface_points"] = result.points;
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"max_growth_over_radius", result.cover.max_growth}};
-  if (result.method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
-  if (options.method == TreeMethod::merging && options.closing == MergeClosing::refit)
+  if (method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
+  if (method == TreeMethod::merging && tree.closing == MergeClosing::refit)
     report["merging"] = merging_json(result.merging);
-  if (options.method == TreeMethod::annealing || options.anneal)
+  if (method == TreeMethod::annealing || options.anneal)
     report["annealing"] = {{"changes", result.annealing.changes},
                            {"refused_as_uncovering", result.annealing.uncovering},
                            {"accepted", result.annealing.accepted},
                            {"redundant_spheres_removed", result.annealing.redundant}};
-  if (options.descent > 0)
+  if (options.descent)
     report["random_descent"] = {{"trials", result.descent.trials},
                                 {"accepted", result.descent.accepted},
                                 {"looseness_before_over_radius", result.descent.looseness_before},

@@ -51,7 +51,7 @@ std::vector<std::string> names_of(const BuildCommand& command) {
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces", "medial-contacts"})
     endings.push_back("-build-" + std::string(view) + ".vtp");
-  for (Index level = 0; level <= command.options.depth; ++level)
+  for (Index level = 0; level <= levels_of(command.tree); ++level)
     endings.push_back("-build-level-" + std::to_string(level) + ".vtp");
   std::vector<std::string> names;
   names.reserve(endings.size());
@@ -76,15 +76,16 @@ bool shows_axis(const BuildCommand& command) {
 }
 
 // Everything that the tree is built with.
-SphereTreeOptions tree_options(const BuildCommand& command) {
-  SphereTreeOptions options = command.options;
+SphereTreeOptions options_of(const BuildCommand& command) {
   MedialTuning tuning = command.tuning;
   // A tightened tree does without, so that its axis is the one to look at. Others are built from the raw one.
-  tuning.refine = command.options.method == TreeMethod::tightened && command.source.axis.empty() && draws_axis(command);
-  options.samples_by_need = command.seconds && !tuning.samples;  // the efforts need different numbers
-  if (!tuning.samples) tuning.samples = samples_needed(options);
-  options.medial = build_options(tuning);
-  options.seed = options.medial.sampling.seed;
+  tuning.refine = command.tree.method == TreeMethod::tightened && command.source.axis.empty() && draws_axis(command);
+  const bool samples_by_need = command.seconds && !tuning.samples;  // the efforts need different numbers
+  if (!tuning.samples) tuning.samples = samples_needed(builder_of(command.tree));
+  const MedialBuildOptions medial = build_options(tuning);
+  SphereTreeOptions options = tree_options(command.tree, medial.sampling.seed);
+  options.medial = medial;
+  options.samples_by_need = samples_by_need;
   options.axis = shows_axis(command);
   return options;
 }
@@ -185,30 +186,31 @@ void write_page(const BuildCommand& command, BuildPage page, const std::string& 
 
 BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, double triangles) {
   const auto& sampling = options.medial.sampling;
-  const double points = samples_surface(options.method) && command.source.axis.empty()
+  const double points = samples_surface(command.tree.method) && command.source.axis.empty()
                             ? static_cast<double>(sampling.face_points) + static_cast<double>(sampling.edge_points)
                             : 0;
-  return estimated_cost(options, points, triangles);
+  return estimated_cost(command.tree, options.axis, points, triangles);
 }
 
 // Before a long wait, or in place of it.
-void print_cost(const BuildCommand& command, const SphereTreeOptions& options, const BuildCost& cost) {
-  const std::string text = in_words(cost, options, command.cost);
+void print_cost(const BuildCommand& command, const BuildCost& cost) {
+  const std::string text = in_words(cost, command.tree, command.cost);
   if (text.empty()) return;
   fmt::print("{}: {}\n", command.mesh.string(), text);
   std::fflush(stdout);
 }
 
 // For people: what was built, where it is, and `last_lines`.
-void print_result(const BuildCommand& command, const SolidMesh& solid, const SphereTreeOptions& options,
-                  const SphereTreeBuild& result, const Outputs& outputs, const std::vector<std::string>& last_lines) {
+void print_result(const BuildCommand& command, const SolidMesh& solid, const SphereTreeBuild& result,
+                  const Outputs& outputs, const std::vector<std::string>& last_lines) {
   const Surface& surface = solid.surface;
   fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}\n", command.mesh.string(),
              surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
   print_build(result, surface.bounding_radius(), solid.wrap ? solid.wrap->distance() : 0);
-  if (const Index depth = result.tree.depth(); depth < options.depth && options.method == TreeMethod::tightened)
+  const Index depth = result.tree.depth(), wanted = levels_of(command.tree);
+  if (depth < wanted && command.tree.method == TreeMethod::tightened)
     fmt::print("{} of {} levels: for the next one nothing is left to refine, or there are too few --samples\n", depth,
-               options.depth);
+               wanted);
   outputs.print();
   for (const std::string& line : last_lines) {
     if (!line.empty()) fmt::print("{}\n", line);
@@ -222,20 +224,20 @@ void check_options(const BuildCommand& command) {
     const auto& exports = command.exports;
     if (std::find(exports.begin(), exports.end(), "urdf") == exports.end())
       throw InputError("--export-level: only a urdf has one level's spheres; add --export urdf");
-    if (*command.export_level > command.options.depth)
+    if (const Index depth = levels_of(command.tree); *command.export_level > depth)
       throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
-                                   *command.export_level, command.options.depth, command.options.depth));
+                                   *command.export_level, depth, depth));
   }
   if (is_given(command, "up") && !command.views && !command.picture && !command.page)
     throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
   if (command.source.files().size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
   refuse_unused_options(command);
-  require_sizes(command.options);
-  tree_options(command);  // whether the numbers fit together
+  require_sizes(builder_of(command.tree));
+  options_of(command);  // whether the numbers fit together
 }
 
 BuildCost expected_cost(const BuildCommand& command, double triangles) {
-  return cost_of(command, tree_options(command), triangles);
+  return cost_of(command, options_of(command), triangles);
 }
 
 ExitCode build(const BuildCommand& command) {
@@ -251,11 +253,11 @@ ExitCode build(const BuildCommand& command) {
   if (talk) print_solid(command.mesh, solid);
   print_hole_warning(command.mesh, solid.repair, solid.repair_distance, surface.bounding_radius());
 
-  const SphereTreeOptions options = tree_options(command);
+  const SphereTreeOptions options = options_of(command);
   OwnInput own = read_axis_source(command.source, surface);
   if (talk) print_reading(command.source.points, own.reading);
   const BuildCost cost = cost_of(command, options, static_cast<double>(surface.mesh().triangles.size()));
-  if (talk) print_cost(command, options, cost);
+  if (talk) print_cost(command, cost);
   if (command.cost && command.output.json) {
     nlohmann::json estimate = to_json(cost);
     estimate["provenance"] = to_json(destination.provenance);
@@ -270,11 +272,11 @@ ExitCode build(const BuildCommand& command) {
 
   nlohmann::json report;
   std::vector<plot::Plot> plots;
-  tbb::parallel_invoke([&] { report = build_json(surface, options, result, wrap_distance); },
+  tbb::parallel_invoke([&] { report = build_json(surface, command.tree, options, result, wrap_distance); },
                        [&] { plots = build_plots(result, surface, command.mesh.stem().string()); });
   add_solid_json(solid, report);
   const char* const ending = ending_of(solid);
-  const Broken broken = apps::broken(result, options);
+  const Broken broken = apps::broken(result, command.tree.refinement);
   const std::string last_line = in_one_line(broken);
   report["promise"] = {{"kept", broken.none()}, {"broken", broken.what}};
   report["certified_mesh"] = ending ? nlohmann::json(named(command.mesh, ending)) : nlohmann::json();
@@ -304,7 +306,7 @@ ExitCode build(const BuildCommand& command) {
   outputs.commit();
 
   if (command.output.json) fmt::print("{}\n", report.dump(2));
-  if (talk) print_result(command, solid, options, result, outputs, {certified, doubts});
+  if (talk) print_result(command, solid, result, outputs, {certified, doubts});
   if (!last_line.empty()) fmt::print(stderr, "orchard: {}: {}\n", command.mesh.string(), last_line);
   return exit_code(broken, command.accept);
 }

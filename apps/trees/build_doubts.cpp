@@ -19,7 +19,7 @@ std::string build_doubts(const SolidMesh& solid, const SphereTreeBuild& result) 
                     result.axis_components == 1 ? "" : "s", bodies));
   if (doubts.empty()) return {};
   const char* remedy = solid.wrap ? "more --samples" : "more --samples, or --wrap,";
-  if (result.method == TreeMethod::tightened)
+  if (method_of(result.tree_options) == TreeMethod::tightened)
     return fmt::format("The medial axis is not the solid's: {}. The tree does not depend on it; {} may help the axis",
                        doubts, remedy);
   return fmt::format(

@@ -24,67 +24,125 @@ void set_named(const py::dict& options, const char* name, Value& value,
   if (options.contains(name)) value = named<Value>(name, options[name].cast<std::string>(), names);
 }
 
-void set_annealing(const py::dict& options, AnnealingTuning& tuning) {
-  set(options, "anneal_move", tuning.move);
-  set(options, "anneal_min_scale", tuning.min_scale);
-  set(options, "anneal_max_scale", tuning.max_scale);
-  set(options, "anneal_first_trials", tuning.first_trials);
-  set(options, "anneal_first_acceptance", tuning.first_acceptance);
-  set(options, "anneal_max_accepted", tuning.max_accepted);
-  set(options, "anneal_max_rejected", tuning.max_rejected);
-  set(options, "anneal_max_uncovering", tuning.max_uncovering);
-  set(options, "anneal_cooling", tuning.cooling);
-  set(options, "anneal_first_iterations", tuning.iterations_first);
-  set(options, "anneal_iterations", tuning.iterations);
+Effort effort_of(const py::dict& given) {
+  Effort effort = Effort::standard;
+  set_named(given, "effort", effort, {{"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}});
+  return effort;
 }
 
-// The options of `orchard build`, by name; those that are not in the dictionary are standard.
-SphereTreeOptions to_options(const py::dict& given, Tuning tuning, bool from_axis, bool within_time) {
-  SphereTreeOptions options;
-  set_named(given, "method", options.method,
-            {{"tightened", TreeMethod::tightened},
-             {"merging", TreeMethod::merging},
-             {"annealing", TreeMethod::annealing},
-             {"octree", TreeMethod::octree}});
+Refinement refinement_of(const py::dict& given) {
+  Refinement refinement;
+  set(given, "error", refinement.error);
+  if (!given.contains("regions")) return refinement;
+  for (const auto& [x, y, z, r, e] :
+       given["regions"].cast<std::vector<std::tuple<double, double, double, double, double>>>())
+    refinement.regions.push_back({{Point(x, y, z), r}, e});
+  return refinement;
+}
+
+AnnealingOptions to_annealing(const py::dict& given, Selection redundancy, double first_acceptance) {
+  AnnealingOptions options = annealing_options(effort_of(given));
   set(given, "depth", options.depth);
   set(given, "branching", options.branching);
-  set(given, "spheres", options.spheres);
-  if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
-  set_named(given, "effort", options.effort,
-            {{"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}});
-  set_named(given, "objective", options.objective,
-            {{"balanced", Objective::balanced},
-             {"maximum", Objective::maximum},
-             {"mean", Objective::mean},
-             {"volume", Objective::volume}});
-  set_named(given, "closing", options.closing, {{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}});
   set_named(given, "energy", options.energy, {{"maximum", SetEnergy::maximum}, {"sum", SetEnergy::sum}});
   set_named(given, "anneal_distance", options.distance,
             {{"lemma", SphereEnergy::lemma},
              {"samples", SphereEnergy::samples},
              {"corrected-samples", SphereEnergy::corrected_samples}});
+  options.first_acceptance = first_acceptance;
+  set(given, "anneal_move", options.move);
+  set(given, "anneal_min_scale", options.min_scale);
+  set(given, "anneal_max_scale", options.max_scale);
+  set(given, "anneal_first_trials", options.first_trials);
+  set(given, "anneal_first_acceptance", options.first_acceptance);
+  set(given, "anneal_max_accepted", options.max_accepted);
+  set(given, "anneal_max_rejected", options.max_rejected);
+  set(given, "anneal_max_uncovering", options.max_uncovering);
+  set(given, "anneal_cooling", options.cooling);
+  set(given, "anneal_first_iterations", options.iterations_first);
+  set(given, "anneal_iterations", options.iterations);
+  if (redundancy == Selection::independent) options.redundancy = redundancy;
+  options.refinement = refinement_of(given);
+  return options;
+}
+
+TightenOptions to_tightening(const py::dict& given) {
+  TightenOptions options;
+  set(given, "depth", options.depth);
+  set(given, "branching", options.branching);
+  set(given, "spheres", options.spheres);
+  if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
+  options.effort = effort_of(given);
+  set_named(given, "objective", options.objective,
+            {{"balanced", Objective::balanced},
+             {"maximum", Objective::maximum},
+             {"mean", Objective::mean},
+             {"volume", Objective::volume}});
+  options.refinement = refinement_of(given);
+  return options;
+}
+
+MergeOptions to_merging(const py::dict& given) {
+  MergeOptions options;
+  set(given, "depth", options.depth);
+  set(given, "branching", options.branching);
+  set_named(given, "closing", options.closing, {{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}});
+  options.refinement = refinement_of(given);
+  return options;
+}
+
+OctreeOptions to_octree(const py::dict& given) {
+  OctreeOptions options;
+  set(given, "depth", options.depth);
+  set(given, "branching", options.branching);
+  options.refinement = refinement_of(given);
+  return options;
+}
+
+TreeOptions to_builder(const py::dict& given, Selection redundancy) {
+  TreeMethod method = TreeMethod::tightened;
+  set_named(given, "method", method,
+            {{"tightened", TreeMethod::tightened},
+             {"merging", TreeMethod::merging},
+             {"annealing", TreeMethod::annealing},
+             {"octree", TreeMethod::octree}});
+  if (method == TreeMethod::merging) return to_merging(given);
+  if (method == TreeMethod::annealing) return to_annealing(given, redundancy, AnnealingOptions{}.first_acceptance);
+  if (method == TreeMethod::octree) return to_octree(given);
+  return to_tightening(given);
+}
+
+// One seed for all random choices.
+void set_seed(SphereTreeOptions& options, std::uint64_t seed) {
+  if (auto* tightening = std::get_if<TightenOptions>(&options.tree)) tightening->seed = seed;
+  if (auto* annealing = std::get_if<AnnealingOptions>(&options.tree)) annealing->seed = seed;
+  if (options.anneal) options.anneal->seed = seed;
+  if (options.descent) options.descent->seed = seed;
+}
+
+// The options of `orchard build`, by name; those that are not in the dictionary are standard.
+SphereTreeOptions to_options(const py::dict& given, Tuning tuning, bool from_axis, bool within_time) {
+  SphereTreeOptions options;
   set_named(given, "redundant", options.redundancy,
             {{"independent", Selection::independent},
              {"acyclic", Selection::acyclic},
              {"exhaustive", Selection::exhaustive}});
-  set(given, "descent", options.descent);
-  set(given, "anneal", options.anneal);
-  set(given, "error", options.refinement.error);
-  set_annealing(given, options.annealing);
-  if (given.contains("regions")) {
-    for (const auto& [x, y, z, r, e] :
-         given["regions"].cast<std::vector<std::tuple<double, double, double, double, double>>>())
-      options.refinement.regions.push_back({{Point(x, y, z), r}, e});
-  }
+  options.tree = to_builder(given, options.redundancy);
+  bool anneal = false;
+  set(given, "anneal", anneal);
+  if (anneal) options.anneal = to_annealing(given, options.redundancy, kCoolStart);
+  Index trials = 0;
+  set(given, "descent", trials);
+  if (trials > 0) options.descent = {.trials_per_node = trials};
   // As the command does: a tightened tree needs no axis, others a raw one; points by need unless they are given.
   const bool samples_given = tuning.contains("samples");
   options.samples_by_need = within_time && !samples_given;
   tuning["refine"] = "no";
-  if (!samples_given) tuning["samples"] = std::to_string(samples_needed(options));
+  if (!samples_given) tuning["samples"] = std::to_string(samples_needed(options.tree));
   options.medial = to_build_options(tuning);
-  options.seed = options.medial.sampling.seed;
+  set_seed(options, options.medial.sampling.seed);
   options.axis = from_axis;
-  require_sizes(options);
+  require_sizes(options.tree);
   return options;
 }
 

@@ -149,6 +149,17 @@ void check(const AnnealingOptions& o) {
 
 }  // namespace
 
+AnnealingOptions annealing_options(Effort effort) {
+  if (effort == Effort::high) return {};
+  const bool low = effort == Effort::low;
+  AnnealingOptions options;
+  options.max_accepted = options.max_rejected = low ? 30 : 60;
+  options.iterations_first = low ? 40 : 80;
+  options.iterations = low ? 20 : 30;
+  options.cooling = low ? 0.8 : 0.85;
+  return options;
+}
+
 AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& options, const Progress& progress) {
   check(options);
   return Annealer(surface, options).build(progress);

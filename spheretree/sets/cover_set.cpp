@@ -50,7 +50,8 @@ std::vector<Search> searches_for(Index spheres, Effort effort) {
 Index samples_for_cover(const SphereSetOptions& options) {
   const bool few = options.effort == Effort::low;
   const Index least = few ? kFewestSamples : kSomeSamples, per_ball = few ? kFewSamplesPerBall : kSomeSamplesPerBall;
-  return std::min(samples_needed({.spheres = {options.spheres}}), std::max(least, per_ball * options.spheres));
+  return std::min(samples_needed(TightenOptions{.spheres = {options.spheres}}),
+                  std::max(least, per_ball * options.spheres));
 }
 
 std::vector<Sphere> leaves_of(const SphereTree& tree) {

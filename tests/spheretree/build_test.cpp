@@ -11,8 +11,17 @@
 namespace orchard {
 namespace {
 
+TreeOptions small_builder(TreeMethod method) {
+  if (method == TreeMethod::merging) return MergeOptions{.depth = 2};
+  if (method == TreeMethod::octree) return OctreeOptions{.depth = 2};
+  if (method == TreeMethod::tightened) return TightenOptions{.depth = 2, .effort = Effort::low};
+  AnnealingOptions annealing = annealing_options(Effort::low);
+  annealing.depth = 2;
+  return annealing;
+}
+
 SphereTreeOptions small(TreeMethod method) {
-  SphereTreeOptions options{.method = method, .depth = 2, .effort = Effort::low};
+  SphereTreeOptions options{.tree = small_builder(method)};
   options.medial.sampling.face_points = 1600;
   options.medial.sampling.edge_points = 400;
   options.samples_by_need = false;
@@ -46,10 +55,10 @@ TEST(BuildSphereTree, BuildsTheAxisThatBuildMedialAxisBuilds) {
 }
 
 TEST(BuildSphereTree, TakesAsManyPointsAsTheTreeNeedsUnlessTold) {
-  EXPECT_EQ(samples_needed({.method = TreeMethod::merging}), 5000u);
-  EXPECT_EQ(samples_needed({.depth = 1}), 10'000u);
-  EXPECT_EQ(samples_needed({.depth = 4}), 81'920u);
-  EXPECT_EQ(samples_needed({.depth = 10}), 200'000u);
+  EXPECT_EQ(samples_needed(MergeOptions{}), 5000u);
+  EXPECT_EQ(samples_needed(TightenOptions{.depth = 1}), 10'000u);
+  EXPECT_EQ(samples_needed(TightenOptions{.depth = 4}), 81'920u);
+  EXPECT_EQ(samples_needed(TightenOptions{.depth = 10}), 200'000u);
   const Surface surface(test::l_shape());
   SphereTreeOptions options = small(TreeMethod::merging);
   EXPECT_NEAR(build_sphere_tree(surface, options).medial->points, 2000, 20);
@@ -110,10 +119,10 @@ TEST(BuildSphereTree, FromTheDiagramOfABuildIsTheSameTree) {
 TEST(BuildSphereTreeWithin, GivesACertifiedTreeWhateverTheLimitAndATighterOneForMoreTime) {
   const Surface surface(test::l_shape());
   SphereTreeOptions options = small(TreeMethod::tightened);
-  options.depth = 1;
+  options.tree = TightenOptions{.depth = 1};
   const SphereTreeBuild none = build_sphere_tree_within(0, surface, options);
   EXPECT_TRUE(none.certificate.ok());
-  EXPECT_EQ(none.method, TreeMethod::octree);
+  EXPECT_EQ(method_of(none.tree_options), TreeMethod::octree);
   SphereTreeBuild some = build_sphere_tree_within(2, surface, options);
   EXPECT_TRUE(some.certificate.ok());
   EXPECT_LE(overall_inaccuracy(some.tree), overall_inaccuracy(none.tree));
@@ -124,6 +133,21 @@ TEST(BuildSphereTreeWithin, RefusesLimitsThatAreNone) {
   const Surface surface(test::l_shape());
   for (const double seconds : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(build_sphere_tree_within(seconds, surface, small(TreeMethod::tightened)), InputError) << seconds;
+}
+
+TEST(BuildSphereTreeWithin, RefusesTheOptionsOfAnotherBuilder) {
+  const Surface surface(test::l_shape());
+  for (const TreeMethod method : {TreeMethod::merging, TreeMethod::annealing, TreeMethod::octree})
+    EXPECT_THROW(build_sphere_tree_within(1, surface, small(method)), InputError);
+}
+
+TEST(TreeOptionsOfABuild, TellTheMethodAndTheDepth) {
+  for (const TreeMethod method :
+       {TreeMethod::tightened, TreeMethod::merging, TreeMethod::annealing, TreeMethod::octree}) {
+    EXPECT_EQ(method_of(small_builder(method)), method);
+    EXPECT_EQ(depth_of(small_builder(method)), 2u);
+  }
+  EXPECT_EQ(depth_of(TightenOptions{.depth = 4, .spheres = {8, 64, 512, 1000}}), 4u);
 }
 
 TEST(BuildSphereTreeWithin, StopsWhenCancelled) {

@@ -13,12 +13,22 @@ namespace {
 
 using namespace test;
 
+AnnealingOptions few_temperatures() {
+  AnnealingOptions options = annealing_options(Effort::low);
+  options.depth = 2;
+  options.iterations = options.iterations_first = 2;
+  return options;
+}
+
 SphereTreeOptions small_tree(TreeMethod method) {
-  SphereTreeOptions options{.method = method, .depth = 2, .effort = Effort::low, .axis = false};
+  SphereTreeOptions options{.axis = false};
+  if (method == TreeMethod::tightened) options.tree = TightenOptions{.depth = 2, .effort = Effort::low};
+  if (method == TreeMethod::octree) options.tree = OctreeOptions{.depth = 2};
+  if (method == TreeMethod::merging) options.tree = MergeOptions{.depth = 2};
+  if (method == TreeMethod::annealing) options.tree = few_temperatures();
   options.medial.sampling.face_points = 500;
   options.medial.sampling.edge_points = 100;
   options.samples_by_need = false;
-  if (method == TreeMethod::annealing) options.annealing.iterations = options.annealing.iterations_first = 2;
   return options;
 }
 

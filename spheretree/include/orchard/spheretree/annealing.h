@@ -1,5 +1,6 @@
 #pragma once
 #include "orchard/geometry/progress.h"
+#include "orchard/spheretree/effort.h"
 #include "orchard/spheretree/redundancy.h"
 #include "orchard/spheretree/refinement.h"
 #include "orchard/spheretree/tree.h"
@@ -48,6 +49,13 @@ struct AnnealingOptions {
   std::uint64_t seed = 1;
 };
 
+// Returns the parameters of an effort: at high effort the dissertation's schedule, which is AnnealingOptions{}, and at
+// lower effort a share of it. The times are about 1 : 3 : 17.
+AnnealingOptions annealing_options(Effort effort);
+
+// AnnealingOptions::first_acceptance for anneal_tree(): so low that the annealing keeps what the builder found.
+inline constexpr double kCoolStart = 0.05;
+
 // Counts of the annealing.
 struct AnnealingReport {
   std::uint64_t changes = 0;     // Changes that were tried.
@@ -75,10 +83,10 @@ AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& opt
 
 // Makes a tree of any builder tighter by annealing the children of each node, from the top down (dissertation 8.2). The
 // changes are those of annealed_tree(), from the tree's own spheres in place of octants, and each set of siblings ends
-// as the best one that it has been: no set gets a larger energy than it had. Take a low first_acceptance, or what the
-// builder found is forgotten first. Precondition: the tree is conservative, nodes in breadth-first order; it stays so.
-// `depth`, `branching`, `redundancy` and `refinement` have no meaning here. Bounds and inaccuracies become stale: call
-// measure() afterwards. Throws InputError unless surface.solid(). Deterministic as above.
+// as the best one that it has been: no set gets a larger energy than it had. Take kCoolStart as first_acceptance, or
+// what the builder found is forgotten first. Precondition: the tree is conservative, nodes in breadth-first order; it
+// stays so. `depth`, `branching`, `redundancy` and `refinement` have no meaning here. Bounds and inaccuracies become
+// stale: call measure() afterwards. Throws InputError unless surface.solid(). Deterministic as above.
 AnnealingReport anneal_tree(SphereTree& tree, const Surface& surface, const AnnealingOptions& options = {},
                             const Progress& progress = {});
 

@@ -1,16 +1,12 @@
 #pragma once
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/sampling.h"
+#include "orchard/spheretree/effort.h"
 #include "orchard/spheretree/refinement.h"
 #include "orchard/spheretree/tree.h"
 
 // Builds the tightest sphere-trees, level by level.
 namespace orchard {
-
-// The length of the search; the times are about 1 : 2 : 6. High effort first builds the tree of standard effort. Then
-// it searches further covers of each level, in which balls looser than that tree's loosest cost a thousand times as
-// much, and takes a cover only if neither its mean nor its maximum nor its outside volume is above that tree's.
-enum class Effort { low, standard, high };
 
 // The quantity that is kept low on every level: the largest inaccuracy, the mean one, the volume outside the object, or
 // a balance. Each objective is a sum over the level of powers of the inaccuracy.
@@ -37,6 +33,9 @@ struct TightenOptions {
   // first one is between 2 and kMaxBranching, and each other one is above the one before and at most kMaxFanOut times
   // it. The spheres of a level are given to the parents that gain most from them.
   std::vector<Index> spheres{};
+  // The times are about 1 : 2 : 6. High effort first builds the tree of standard effort. Then it searches further
+  // covers of each level, in which balls looser than that tree's loosest cost a thousand times as much, and takes a
+  // cover only if neither its mean nor its maximum nor its outside volume is above that tree's.
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;
   Refinement refinement{};
