@@ -15,7 +15,7 @@ from ._errors import MeshError
 from ._mesh import Mesh
 from ._progress import Progress
 from ._thickness import Thickness, thickness
-from ._tuning import tuning_of
+from ._tuning import keyword, tuning_of
 
 PathLike = typing.Union[str, "os.PathLike[str]"]
 Ints = typing.Any
@@ -309,7 +309,7 @@ def tuning_options() -> dict[str, dict[str, typing.Any]]:
     '0.1'
     """
     table = _construction.tuning_table()
-    return {row["name"].replace("-", "_"): {name: value for name, value in row.items() if name != "name"}
+    return {keyword(row["name"]): {name: value for name, value in row.items() if name != "name"}
             for row in table if row["name"] != "segment-angle"}
 
 
@@ -327,5 +327,5 @@ def box_mesh(half_lengths: Anything = (1, 1, 1)) -> Mesh:
                           [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
 
 
-__all__ = ["Arc", "KINDS", "MedialAxis", "MeshError", "Quality", "StructureGraph", "Structure", "box_mesh", "medial_axis",
-           "tuning_options"]
+__all__ = ["Arc", "KINDS", "MedialAxis", "MeshError", "Quality", "StructureGraph", "Structure", "box_mesh",
+           "medial_axis", "tuning_options"]

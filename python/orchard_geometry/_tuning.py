@@ -26,6 +26,11 @@ def command_name(name: str) -> str:
     return name.replace("_", "-")
 
 
+def keyword(name: str) -> str:
+    """The keyword of an option, by its name in the command line's table."""
+    return name.replace("-", "_").replace(" ", "_")
+
+
 def tuning_of(**options: typing.Any) -> dict[str, str]:
     """The options that are given, by the command line's names."""
     return {command_name(name): as_text(name, value) for name, value in options.items() if value is not None}

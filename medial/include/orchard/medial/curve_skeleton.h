@@ -24,7 +24,7 @@ struct SkeletonOptions {
   double erosion = 0.01;
   // The smallest significance as a fraction of the time of the second fire, in [0.2, 1). At the middle of a branch that
   // runs into a corner of w degrees of a plate, it is 1 - sin(w / 2): 0.29 at 90 degrees. The default of 0.35 removes
-  // such branches at corners of more than 81 degrees. Lower values than 0.2 cannot be told from the triangulation.
+  // such branches at corners of more than 81 degrees. The triangulation may change a ratio by about 0.07.
   double ratio = 0.35;
   // The longest edge of the complex that burns, and so of the skeleton, above 0. Lower values place the skeleton more
   // accurately, at a cost that grows with the square. It is raised where the complex would have more than about two
