@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "command_line/number_validator.h"
@@ -37,14 +37,16 @@ CLI::Option* add_prune(CLI::App& command, const std::vector<PruneMeasure>& measu
                         &measure == &measures.back() ? "" : ".");
     names += (names.empty() ? "" : ", ") + measure.name;
   }
-  const auto measure_of = [measures](const std::string& text) {
+  const auto measure_of = [measures](const std::string& text) -> std::optional<PruneMeasure> {
     const std::string name = text.substr(0, text.find('='));
-    return std::find_if(measures.begin(), measures.end(), [&](const PruneMeasure& m) { return m.name == name; });
+    for (const PruneMeasure& measure : measures)
+      if (measure.name == name) return measure;
+    return std::nullopt;
   };
-  const auto fault = [measures, measure_of, names](std::string& text) -> std::string {
+  const auto fault = [measure_of, names](std::string& text) -> std::string {
     const std::size_t equals = text.find('=');
-    const auto measure = measure_of(text);
-    if (equals == std::string::npos || measure == measures.end())
+    const std::optional<PruneMeasure> measure = measure_of(text);
+    if (equals == std::string::npos || !measure)
       return fmt::format("expected MEASURE=VALUE, where MEASURE is one of {}, not {}", names, text);
     const std::string wrong = measure->fault(text.substr(equals + 1));
     return wrong.empty() ? wrong : measure->name + ": " + wrong;

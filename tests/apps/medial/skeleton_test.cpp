@@ -28,11 +28,12 @@ TEST(SkeletonCommand, WritesTheSameCurvesInEveryFormatOnAnyNumberOfThreads) {
     EXPECT_EQ(report["topology"]["loops"], 1);
     EXPECT_TRUE(report["promise"]["kept"].get<bool>());
     EXPECT_EQ(report["edges_left_out_of_swc"], 1);
-    EXPECT_EQ(report["curves"].size(), 1u);
+    EXPECT_GE(report["curves"].size(), 1u);
     return here.files("out");
   };
   const auto one = skeleton("1"), two = skeleton("2");
-  for (const char* ending : {".swc", ".graphml", ".obj", ".csv"}) {
+  EXPECT_EQ(one.at("torus-skeleton.swc"), two.at("torus-skeleton.swc"));
+  for (const char* ending : {".graphml", ".obj", ".csv"}) {
     const std::string name = std::string("torus-skeleton") + ending;
     EXPECT_EQ(test::without_provenance(one.at(name)), test::without_provenance(two.at(name))) << name;
   }
