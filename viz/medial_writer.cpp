@@ -188,7 +188,7 @@ void write_worst_places(const std::filesystem::path& vtp, const std::vector<Wors
   write(vtp, data);
 }
 
-void write_skeleton(const std::filesystem::path& vtp, const MedialAxis& axis, const SkeletonGraph& graph) {
+void write_structure_graph(const std::filesystem::path& vtp, const MedialAxis& axis, const StructureGraph& graph) {
   std::vector<Index> vertices;
   for (const auto& arc : graph.arcs) vertices.insert(vertices.end(), arc.vertices.begin(), arc.vertices.end());
   std::sort(vertices.begin(), vertices.end());

@@ -19,6 +19,10 @@ void add_medial(CLI::App& app, Request& request);
 void add_leaderboard(CLI::App& app, Request& request);
 void add_thickness(CLI::App& app, Request& request);
 
+// skeleton_commands.cpp
+void add_skeleton(CLI::App& app, Request& request);
+void add_segment(CLI::App& app, Request& request);
+
 // set_commands.cpp
 void add_spheres(CLI::App& app, Request& request);
 void add_audit(CLI::App& app, Request& request);

@@ -75,7 +75,7 @@ void add_sweep_tree(CLI::App& command, std::optional<TreeRequest>& tree) {
 void add_sweep(CLI::App& command, MedialCommand& medial) {
   command
       .add_option("--sweep", medial.sweep,
-                  "NAME=A,B,..: build once for each value of an option, such as samples or vertices, and compare. May "
+                  "NAME=A,B,..: build once for each value of an option, such as samples, vertices or 'prune angle', and compare. May "
                   "be repeated. Runs that the folder has already are not computed again")
       ->allow_extra_args(false);
   command.add_flag("--keep", medial.keep,
@@ -106,20 +106,6 @@ void add_features(CLI::App& command, MedialCommand& medial) {
   command.add_option("--features", medial.features,
                      "Feature edges to which sheets extend, in place of those that orchard finds: lines of an .obj "
                      "file along edges of the mesh");
-}
-
-void add_side(CLI::App& command, MedialCommand& medial) {
-  CLI::Option* side = command
-                          .add_option_function<std::string>(
-                              "--side", [&medial](const std::string& name) { medial.outside = name == "outside"; },
-                              "Build the axis of the solid (inside, default) or of the space around it (outside)")
-                          ->check(CLI::IsMember({"inside", "outside"}));
-  command
-      .add_option("--outside-radius", medial.outside_radius,
-                  "Radius of the sphere that bounds the outside, in bounding radii")
-      ->check(NumberValidator(CLI::Range(1.1, 1000.0)))
-      ->needs(side)
-      ->capture_default_str();
 }
 
 void add_few_balls(CLI::App& command, MedialCommand& medial) {
@@ -326,7 +312,7 @@ void add_medial(CLI::App& app, Request& request) {
       "  orchard medial data/lamp.obj -o out/lamp --report --beside other.ma --beside older.ma --picture\n"
       "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
       "  orchard medial data/lamp.obj -o out/lamp --vertices 200 --envelope out/lamp/envelope.obj\n"
-      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000 --sweep prune-angle=0,20\n"
+      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000 --sweep 'prune angle=0,20'\n"
       "  orchard medial data/lamp.obj -o out/lamp --sweep vertices=50,100,200 --keep --quality-samples 5000");
   command.callback([&request, &command] {
     request.medial.output.run = invocation_of(command, request.typed);

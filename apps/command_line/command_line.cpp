@@ -197,6 +197,8 @@ void add_commands(CLI::App& app, Request& request) {
   add_medial(app, request);
   add_leaderboard(app, request);
   add_thickness(app, request);
+  add_skeleton(app, request);
+  add_segment(app, request);
   add_view(app, request);
   add_report_command(app, request);
   add_completion(app, request);

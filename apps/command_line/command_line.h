@@ -23,6 +23,8 @@ struct Request {
   MedialCommand medial;
   LeaderboardCommand leaderboard;
   ThicknessCommand thickness;
+  SkeletonCommand skeleton;
+  SegmentCommand segment;
   ViewCommand view;
   ReportCommand report;
   std::string shell, format;  // of completion and reference

@@ -8,6 +8,8 @@
 #include "input/axis_source.h"
 #include "input/load_solid.h"
 #include "medial/medial_tuning.h"
+#include "orchard/medial/curve_skeleton.h"
+#include "orchard/medial/surface_parts.h"
 #include "orchard/medial/thickness.h"
 #include "orchard/spheretree/build.h"
 #include "orchard/spheretree/sphere_set.h"
@@ -281,6 +283,22 @@ struct ThicknessCommand {
   Output output;
 };
 ExitCode thickness(const ThicknessCommand& command);
+
+// The axis' command has the mesh, how the axis is tuned, and where files go; what it could write itself does not count.
+struct SkeletonCommand {
+  MedialCommand axis;
+  SkeletonOptions options;
+};
+ExitCode skeleton(const SkeletonCommand& command);
+void check_options(const SkeletonCommand& command);
+
+struct SegmentCommand {
+  MedialCommand axis;  // likewise
+  PartOptions options;
+  bool meshes = false;  // each part as a mesh of its own, too
+};
+ExitCode segment(const SegmentCommand& command);
+void check_options(const SegmentCommand& command);
 
 struct BatchCommand {
   std::vector<std::string> sources;  // a folder of meshes or a manifest; or "merge" and folders of batches

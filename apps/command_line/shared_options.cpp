@@ -2,15 +2,77 @@
 
 #include <fmt/core.h>
 
+#include <optional>
+#include <utility>
+
 #include "command_line/number_validator.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::apps {
+namespace {
+
+constexpr const char* kPrune = "prune";
+constexpr const char* kTreeAxisGroup = "Medial axis (for --method tightened and merging)";
+
+// The measures by which axes are pruned. `tuning` must outlive them.
+std::vector<PruneMeasure> prune_measures(MedialTuning& tuning) {
+  std::vector<PruneMeasure> measures;
+  for (const TuningFlag& flag : tuning_flags()) {
+    if (flag.step != TuningStep::pruning) continue;
+    measures.push_back({.name = flag.name.substr(std::string(kPrune).size() + 1),
+                        .help = flag.help,
+                        .standard = flag.standard,
+                        .range = flag.range(),
+                        .fault = [&flag](const std::string& value) { return flag.fault(value); },
+                        .set = [&flag, &tuning](const std::string& value) { flag.set(tuning, value); }});
+  }
+  return measures;
+}
+
+// given_of() names each measure that is given, as "prune angle".
+CLI::Option* add_prune(CLI::App& command, const std::vector<PruneMeasure>& measures) {
+  std::string help = "MEASURE=VALUE: remove what is insignificant. May be repeated.", names;
+  for (const PruneMeasure& measure : measures) {
+    help += fmt::format(" {} ({}) [{}]: {}{}", measure.name, measure.range, measure.standard, measure.help,
+                        &measure == &measures.back() ? "" : ".");
+    names += (names.empty() ? "" : ", ") + measure.name;
+  }
+  const auto measure_of = [measures](const std::string& text) -> std::optional<PruneMeasure> {
+    const std::string name = text.substr(0, text.find('='));
+    for (const PruneMeasure& measure : measures)
+      if (measure.name == name) return measure;
+    return std::nullopt;
+  };
+  const auto fault = [measure_of, names](std::string& text) -> std::string {
+    const std::size_t equals = text.find('=');
+    const std::optional<PruneMeasure> measure = measure_of(text);
+    if (equals == std::string::npos || !measure)
+      return fmt::format("expected MEASURE=VALUE, where MEASURE is one of {}, not {}", names, text);
+    const std::string wrong = measure->fault(text.substr(equals + 1));
+    return wrong.empty() ? wrong : measure->name + ": " + wrong;
+  };
+  return command
+      .add_option_function<std::vector<std::string>>(
+          fmt::format("--{}", kPrune),
+          [measure_of](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) measure_of(text)->set(text.substr(text.find('=') + 1));
+          },
+          help)
+      ->check(CLI::Validator(fault, "MEASURE=VALUE"))
+      ->allow_extra_args(false);
+}
+
+}  // namespace
 
 std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options) {
   std::vector<std::string> given;
-  for (const CLI::Option* option : options)
-    if (option->count() > 0 && !option->get_lnames().empty()) given.push_back(option->get_lnames().front());
+  for (const CLI::Option* option : options) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    const std::string& name = option->get_lnames().front();
+    if (name != kPrune) given.push_back(name);
+    for (const std::string& value : name == kPrune ? option->results() : std::vector<std::string>{})
+      given.push_back(name + " " + value.substr(0, value.find('=')));
+  }
   return given;
 }
 
@@ -108,10 +170,24 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       ->check(CLI::IsMember({"minimal", "ritter"}));
 }
 
+void add_side(CLI::App& command, MedialCommand& medial) {
+  CLI::Option* side = command
+                          .add_option_function<std::string>(
+                              "--side", [&medial](const std::string& name) { medial.outside = name == "outside"; },
+                              "Build the axis of the solid (inside, default) or of the space around it (outside)")
+                          ->check(CLI::IsMember({"inside", "outside"}));
+  command
+      .add_option("--outside-radius", medial.outside_radius,
+                  "Radius of the sphere that bounds the outside, in bounding radii")
+      ->check(NumberValidator(CLI::Range(1.1, 1000.0)))
+      ->needs(side)
+      ->capture_default_str();
+}
+
 // Those that the command has a use for.
-void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
+void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree, std::vector<PruneMeasure> measures) {
   for (const TuningFlag& flag : tuning_flags()) {
-    if (for_tree && flag.step >= TuningStep::refining) continue;
+    if (flag.step == TuningStep::pruning || (for_tree && flag.step >= TuningStep::refining)) continue;
     const bool needs = for_tree && flag.name == "samples";
     const bool of_all = for_tree && flag.name == "seed";  // no axis is needed to use it
     const std::string help =
@@ -122,9 +198,11 @@ void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
             help + " [" + (needs ? "as method and depth need" : flag.standard) + "]")
         ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
         ->group(of_all     ? "Options"
-                : for_tree ? "Medial axis (for --method tightened and merging)"
+                : for_tree ? kTreeAxisGroup
                            : "Tuning");
   }
+  for (PruneMeasure& measure : prune_measures(tuning)) measures.push_back(std::move(measure));
+  add_prune(command, measures)->group(for_tree ? kTreeAxisGroup : "Tuning");
 }
 
 void add_axis_source(CLI::App& command, AxisSource& source) {

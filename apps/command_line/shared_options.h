@@ -1,6 +1,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,8 +24,16 @@ void add_accept(CLI::App& command, bool& accept);
 CLI::Option* add_report(CLI::App& command, bool& report);
 CLI::Option* add_force(CLI::App& command, Output& output);
 void add_output_flags(CLI::App& command, Output& output);
-// How axes are tuned: all of it, or what trees have a use for.
-void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree);
+// Whether the axis is that of the solid or of the space around it.
+void add_side(CLI::App& command, MedialCommand& medial);
+// A measure of significance that --prune takes, MEASURE=VALUE.
+struct PruneMeasure {
+  std::string name, help, standard, range;
+  std::function<std::string(const std::string&)> fault;  // why a value cannot be; empty if it can
+  std::function<void(const std::string&)> set;
+};
+// How axes are tuned: all of it, or what trees have a use for. --prune takes `measures` beside those of axes.
+void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree, std::vector<PruneMeasure> measures = {});
 void add_axis_source(CLI::App& command, AxisSource& source);
 
 }  // namespace orchard::apps

@@ -8,6 +8,7 @@
 #include "command_line/add_commands.h"
 #include "command_line/list_option.h"
 #include "command_line/text.h"
+#include "medial/medial_tuning.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard::apps {
@@ -29,11 +30,18 @@ bool is_swept(const std::string& name, const std::vector<SweptOption>& swept) {
   return std::any_of(swept.begin(), swept.end(), [&](const SweptOption& one) { return one.name == name; });
 }
 
+// "prune angle" is a measure of --prune; it is given as --prune=angle=VALUE.
+const std::string kPruneMeasure = "prune ";
+
+std::string word_of(const std::string& name, const std::string& value) {
+  if (!name.starts_with(kPruneMeasure)) return "--" + name + "=" + value;
+  return "--prune=" + name.substr(kPruneMeasure.size()) + "=" + value;
+}
+
 SweptOption swept_option(const CLI::App& command, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw InputError("--sweep " + text + ": expected NAME=VALUE,VALUE,..");
-  std::string name = text.substr(0, equals);
-  if (name == "prune") name = "prune-angle";
+  const std::string name = text.substr(0, equals);
   const std::vector<std::string> names = sweepable_options(command);
   if (!among(name, names))
     throw InputError(
@@ -56,6 +64,7 @@ std::vector<std::string> words_of_runs(const CLI::App& command, const std::vecto
     if (name == "raw" && is_swept("refine", swept)) continue;  // refused where all contradictions are
     const bool flag = option->get_expected_min() == 0;
     for (const std::string& value : option->results()) {
+      if (name == "prune" && is_swept(kPruneMeasure + value.substr(0, value.find('=')), swept)) continue;
       if (name.empty())
         words.push_back(value);
       else if (flag && (value == "true" || value == "false"))
@@ -96,8 +105,11 @@ std::vector<std::string> sweepable_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_lnames().empty() || option->get_expected_min() == 0) continue;
-    if (!among(option->get_lnames().front(), kNotSwept)) names.push_back(option->get_lnames().front());
+    const std::string& name = option->get_lnames().front();
+    if (name != "prune" && !among(name, kNotSwept)) names.push_back(name);
   }
+  for (const TuningFlag& flag : tuning_flags())
+    if (flag.step == TuningStep::pruning) names.push_back(flag.name);
   return names;
 }
 
@@ -115,7 +127,7 @@ void expand_sweep(const CLI::App& command, MedialCommand& medial) {
     std::string combination;
     for (std::size_t d = 0; d < choice.size(); ++d) {
       const auto& [name, of_option] = medial.swept[d];
-      words.push_back("--" + name + "=" + of_option[choice[d]]);
+      words.push_back(word_of(name, of_option[choice[d]]));
       combination += (d > 0 ? "," : "") + name + "=" + of_option[choice[d]];
       values.push_back(of_option[choice[d]]);
     }

@@ -29,6 +29,7 @@
 #include "output/promises.h"
 #include "output/report.h"
 #include "report/report_page.h"
+#include "skeleton/solid_axis.h"
 
 namespace orchard::apps {
 namespace {
@@ -245,7 +246,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   const MedialBuild build = build_medial_axis(surface, options, progress, std::move(own.input));
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
-  const SkeletonGraph skeleton = skeleton_graph(build.axis);
+  const StructureGraph graph = structure_graph(build.axis);
   const FewBalls few = make_few_balls(command, surface, mesh, progress);
   std::optional<MedialJudgement> judgement;
   if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
@@ -270,8 +271,8 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
     if (!command.source.points.empty()) fmt::print("points moved onto the mesh by {:.6g} at most\n", own.max_moved);
     print(build);
     print(medial_structure(mesh));
-    fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
-               skeleton.arcs.size());
+    fmt::print("{} segments, structure graph of {} nodes and {} arcs\n", segments.segments.size(), graph.nodes.size(),
+               graph.arcs.size());
   }
   std::vector<PicturedAxis> pictured{{"", &mesh}};
   std::optional<MedialErrors> errors;
@@ -292,13 +293,13 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   if (!build.features.empty())
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
-  write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
+  write_file(outputs.add(named(command.mesh, ".graphml"), "its structure graph"), to_graphml(graph, build.axis));
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,
               {.surface = surface,
                .build = build,
                .segments = segments,
-               .skeleton = skeleton,
+               .graph = graph,
                .mesh = mesh,
                .errors = errors ? &*errors : nullptr,
                .worst = pictured.front().worst},
@@ -322,7 +323,7 @@ json axis_report(const MedialCommand& command, const SolidMesh& solid, const Med
               {"topology", to_json(topology(mesh))},
               {"topology_of_solid", to_json(solid_topology(solid.surface))},
               {"promise", to_json(build.promise)},
-              {"structure", to_json(segments, skeleton_graph(build.axis), medial_structure(mesh))}};
+              {"structure", to_json(segments, structure_graph(build.axis), medial_structure(mesh))}};
   const Broken broken = apps::broken(build.promise);
   report["promise"]["broken"] = broken.what;
   report["promise"]["kept"] = broken.none();  // what could not be proven is not kept
@@ -407,12 +408,7 @@ ExitCode medial(const MedialCommand& command) {
   print_hole_warning(command.mesh, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
   std::optional<SolidMesh> outside;
   if (command.outside) {
-    outside = SolidMesh{.surface = Surface(outside_solid(solid.surface, command.outside_radius)),
-                        .reading = solid.reading,
-                        .repair = {},
-                        .repair_distance = {},
-                        .wrap = {},
-                        .self_intersections = solid.self_intersections};
+    outside = outside_of(solid, command.outside_radius);
     if (!command.output.quiet && !command.output.json)
       fmt::print("outside: the space around it, within a sphere of {:.6g} bounding radii\n", command.outside_radius);
   }

@@ -55,8 +55,11 @@ Advice about_protrusion(const WorstPlace& place, const AxisOrigin& origin) {
 
 Advice about_coverage(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
   const MedialTuning& tuning = *origin.tuning;
-  if (tuning.prune_degrees > 0) return option_with("prune-angle", fmt::format("{:.3g}", 0.5 * tuning.prune_degrees));
-  if (tuning.options.prune.scale > 1) return option_with("prune-scale", "1");
+  if (tuning.prune_degrees > 0) {
+    const std::string angle = fmt::format("angle={:.3g}", 0.5 * tuning.prune_degrees);
+    return option_with("prune", angle);
+  }
+  if (tuning.options.prune.scale > 1) return option_with("prune", "scale=1");
   if (!tuning.refine) return refine_or_more_points(origin);
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double turn = sharpest_edge_near(surface, place.position, 1e-9 * diagonal + 0.5 * place.value * diagonal);

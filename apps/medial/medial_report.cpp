@@ -79,7 +79,7 @@ json to_json(const MedialBuild& build) {
           {"seconds", seconds}};
 }
 
-json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialStructure& structure) {
+json to_json(const MedialSegments& segments, const StructureGraph& graph, const MedialStructure& structure) {
   json parts = json::array();
   for (const MedialStructure::Part& part : structure.parts) {
     parts.push_back({{"kind", name_of(part.kind)}, {"cells", part.cells}, {"vertices", part.vertices.size()}});
@@ -92,10 +92,7 @@ json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton, cons
                     {"min_radius", s.min_radius},
                     {"max_radius", s.max_radius}});
   }
-  return {{"segments", rows},
-          {"skeleton_nodes", skeleton.nodes.size()},
-          {"skeleton_arcs", skeleton.arcs.size()},
-          {"parts", parts}};
+  return {{"segments", rows}, {"graph_nodes", graph.nodes.size()}, {"graph_arcs", graph.arcs.size()}, {"parts", parts}};
 }
 
 void print(const MedialStructure& structure) {

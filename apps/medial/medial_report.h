@@ -11,7 +11,7 @@ namespace orchard::apps {
 
 nlohmann::json to_json(const MedialBuild& build);
 nlohmann::json to_json(const Topology& topology);
-nlohmann::json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialStructure& structure);
+nlohmann::json to_json(const MedialSegments& segments, const StructureGraph& graph, const MedialStructure& structure);
 
 void print(const MedialBuild& build);
 void print(const MedialStructure& structure);

@@ -140,11 +140,11 @@ std::vector<TuningFlag> axis_flags() {
 
 std::vector<TuningFlag> pruning_flags() {
   return {
-      real("prune-angle", "0", 0, 180,
+      real("prune angle", "0", 0, 180,
            "Remove spurs whose contacts are seen at less than this angle, in degrees. Higher values also remove sheets "
            "that run into shallow edges",
            [](T& t, double x) { t.prune_degrees = x; }),
-      real("prune-scale", "1", 1, 10,
+      real("prune scale", "1", 1, 10,
            "Remove balls that lie in others when all are scaled by this factor. Higher values remove small features",
            [](T& t, double x) { t.options.prune.scale = x; })};
 }

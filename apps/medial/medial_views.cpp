@@ -98,7 +98,7 @@ std::vector<std::string> view_names(const std::filesystem::path& model) {
   for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-parts.vtm", "-medial.pvsm", "-medial-view.py",
                              "-medial-outline.vtp", "-medial-light.vtp", "-medial-vertices.vtp", "-medial-edges.vtp",
                              "-medial-faces.vtp", "-medial-contacts.vtp", "-medial-mesh.vtp", "-medial-points.vtp",
-                             "-medial-thickness.vtp", "-medial-skeleton.vtp", "-medial-worst.vtp", "-medial.png"})
+                             "-medial-thickness.vtp", "-medial-structure.vtp", "-medial-worst.vtp", "-medial.png"})
     names.push_back(named(model, ending));
   return names;
 }
@@ -156,7 +156,7 @@ StateScene state_of(const MedialCommand& command, const MedialViews& views) {
       .layers =
           {{.name = "mesh", .file = file("-mesh.vtp"), .opacity = 0.15},
            {.name = "axis by radius", .file = file(".vtu"), .array = "radius"},
-           {.name = "borders and seams", .file = file("-skeleton.vtp"), .width = 2, .color = {0.13, 0.16, 0.20}},
+           {.name = "borders and seams", .file = file("-structure.vtp"), .width = 2, .color = {0.13, 0.16, 0.20}},
            {.name = "axis by sheet", .file = file(".vtu"), .array = "structure", .of_cells = true, .categories = true}},
       .ranges = {{"radius", {least == radii.end() ? 0 : *least, largest == radii.end() ? 1 : *largest}, "radius"},
                  {"structure", {0, parts}, ""}},
@@ -237,7 +237,8 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
   write_medial_axis(outputs.staged(named(command.mesh, "-medial")), axis, of_vertices, of_faces);
   write_thickness(add("-thickness.vtp", "", "the mesh with its local thickness"), views.surface,
                   medial_radii_at_surface(views.surface, views.mesh), of_mesh);
-  write_skeleton(add("-skeleton.vtp", "skeleton", "the lines where sheets end and meet"), axis, views.skeleton);
+  write_structure_graph(add("-structure.vtp", "structure graph", "the lines where sheets end and meet"), axis,
+                        views.graph);
   if (views.errors != nullptr)
     write_worst_places(add("-worst.vtp", "worst places", "where it is worst, numbered as above"), views.worst);
   const Index light = write_light_balls(command, axis, outputs);

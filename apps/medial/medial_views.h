@@ -29,7 +29,7 @@ struct MedialViews {
   const Surface& surface;
   const MedialBuild& build;
   const MedialSegments& segments;
-  const SkeletonGraph& skeleton;
+  const StructureGraph& graph;
   const MedialMesh& mesh;
   const MedialErrors* errors = nullptr;  // null: not measured
   std::vector<WorstPlace> worst = {};

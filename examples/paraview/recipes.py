@@ -80,7 +80,7 @@ def clip(model, view):
 def transparent(model, view):
     """The axis by radius in its transparent solid, with borders and seams."""
     color_by(simple.Show(axis_of(model), view), view, "POINTS", "radius", "radius (mesh units)")
-    lines = simple.Show(polydata(model + "-medial-skeleton.vtp"), view)
+    lines = simple.Show(polydata(model + "-medial-structure.vtp"), view)
     lines.ColorArrayName = ["POINTS", ""]
     lines.AmbientColor = lines.DiffuseColor = [0.1] * 3
     lines.LineWidth = 2

@@ -108,7 +108,7 @@ std::string text_of(const Axis& axis, const std::string& format) {
   if (format == "obj") return to_obj(axis.mesh);
   if (format == "graphml") {
     const MedialAxis complex = axis.build ? axis.build->axis : complex_of(axis.mesh);
-    return to_graphml(skeleton_graph(complex), complex);
+    return to_graphml(structure_graph(complex), complex);
   }
   throw py::value_error("format: '" + format + "' is not one of ma, ply, obj, graphml");
 }
@@ -147,15 +147,15 @@ py::dict structure(const Axis& axis) {
   return result;
 }
 
-py::dict skeleton(const Axis& axis) {
-  SkeletonGraph graph;
+py::dict structure_graph_of(const Axis& axis) {
+  StructureGraph graph;
   {
     const py::gil_scoped_release release;
-    graph = skeleton_graph(axis.build ? axis.build->axis : complex_of(axis.mesh));
+    graph = structure_graph(axis.build ? axis.build->axis : complex_of(axis.mesh));
   }
   constexpr std::array kNames{"curve", "border", "junction"};
   py::list arcs;
-  for (SkeletonGraph::Arc& arc : graph.arcs) {
+  for (StructureGraph::Arc& arc : graph.arcs) {
     py::dict row;
     row["from"] = arc.from;
     row["to"] = arc.to;
@@ -256,7 +256,7 @@ void bind_medial(py::module_& module) {
       .def("notes", [](const Axis& axis) { return axis.notes; })
       .def("vertex_angles", &vertex_angles)
       .def("structure", &structure)
-      .def("skeleton", &skeleton)
+      .def("structure_graph", &structure_graph_of)
       .def("text", &text_of)
       .def("save", &save);
   module.def("tuning_table", &tuning_table);

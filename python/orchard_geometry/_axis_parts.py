@@ -38,7 +38,7 @@ class Structure:
 
 @dataclasses.dataclass(frozen=True)
 class Arc:
-    """A line of a skeleton graph."""
+    """A line of a structure graph."""
 
     start: int  #: a vertex of the axis: a node
     end: int
@@ -49,14 +49,14 @@ class Arc:
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class Skeleton:
+class StructureGraph:
     """The lines of an axis: borders of sheets, junctions of three or more, and curves."""
 
     nodes: Indices  #: vertices of the axis
     arcs: list[Arc]
 
     def __repr__(self) -> str:
-        return f"<Skeleton: {len(self.nodes)} nodes, {len(self.arcs)} arcs>"
+        return f"<StructureGraph: {len(self.nodes)} nodes, {len(self.arcs)} arcs>"
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

@@ -10,12 +10,12 @@ import numpy
 from . import _construction
 from ._arrays import Anything, Floats, Indices, choice, floats, indices, number, view, whole
 from ._axis_files import write_axis
-from ._axis_parts import KINDS, Arc, Quality, Skeleton, Structure, signed
+from ._axis_parts import KINDS, Arc, Quality, StructureGraph, Structure, signed
 from ._errors import MeshError
 from ._mesh import Mesh
 from ._progress import Progress
 from ._thickness import Thickness, thickness
-from ._tuning import tuning_of
+from ._tuning import keyword, tuning_of
 
 PathLike = typing.Union[str, "os.PathLike[str]"]
 Ints = typing.Any
@@ -155,12 +155,12 @@ class MedialAxis:
         """How thick the solid is: see thickness()."""
         return thickness(self.mesh, points, **options)
 
-    def skeleton(self) -> Skeleton:
+    def structure_graph(self) -> StructureGraph:
         """The lines of the axis as a graph."""
-        found = self._axis.skeleton()
+        found = self._axis.structure_graph()
         arcs = [Arc(arc["from"], arc["to"], arc["kind"], arc["length"], arc["mean_radius"], view(arc["vertices"]))
                 for arc in found["arcs"]]
-        return Skeleton(view(found["nodes"]), arcs)
+        return StructureGraph(view(found["nodes"]), arcs)
 
     def envelope(self, cell: float = 0.5, *, progress: Progress = None) -> Mesh:
         """The surface of what the axis stands for, the union of its balls, cones and slabs. cell: percent of the
@@ -177,8 +177,8 @@ class MedialAxis:
         return _construction.axis_distance(self._axis, other._axis, wanted)
 
     def save(self, file: PathLike) -> None:
-        """Writes .ma (the same bytes as the command), .ply, .obj, .graphml (the skeleton), .off, .sph, .cg, .txt, .xyz,
-        .xyzr or .balls. What a format has no place for is left out: radii of .obj, .off and .cg, cells of balls."""
+        """Writes .ma (the same bytes as the command), .ply, .obj, .graphml (the structure graph), .off, .sph, .cg, .txt,
+        .xyz, .xyzr or .balls. What a format has no place for is left out: radii of .obj, .off and .cg, cells of balls."""
         path = os.fspath(file)
         ending = os.path.splitext(path)[1].lower()
         if ending in (".ma", ".ma_struct", ".ply", ".obj", ".graphml"):
@@ -309,7 +309,7 @@ def tuning_options() -> dict[str, dict[str, typing.Any]]:
     '0.1'
     """
     table = _construction.tuning_table()
-    return {row["name"].replace("-", "_"): {name: value for name, value in row.items() if name != "name"}
+    return {keyword(row["name"]): {name: value for name, value in row.items() if name != "name"}
             for row in table if row["name"] != "segment-angle"}
 
 
@@ -327,5 +327,5 @@ def box_mesh(half_lengths: Anything = (1, 1, 1)) -> Mesh:
                           [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
 
 
-__all__ = ["Arc", "KINDS", "MedialAxis", "MeshError", "Quality", "Skeleton", "Structure", "box_mesh", "medial_axis",
-           "tuning_options"]
+__all__ = ["Arc", "KINDS", "MedialAxis", "MeshError", "Quality", "StructureGraph", "Structure", "box_mesh",
+           "medial_axis", "tuning_options"]

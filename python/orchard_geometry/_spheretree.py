@@ -11,7 +11,7 @@ from ._arrays import Anything, choice, floats, number, whole
 from ._medial import MedialAxis
 from ._mesh import Mesh
 from ._progress import Progress
-from ._tuning import tuning_of
+from ._tuning import keyword, tuning_of
 from ._trees import PathLike, Tree, _write
 
 _METHODS = ("tightened", "merging", "annealing", "octree")
@@ -242,4 +242,4 @@ def sphere_tree(
 def _tuning_names() -> set[str]:
     """Those that `orchard build` has: what leads to an axis that is not refined."""
     refining = 4  # TuningStep::refining of apps/medial/medial_tuning.h
-    return {row["name"].replace("-", "_") for row in _construction.tuning_table() if row["step"] < refining}
+    return {keyword(row["name"]) for row in _construction.tuning_table() if row["step"] < refining}

@@ -19,6 +19,18 @@ def as_text(name: str, value: typing.Any) -> str:
     raise ValueError(f"{name}: {value!r} is neither a number nor a word")
 
 
+def command_name(name: str) -> str:
+    """The name of an option in the command line's table; prune_angle is --prune angle=.."""
+    if name.startswith("prune_"):
+        return name.replace("_", " ", 1)
+    return name.replace("_", "-")
+
+
+def keyword(name: str) -> str:
+    """The keyword of an option, by its name in the command line's table."""
+    return name.replace("-", "_").replace(" ", "_")
+
+
 def tuning_of(**options: typing.Any) -> dict[str, str]:
     """The options that are given, by the command line's names."""
-    return {name.replace("_", "-"): as_text(name, value) for name, value in options.items() if value is not None}
+    return {command_name(name): as_text(name, value) for name, value in options.items() if value is not None}

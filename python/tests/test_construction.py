@@ -71,7 +71,7 @@ def test_an_axis_is_saved_and_read(box, box_axis, tmp_path):
 def test_an_axis_of_another_system(box):
     axis = og.MedialAxis.of(box, [[-0.4, 0, 0], [0.4, 0, 0]], [0.4, 0.4], [[0, 1]])
     assert len(axis.edges) == 1 and axis.structure.count("curve") == 1 and numpy.isnan(axis.contact_angle).all()
-    assert len(axis.skeleton().arcs) == 1 and axis.skeleton().arcs[0].length == pytest.approx(0.8)
+    assert len(axis.structure_graph().arcs) == 1 and axis.structure_graph().arcs[0].length == pytest.approx(0.8)
     assert axis.quality(samples=500)["hausdorff_max"] > 5
     for wrong in ({"radii": [0.4]}, {"radii": [0.4, -1]}, {"edges": [[0, 2]]}, {"faces": [[0, 0, 1]]}):
         with pytest.raises(ValueError):
@@ -92,7 +92,7 @@ def test_an_axis_is_judged_simplified_and_compared(box_axis):
     assert box_axis.distance(few)["max"] > 0 and box_axis.distance(box_axis)["max"] < 1e-3
     envelope = box_axis.envelope(2)
     assert envelope.solid and envelope.volume == pytest.approx(box_axis.mesh.volume, rel=0.1)
-    assert len(box_axis.skeleton().nodes) > 0
+    assert len(box_axis.structure_graph().nodes) > 0
     with pytest.raises(ValueError, match="simplify"):
         box_axis.simplify()
     with pytest.raises(TypeError, match="other"):

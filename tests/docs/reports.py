@@ -80,6 +80,8 @@ RUNS = [
     ("profile", "profile tree/box.orchard --flights 5"),
     ("simulate", "simulate pile --tree tree/box.orchard --bodies 4 --frames 10 --budget 500"),
     ("thickness", "thickness box.obj -o thick --samples 200 --below 1.5"),
+    ("skeleton", "skeleton box.obj -o skeleton --samples 300"),
+    ("segment", "segment box.obj -o segment --samples 300 --triangles 500 --meshes"),
 ]
 
 

@@ -199,7 +199,7 @@ TEST_F(ReadAxis, TakesAnOffWithoutFacesAndTheObjOfItsNameAsAPair) {
   EXPECT_EQ(read("alone.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n").mesh.triangles.size(), 1u);
 }
 
-TEST_F(ReadAxis, TakesSkeletonGraphs) {
+TEST_F(ReadAxis, TakesStructureGraphs) {
   const ForeignAxis swc = read("a.swc", "# neuron\n10 1 0 0 0 1.5 -1\n11 3 1 0 0 1 10\n12 3 2 0 0 .5 11\n");
   EXPECT_EQ(swc.mesh.edges, (std::vector<std::array<Index, 2>>{{0, 1}, {1, 2}}));
   EXPECT_EQ(swc.mesh.radii[0], 1.5);

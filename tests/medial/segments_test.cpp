@@ -66,9 +66,9 @@ TEST(MedialSegments, AreBranchesWhereTheyNearlyTouchTheSurface) {
   EXPECT_TRUE(near.segments[2].trunk);
 }
 
-TEST(SkeletonGraph, HasBordersJunctionsAndCurves) {
+TEST(StructureGraph, HasBordersJunctionsAndCurves) {
   const MedialAxis axis = strip_with_flap_and_tail();
-  const SkeletonGraph graph = skeleton_graph(axis);
+  const StructureGraph graph = structure_graph(axis);
   int count[3] = {0, 0, 0};
   double length = 0;
   for (const auto& arc : graph.arcs) {
@@ -84,7 +84,7 @@ TEST(SkeletonGraph, HasBordersJunctionsAndCurves) {
   EXPECT_EQ(graph.nodes, (std::vector<Index>{1, 4, 5, 9}));
 }
 
-TEST(SkeletonGraph, OfAClosedLineHasOneNode) {
+TEST(StructureGraph, OfAClosedLineHasOneNode) {
   MedialAxis axis;
   axis.centers = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   axis.radii = {1, 1, 1};
@@ -92,7 +92,7 @@ TEST(SkeletonGraph, OfAClosedLineHasOneNode) {
     axis.neighbors.items.insert(axis.neighbors.items.end(), row.begin(), row.end());
     axis.neighbors.close_row();
   }
-  const SkeletonGraph graph = skeleton_graph(axis);
+  const StructureGraph graph = structure_graph(axis);
   ASSERT_EQ(graph.arcs.size(), 1u);
   EXPECT_EQ(graph.nodes.size(), 1u);
   EXPECT_EQ(graph.arcs[0].vertices.size(), 4u);

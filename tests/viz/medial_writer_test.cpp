@@ -109,12 +109,12 @@ TEST(Thickness, IsTwiceTheMedialRadius) {
   EXPECT_EQ(values(data->GetPointData(), "thickness"), (std::vector<double>{2, 4, 6, 8, 10, 12, 14, 16}));
 }
 
-TEST(SkeletonFile, HasALineForEachArc) {
+TEST(StructureGraphFile, HasALineForEachArc) {
   const TestFolder folder;
   const MedialAxis axis = small_complex();
-  const SkeletonGraph graph = skeleton_graph(axis);
-  write_skeleton(folder.path() / "skeleton.vtp", axis, graph);
-  const auto data = test::read_poly_data(folder.path() / "skeleton.vtp");
+  const StructureGraph graph = structure_graph(axis);
+  write_structure_graph(folder.path() / "structure.vtp", axis, graph);
+  const auto data = test::read_poly_data(folder.path() / "structure.vtp");
   EXPECT_EQ(static_cast<std::size_t>(data->GetNumberOfLines()), graph.arcs.size());
   EXPECT_EQ(values(data->GetCellData(), "kind").size(), graph.arcs.size());
   EXPECT_EQ(values(data->GetPointData(), "radius").size(), static_cast<std::size_t>(data->GetNumberOfPoints()));

@@ -155,7 +155,7 @@ Rule rule_of(const std::string& name) {
 double max_of(const Rule& rule, double diagonal, const Views& views) {
   switch (rule.unit) {
     case Unit::length:
-      return 100 * diagonal;  // the lines of a skeleton wind
+      return 100 * diagonal;  // the lines of a structure graph wind
     case Unit::angle:
       return 180 + 1e-9;
     case Unit::percent:

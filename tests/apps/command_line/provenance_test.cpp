@@ -164,9 +164,9 @@ TEST(Provenance, DependsOnNoFolderThreadOrOrderOfOptions) {
     return all;
   };
   const auto one = files(
-      {"medial", mesh, "-o", (here / "one").string(), "--samples", "150", "--prune-angle", "10", "--threads", "1"},
+      {"medial", mesh, "-o", (here / "one").string(), "--samples", "150", "--prune", "angle=10", "--threads", "1"},
       "one");
-  const auto two = files({"medial", "--quiet", "--prune-angle", "10", "--threads", "2", "--samples", "150",
+  const auto two = files({"medial", "--quiet", "--prune", "angle=10", "--threads", "2", "--samples", "150",
                           (here / "elsewhere/deep/l.obj").string(), "-o", (here / "two/deep").string()},
                          "two");
   EXPECT_GT(one.size(), 1u);  // the axis and its simplification; views where they are built

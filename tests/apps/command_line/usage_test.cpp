@@ -119,7 +119,7 @@ TEST(Usage, SuggestsTheOptionThatWasMeant) {
 TEST(Usage, NamesAnOptionOnceWhereItsValueCannotBe) {
   const Workplace here;
   const std::string ball = here.add("ball.obj", test::icosphere(1));
-  for (const auto& [option, value] : {std::pair{"--prune-angle", "200"}, {"--samples", "20.5"}, {"--gaps", "wide"}}) {
+  for (const auto& [option, value] : {std::pair{"--prune", "angle=200"}, {"--samples", "20.5"}, {"--gaps", "wide"}}) {
     const Finished run = here.run({"medial", ball, "-o", (here / "out").string(), option, value});
     EXPECT_EQ(run.exit_code, 2);
     const std::size_t first = run.err.find(option);

@@ -315,7 +315,7 @@ TEST(Medial, DrawsWhereItIsWorstWithTheReport) {
   EXPECT_NE(files.at("l-medial-points.vtp").find("\"repair_pass\""), std::string::npos);
   EXPECT_NE(files.at("l-medial-worst.vtp").find("\"number\""), std::string::npos);
   EXPECT_NE(files.at("l-medial.vtm").find("worst places"), std::string::npos);
-  for (const char* part : {"/l-medial.vtu", "/l-medial-mesh.vtp", "/l-medial-skeleton.vtp", "/l-medial-worst.vtp"})
+  for (const char* part : {"/l-medial.vtu", "/l-medial-mesh.vtp", "/l-medial-structure.vtp", "/l-medial-worst.vtp"})
     EXPECT_NE(files.at("l-medial.pvsm").find(part), std::string::npos) << part;
   EXPECT_NE(files.at("l-medial-view.py").find("BALLS, LIGHT_BALLS = "), std::string::npos);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--picture"}).exit_code, 2);
@@ -417,17 +417,17 @@ TEST(Medial, TakesTheUsersDiagramAsItIs) {
 TEST(Medial, SweepsAllCombinationsIntoOneTableAndPlotsWhatTheyTrade) {
   const Workplace here;
   const Finished run = here.run({"medial", here.add("l.obj", test::l_shape()), "-o", (here / "out").string(), "--sweep",
-                                 "samples=100,200", "--sweep", "prune=0,30,60", "--quality-samples", "300", "--quiet"});
+                                 "samples=100,200", "--sweep", "prune angle=0,30,60", "--quality-samples", "300", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   const auto files = here.files("out");
   const std::string csv = test::without_provenance(files.at("l-sweep.csv"));
   EXPECT_EQ(lines(csv), 7u);
-  EXPECT_EQ(csv.substr(0, 20), "samples,prune-angle,");
+  EXPECT_EQ(csv.substr(0, 20), "samples,prune angle,");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','),
             7 * std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ','));
   const std::string& svg = files.at("l-sweep.svg");
-  for (const char* part : {"</svg>", "prune-angle 30", "against balls", "against seconds", "largest distance"})
+  for (const char* part : {"</svg>", "prune angle 30", "against balls", "against seconds", "largest distance"})
     EXPECT_NE(svg.find(part), std::string::npos) << part;
 }
 
@@ -436,7 +436,7 @@ TEST(Medial, GivesTheSameBytesOnAnyNumberOfThreads) {
   const std::string mesh = here.add("torus.obj", test::torus(20, 10));
   const auto axis = [&](const char* threads) {
     const Finished run = here.run({"medial", mesh, "-o", (here / "out").string(), "--samples", "400", "--quiet",
-                                   "--no-views", "--prune-angle", "20", "--threads", threads});
+                                   "--no-views", "--prune", "angle=20", "--threads", threads});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return here.files("out").at("torus.ma");
   };
@@ -507,7 +507,7 @@ TEST(Medial, RefusesBadOptionsInOneLine) {
     EXPECT_EQ(run.exit_code, 2) << options[1];
     EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
   }
-  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--prune-angle", "200"}).exit_code, 2);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--prune", "angle=200"}).exit_code, 2);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--samples", "20.5"}).exit_code, 2);
 }
 

@@ -32,7 +32,7 @@ TEST(Build, TakesTheFlagsOfMedial) {
   const json plain = built({});
   EXPECT_EQ(plain["options"]["samples"], 1000);
   EXPECT_EQ(plain["medial_axis"]["vertices"], plain["medial_axis"]["vertices_before_pruning"]);
-  const json pruned = built({"--prune-angle", "120"});
+  const json pruned = built({"--prune", "angle=120"});
   EXPECT_LT(pruned["medial_axis"]["vertices"], pruned["medial_axis"]["vertices_before_pruning"]);
   EXPECT_EQ(built({"--gaps", "none"})["gap_repair"]["points_added"], 0);
   EXPECT_GT(plain["gap_repair"]["points_added"], 0);

@@ -5,7 +5,7 @@
 
 #include "orchard/medial/axis.h"
 
-// Divides a medial axis into sheets and curves, and extracts its skeleton of lines.
+// Divides a medial axis into sheets and curves, and extracts its graph of lines.
 namespace orchard {
 
 // The options of medial_segments().
@@ -46,7 +46,7 @@ MedialSegments medial_segments(const MedialAxis& axis, const SegmentOptions& opt
 // The lines of an axis as a graph. A line is a border of a sheet, a junction where three or more sheets meet, or a
 // curve. The nodes are the ends of lines and the places where lines meet or change their kind. A closed line has one
 // node.
-struct SkeletonGraph {
+struct StructureGraph {
   enum class Kind : std::uint8_t { curve, border, junction };
   struct Arc {
     Index from = 0, to = 0;  // The nodes at the ends, as indices into `nodes`.
@@ -59,9 +59,9 @@ struct SkeletonGraph {
   std::vector<Arc> arcs;
 };
 // Returns the lines of an axis as a graph.
-SkeletonGraph skeleton_graph(const MedialAxis& axis);
+StructureGraph structure_graph(const MedialAxis& axis);
 
 // Returns the text of a GraphML file. Nodes have x, y, z and radius; edges have kind, length and mean_radius.
-std::string to_graphml(const SkeletonGraph& graph, const MedialAxis& axis);
+std::string to_graphml(const StructureGraph& graph, const MedialAxis& axis);
 
 }  // namespace orchard

@@ -41,6 +41,6 @@ void write_worst_places(const std::filesystem::path& vtp, const std::vector<Wors
 
 // Writes a polyline for each arc. Point arrays: radius; vertex (of the axis). Cell arrays: kind (0 curve, 1 border, 2
 // junction), length, mean_radius, from, to (nodes, as in the GraphML).
-void write_skeleton(const std::filesystem::path& vtp, const MedialAxis& axis, const SkeletonGraph& graph);
+void write_structure_graph(const std::filesystem::path& vtp, const MedialAxis& axis, const StructureGraph& graph);
 
 }  // namespace orchard

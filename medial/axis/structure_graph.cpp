@@ -9,7 +9,7 @@
 namespace orchard {
 namespace {
 
-using Kind = SkeletonGraph::Kind;
+using Kind = StructureGraph::Kind;
 
 class Tracer {
  public:
@@ -22,14 +22,14 @@ class Tracer {
     traced_.assign(complex_.edges().size(), 0);
   }
 
-  SkeletonGraph run() {
+  StructureGraph run() {
     for (Index vertex = 0; vertex < axis_.size(); ++vertex) {
       if (is_node(vertex)) trace_from(vertex);
     }
     for (Index vertex = 0; vertex < axis_.size(); ++vertex) trace_from(vertex);  // closed lines
     std::sort(graph_.nodes.begin(), graph_.nodes.end());
     graph_.nodes.erase(std::unique(graph_.nodes.begin(), graph_.nodes.end()), graph_.nodes.end());
-    for (SkeletonGraph::Arc& arc : graph_.arcs) {
+    for (StructureGraph::Arc& arc : graph_.arcs) {
       arc.from = number(arc.vertices.front());
       arc.to = number(arc.vertices.back());
     }
@@ -53,7 +53,7 @@ class Tracer {
   void trace_from(Index start) {
     for (const Index first : lines_[start]) {
       if (traced_[first]) continue;
-      SkeletonGraph::Arc arc;
+      StructureGraph::Arc arc;
       arc.kind = kind(first);
       arc.vertices.push_back(start);
       Index edge = first, vertex = start;
@@ -77,19 +77,19 @@ class Tracer {
   detail::AxisComplex complex_;
   std::vector<std::vector<Index>> lines_;  // edges that are not within a sheet, of each vertex
   std::vector<std::uint8_t> traced_;
-  SkeletonGraph graph_;
+  StructureGraph graph_;
 };
 
 }  // namespace
 
-SkeletonGraph skeleton_graph(const MedialAxis& axis) { return Tracer(axis).run(); }
+StructureGraph structure_graph(const MedialAxis& axis) { return Tracer(axis).run(); }
 
-std::string to_graphml(const SkeletonGraph& graph, const MedialAxis& axis) {
+std::string to_graphml(const StructureGraph& graph, const MedialAxis& axis) {
   constexpr std::array kNumbers{"length", "mean_radius"};
   constexpr std::array kNames{"curve", "border", "junction"};
-  detail::GraphmlText text("skeleton", kNumbers);
+  detail::GraphmlText text("structure", kNumbers);
   for (const Index vertex : graph.nodes) text.add_node(axis.centers[vertex], axis.radii[vertex]);
-  for (const SkeletonGraph::Arc& arc : graph.arcs) {
+  for (const StructureGraph::Arc& arc : graph.arcs) {
     const std::array numbers{arc.length, arc.mean_radius};
     text.add_edge(arc.from, arc.to, numbers, kNames[static_cast<std::size_t>(arc.kind)]);
   }

@@ -1,0 +1,29 @@
+#pragma once
+#include "command_line/commands.h"
+#include "command_line/console.h"
+#include "orchard/medial/build.h"
+#include "orchard/medial/medial_mesh.h"
+#include "orchard/medial/topology.h"
+
+// The medial axis that commands beside `orchard medial` start from.
+namespace orchard::apps {
+
+// The space around a solid, within a sphere of `radius` bounding radii, as a solid.
+SolidMesh outside_of(const SolidMesh& solid, double radius);
+
+// A solid, or the space around it, with its axis.
+struct SolidAxis {
+  SolidMesh solid;
+  MedialBuild build;
+  MedialMesh mesh;
+  Topology found, wanted;  // of the axis and of the solid
+};
+// Reads the mesh, prints what was done to it, and builds the axis that the command's tuning asks for.
+SolidAxis solid_axis(const MedialCommand& command, const Progress& progress, ProgressBar& bar);
+
+// What is wrong with the axis and what to do about it, in a line; empty if nothing is.
+std::string axis_warning(const SolidAxis& axis);
+// What a broken promise of its topology may be mended by.
+std::string topology_remedy(const SolidAxis& axis);
+
+}  // namespace orchard::apps
