@@ -75,7 +75,8 @@ void add_sweep_tree(CLI::App& command, std::optional<TreeRequest>& tree) {
 void add_sweep(CLI::App& command, MedialCommand& medial) {
   command
       .add_option("--sweep", medial.sweep,
-                  "NAME=A,B,..: build once for each value of an option, such as samples, vertices or 'prune angle', and compare. May "
+                  "NAME=A,B,..: build once for each value of an option, such as samples, vertices or 'prune angle', "
+                  "and compare. May "
                   "be repeated. Runs that the folder has already are not computed again")
       ->allow_extra_args(false);
   command.add_flag("--keep", medial.keep,

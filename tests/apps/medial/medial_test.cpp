@@ -416,8 +416,9 @@ TEST(Medial, TakesTheUsersDiagramAsItIs) {
 
 TEST(Medial, SweepsAllCombinationsIntoOneTableAndPlotsWhatTheyTrade) {
   const Workplace here;
-  const Finished run = here.run({"medial", here.add("l.obj", test::l_shape()), "-o", (here / "out").string(), "--sweep",
-                                 "samples=100,200", "--sweep", "prune angle=0,30,60", "--quality-samples", "300", "--quiet"});
+  const Finished run =
+      here.run({"medial", here.add("l.obj", test::l_shape()), "-o", (here / "out").string(), "--sweep",
+                "samples=100,200", "--sweep", "prune angle=0,30,60", "--quality-samples", "300", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   const auto files = here.files("out");
