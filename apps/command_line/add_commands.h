@@ -19,6 +19,9 @@ void add_medial(CLI::App& app, Request& request);
 void add_leaderboard(CLI::App& app, Request& request);
 void add_thickness(CLI::App& app, Request& request);
 
+// offset_command.cpp
+void add_offset(CLI::App& app, Request& request);
+
 // set_commands.cpp
 void add_spheres(CLI::App& app, Request& request);
 void add_audit(CLI::App& app, Request& request);

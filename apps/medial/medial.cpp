@@ -86,6 +86,10 @@ Destination check(const MedialCommand& command) {
                           .report = report_name(command),
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
+  std::vector<std::string> singles;
+  if (command.axis.empty()) singles = {named(command.mesh, ".ma"), named(command.mesh, ".graphml")};
+  for (const std::string& name : axis_export_names(command)) singles.push_back(name);
+  keep_single_file(destination, singles);
   check_outputs(destination, names_of(command), inputs);
   check_few_balls(command, destination, inputs);
   return destination;
@@ -192,7 +196,7 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
   report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
-  write_axis_exports(command, mesh, contacts_of(solid.surface, mesh), outputs);
+  write_axis_exports(command, mesh, axis_contacts(solid.surface, mesh), outputs);
   write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
                 named(command.axis, "-quality.png"), outputs);
   finish(command, report, outputs);
@@ -281,7 +285,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
-  write_axis_exports(command, mesh, contacts_of(build.axis), outputs);
+  write_axis_exports(command, mesh, axis_contacts(build.axis), outputs);
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,
               {.surface = surface,

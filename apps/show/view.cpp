@@ -7,9 +7,9 @@
 #include "command_line/commands.h"
 #include "command_line/number_text.h"
 #include "input/input_file.h"
+#include "input/mesh_input.h"
 #include "input/reading_report.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/mesh_io.h"
 #include "output/outputs.h"
 #include "output/picture.h"
 #include "output/sphere_lists.h"
@@ -108,7 +108,7 @@ PipelinePicture picture_of(const ViewCommand& command) {
   return picture;
 }
 
-void add(const std::filesystem::path& file, Scene& scene, bool talk) {
+void add(const std::filesystem::path& file, const MeshInput& input, Scene& scene, bool talk) {
   const std::string extension = lower_extension(file), name = file.filename().string();
   if (extension == ".orchard" || extension == ".sph") {
     scene.trees.push_back({name, *read_spheres(file).tree});
@@ -119,7 +119,7 @@ void add(const std::filesystem::path& file, Scene& scene, bool talk) {
   } else if (extension == ".vor") {
     scene.diagrams.push_back({name, read_vor(file)});
   } else {
-    auto [mesh, reading] = read_points_or_mesh_and_report(file);
+    auto [mesh, reading] = read_input_or_points(file, input);
     if (talk) print_reading(file, reading);
     if (mesh.triangles.empty()) {
       scene.points.push_back({name, std::move(mesh.vertices)});
@@ -189,7 +189,7 @@ void view(const ViewCommand& command) {
   scene.levels = command.levels;
   scene.opacity = command.opacity;
   scene.figure = figure_of(command);
-  for (const std::filesystem::path& file : command.files) add(file, scene, !command.quiet);
+  for (const std::filesystem::path& file : command.files) add(file, command.input, scene, !command.quiet);
   check_levels(scene);
   check_color(scene);
 

@@ -78,6 +78,8 @@ RUNS = [
     ("profile", "profile tree/box.orchard --flights 5"),
     ("simulate", "simulate pile --tree tree/box.orchard --bodies 4 --frames 10 --budget 500"),
     ("thickness", "thickness box.obj -o thick --samples 200 --below 1.5"),
+    ("offset", "offset box.obj -o offset --distance 0.2 --tolerance 3"),
+    ("offset", "offset box.obj -o hollow --hollow 0.2 --tolerance 3 --unit mm --scale 10"),
 ]
 
 
