@@ -173,8 +173,7 @@ template <typename Result>
 std::vector<Result> VtkXmlData::numbers(const VtkArray& array) const {
   const VtkNumber<Result>* type = vtk_number_named<Result>(array.type);
   if (type == nullptr)
-    fail_at_line(name_, bytes_, array.at,
-                 "an array of numbers of the type \"" + std::string(array.type.substr(0, 24)) + "\"");
+    fail_at_line(name_, bytes_, array.at, "an array of numbers of the type " + in_quotes(array.type));
   if (array.format == "ascii") return text_numbers<Result>(array);
   if (array.format != "binary" && array.format != "appended")
     fail_at_line(name_, bytes_, array.at, "an array in the format " + in_quotes(array.format));
