@@ -12,6 +12,7 @@
 
 #include "batch/sha256.h"
 #include "command_line/text.h"
+#include "input/input_file.h"
 #include "input/mesh_input.h"
 #include "orchard/geometry/error.h"
 

@@ -139,11 +139,11 @@ MeshReading read_scene(const fs::path& file, const std::string& format) {
   MeshReading reading;
   if (format == "dae") {
     reading.mesh = robot::read_dae(file);
-    reading.report.unit = "m";
+    reading.report.unit = std::string("m");
     return reading;
   }
   reading.mesh = read_by_assimp(file, format);
-  reading.report.unit = format == "3mf" ? unit_of_3mf(file) : "m";
+  reading.report.unit = format == "3mf" ? unit_of_3mf(file) : std::string("m");
   try {
     validate(reading.mesh);
     require_usable_size(reading.mesh);
