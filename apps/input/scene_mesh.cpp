@@ -1,17 +1,15 @@
 #include "input/scene_mesh.h"
 
-#include <assimp/ZipArchiveIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <zlib.h>
 
-#include <assimp/DefaultIOSystem.h>
 #include <algorithm>
 #include <array>
-#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
-#include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -61,28 +59,52 @@ class SceneWalk {
   std::map<std::array<float, 3>, Index> places_;  // of the node
 };
 
+// The first bytes of a packed file, at most 4096; empty if it cannot be unpacked.
+std::string unpacked_head(std::string_view packed, bool deflated) {
+  std::string head(4096, '\0');
+  if (!deflated) return std::string(packed.substr(0, head.size()));
+  z_stream stream{};
+  if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) return {};
+  std::string input(packed.substr(0, 1 << 20));  // zlib takes bytes that it could change
+  stream.next_in = reinterpret_cast<Bytef*>(input.data());
+  stream.avail_in = static_cast<uInt>(input.size());
+  stream.next_out = reinterpret_cast<Bytef*>(head.data());
+  stream.avail_out = static_cast<uInt>(head.size());
+  inflate(&stream, Z_SYNC_FLUSH);
+  head.resize(head.size() - stream.avail_out);
+  inflateEnd(&stream);
+  return head;
+}
+
+// The beginning of the file in a ZIP archive whose name ends so; empty if there is none.
+std::string head_in_zip(std::string_view zip, std::string_view ending) {
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    std::size_t value = 0;
+    for (std::size_t i = bytes; i-- > 0;) value = value << 8 | static_cast<unsigned char>(zip[at + i]);
+    return value;
+  };
+  constexpr std::size_t kEntry = 46, kLocal = 30;  // bytes of the heads
+  for (std::size_t at = zip.find("PK\x01\x02"); at != zip.npos && at + kEntry <= zip.size();
+       at = zip.find("PK\x01\x02", at + 4)) {
+    const std::string_view name = zip.substr(at + kEntry, number(at + 28, 2));
+    const std::size_t local = number(at + 42, 4);
+    if (!name.ends_with(ending) || local + kLocal > zip.size()) continue;
+    const std::size_t data = local + kLocal + number(local + 26, 2) + number(local + 28, 2);
+    if (data <= zip.size()) return unpacked_head(zip.substr(data, number(at + 20, 4)), number(at + 10, 2) == 8);
+  }
+  return {};
+}
+
 // The unit that a 3MF package names in its model, by the short name that orchard prints: millimetres if it names none.
 std::string unit_of_3mf(const fs::path& file) {
-  Assimp::DefaultIOSystem disk;
-  Assimp::ZipArchiveIOSystem archive(&disk, file.string());
-  if (!archive.isOpen()) return {};
-  std::vector<std::string> names;
-  archive.getFileListExtension(names, "model");
-  for (const std::string& name : names) {
-    const auto close = [&](Assimp::IOStream* stream) { archive.Close(stream); };
-    const std::unique_ptr<Assimp::IOStream, decltype(close)> stream(archive.Open(name.c_str(), "rb"), close);
-    if (!stream) continue;
-    std::string head(std::min<std::size_t>(stream->FileSize(), 4096), '\0');
-    head.resize(stream->Read(head.data(), 1, head.size()));
-    const std::size_t model = head.find("<model"), stop = std::min(head.find('>', model), head.size());
-    if (model == std::string::npos) continue;
-    static constexpr std::array<std::pair<const char*, const char*>, 6> kUnits{
-        {{"micron", "um"}, {"millimeter", "mm"}, {"centimeter", "cm"}, {"inch", "in"}, {"foot", "ft"}, {"meter", "m"}}};
-    const std::string tag = head.substr(model, stop - model);
-    for (const auto& [long_name, short_name] : kUnits)
-      for (const char quote : {'"', '\''})
-        if (tag.find(std::string(" unit=") + quote + long_name + quote) != std::string::npos) return short_name;
-  }
+  static constexpr std::array<std::pair<const char*, const char*>, 6> kUnits{
+      {{"micron", "um"}, {"millimeter", "mm"}, {"centimeter", "cm"}, {"inch", "in"}, {"foot", "ft"}, {"meter", "m"}}};
+  const std::string head = head_in_zip(content_of(file), ".model");
+  const std::size_t model = std::min(head.find("<model"), head.size());
+  const std::string tag = head.substr(model, std::min(head.find('>', model), head.size()) - model);
+  for (const auto& [long_name, short_name] : kUnits)
+    for (const char quote : {'"', '\''})
+      if (tag.find(std::string(" unit=") + quote + long_name + quote) != std::string::npos) return short_name;
   return "mm";
 }
 
