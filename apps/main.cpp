@@ -50,6 +50,7 @@ int run(Request& request) {
   std::optional<tbb::global_control> limit;
   if (request.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
+  take_standard_input(request);
   request.run();
   return request.exit_code;
 }
@@ -85,13 +86,16 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return fail(kBadInput, in_one_line(app, error));
   }
+  const auto in_words = [&request](const std::exception& error) {
+    return request.standard_input ? request.standard_input->in_words(error.what()) : std::string(error.what());
+  };
   try {
     return printed(run(request));
   } catch (const orchard::InputError& error) {
-    return fail(kBadInput, error.what());
+    return fail(kBadInput, in_words(error));
   } catch (const std::bad_alloc&) {
     return fail(kFailed, "out of memory");
   } catch (const std::exception& error) {
-    return fail(kFailed, error.what());
+    return fail(kFailed, in_words(error));
   }
 }

@@ -64,6 +64,20 @@ void add_structure(const MedialStructure& structure, std::size_t count, const Pa
            [&](std::size_t i) { return static_cast<int>(structure.parts[part_of(i)].kind); });
 }
 
+void add_contacts(const AxisContacts& contacts, vtkFieldData* data) {
+  const std::size_t count = contacts.balls.size(), samples = contacts.sample_places.size();
+  add_ints(data, "contact_ball", count, [&](std::size_t i) { return as_int(contacts.balls[i]); });
+  add_ints(data, "contact_sample", count, [&](std::size_t i) { return as_int(contacts.samples[i]); });
+  add_ints(data, "sample_ball", samples, [&](std::size_t i) { return as_int(contacts.sample_balls[i]); });
+  vtkNew<vtkDoubleArray> places;
+  places->SetName("samples");
+  places->SetNumberOfComponents(3);
+  places->SetNumberOfTuples(static_cast<vtkIdType>(samples));
+  for (std::size_t i = 0; i < samples; ++i)
+    places->SetTuple(static_cast<vtkIdType>(i), contacts.sample_places[i].data());
+  data->AddArray(places);
+}
+
 bool added(const MedialAxis& axis, Index point) { return point != kNone && axis.origins[point] == PointOrigin::repair; }
 
 void add_point_arrays(const MedialAxis& axis, const MedialSegments& segments, const std::vector<Index>& components,
@@ -133,6 +147,7 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
     add_doubles(grid->GetCellData(), array.name.c_str(), cells.size(),
                 [&](std::size_t i) { return i < array.values.size() ? array.values[i] : kNoValue; });
   }
+  add_contacts(axis_contacts(axis), grid->GetFieldData());
   write_with<vtkXMLUnstructuredGridWriter>(vtu, grid.GetPointer());
 }
 
@@ -146,7 +161,8 @@ void write_thickness(const std::filesystem::path& vtp, const Surface& surface, c
   write(vtp, data);
 }
 
-void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices) {
+void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices,
+                       const AxisContacts* contacts) {
   vtkNew<vtkPolyData> data;
   set_points(data, mesh.centers.size(), [&](std::size_t i) { return mesh.centers[i]; });
   const MedialStructure structure = medial_structure(mesh);
@@ -167,6 +183,7 @@ void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh,
   add_structure(
       structure, parts.size(), [&](std::size_t i) { return parts[i]; }, data->GetCellData());
   add_all(data->GetPointData(), of_vertices, mesh.radii.size());
+  if (contacts != nullptr) add_contacts(*contacts, data->GetFieldData());
   write(vtp, data);
 }
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <fstream>
@@ -14,18 +13,13 @@
 #include "batch/sha256.h"
 #include "command_line/text.h"
 #include "input/input_file.h"
+#include "input/mesh_input.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array<std::string_view, 4> kMeshEndings{".obj", ".ply", ".stl", ".off"};
-
-bool is_mesh_name(const fs::path& file) {
-  return std::find(kMeshEndings.begin(), kMeshEndings.end(), lower_extension(file)) != kMeshEndings.end();
-}
 
 std::vector<BatchMesh> listed(const fs::path& manifest) {
   std::ifstream in(manifest, std::ios::binary);
@@ -55,7 +49,7 @@ std::vector<BatchMesh> found_in(const fs::path& folder, const fs::path& skipped)
   }
   if (error) throw InputError(folder.string() + ": cannot be listed: " + error.message());
   if (meshes.empty())
-    throw InputError(folder.string() + ": holds no mesh (.obj, .ply, .stl, .off), nor do its folders");
+    throw InputError(folder.string() + ": holds no mesh " + input_formats_in_words() + ", nor do its folders");
   std::sort(meshes.begin(), meshes.end(), [](const BatchMesh& a, const BatchMesh& b) { return a.name < b.name; });
   return meshes;
 }
@@ -66,7 +60,7 @@ std::string fault_of(const fs::path& file) {
   std::error_code error;
   // A device or a pipe may never end.
   if (!fs::is_regular_file(file, error)) return "it is no plain file";
-  return is_mesh_name(file) ? "" : "its name does not end in .obj, .ply, .stl or .off";
+  return is_mesh_name(file) ? "" : "its name is not that of a mesh " + input_formats_in_words();
 }
 
 void require_all(const fs::path& source, const std::vector<BatchMesh>& meshes) {

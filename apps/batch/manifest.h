@@ -18,7 +18,7 @@ struct Manifest {
 };
 
 // Reads a text file of a path a line (relative to the file's folder; empty lines and lines that begin with # do not
-// count), or lists the meshes (.obj, .ply, .stl, .off) of a folder and the folders in it, sorted by name, but for what
+// count), or lists the meshes (input/mesh_input.h) of a folder and the folders in it, sorted by name, but for what
 // lies in `skipped`. Throws InputError if there is no mesh, or if some are missing, may not be read or are no plain
 // files: the message names them all. Cost: one look at every file.
 Manifest read_manifest(const std::filesystem::path& source, const std::filesystem::path& skipped);

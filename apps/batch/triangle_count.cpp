@@ -14,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uintmax_t kBytesOfOther = 100;  // of a triangle in other formats, about
 constexpr std::size_t kStlHeader = 84, kStlFacet = 50, kMostHeaderLines = 1000;
 
 std::uint64_t lines_that_begin_with(std::ifstream& in, const std::string& word) {
@@ -73,7 +74,8 @@ std::uint64_t count_triangles(const fs::path& mesh) {
   const std::uint64_t count = ending == ".stl"   ? of_stl(in, bytes)
                               : ending == ".ply" ? of_ply(in)
                               : ending == ".off" ? of_off(in)
-                                                 : lines_that_begin_with(in, "f ");
+                              : ending == ".obj" ? lines_that_begin_with(in, "f ")
+                                                 : bytes / kBytesOfOther;
   return std::min<std::uint64_t>(count, bytes);  // damaged headers promise anything; a face takes a byte at least
 }
 

@@ -23,6 +23,9 @@ void add_thickness(CLI::App& app, Request& request);
 void add_skeleton(CLI::App& app, Request& request);
 void add_segment(CLI::App& app, Request& request);
 
+// offset_command.cpp
+void add_offset(CLI::App& app, Request& request);
+
 // set_commands.cpp
 void add_spheres(CLI::App& app, Request& request);
 void add_audit(CLI::App& app, Request& request);

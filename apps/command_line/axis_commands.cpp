@@ -185,16 +185,6 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
   command.add_option("--bins", thickness.bins, "Number of bins of the histogram")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  command
-      .add_option("--unit", thickness.unit, "Name of the mesh's unit, such as mm, to print and write beside lengths")
-      ->check(CLI::Validator(
-          [](std::string& name) {
-            const bool word = !name.empty() && name.size() <= 16 && std::all_of(name.begin(), name.end(), [](char c) {
-              return std::isalnum(static_cast<unsigned char>(c)) != 0;
-            });
-            return word ? std::string() : "expected a word of at most 16 letters and digits, such as mm";
-          },
-          "{a word}"));
 }
 
 }  // namespace
@@ -202,8 +192,11 @@ void add_thickness_options(CLI::App& command, ThicknessCommand& thickness) {
 void add_sample(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("sample", "Sample a mesh with evenly spaced surface points");
   SampleCommand& sample = request.sample;
-  add_mesh(command, sample.mesh);
-  command.add_option("-o,--output", sample.folder, "Folder that receives the points")->required();
+  add_mesh(command, request, sample.mesh, sample.input);
+  command
+      .add_option("-o,--output", sample.folder,
+                  "Folder that receives the points, or a file for them alone (.xyz or .vtp)")
+      ->required();
   add_sampling_options(command, sample);
   add_threads(command, request);
   command.add_flag("!--no-views", sample.views, "Do not write files for ParaView");
@@ -223,8 +216,10 @@ void add_voronoi(CLI::App& app, Request& request) {
   VoronoiCommand& voronoi = request.voronoi;
   command
       .add_option("input", voronoi.input,
-                  "Points (.xyz, or .ply or .obj without faces), or a mesh to sample (.obj, .ply, .stl or .off)")
+                  mesh_help("Points (.xyz, or .ply or .obj without faces), or a mesh to sample"))
       ->required();
+  request.meshes.push_back({&voronoi.input, &voronoi.sampling.input});
+  add_mesh_input(command, voronoi.sampling.input);
   auto* algorithm =
       command
           .add_option_function<std::string>(
@@ -266,8 +261,12 @@ void add_voronoi(CLI::App& app, Request& request) {
 void add_medial(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("medial", "Build, measure or simplify the medial axis of a mesh");
   MedialCommand& medial = request.medial;
-  add_mesh(command, medial.mesh);
-  command.add_option("-o,--output", medial.folder, "Folder that receives the axis and the reports")->required();
+  add_mesh(command, request, medial.mesh, medial.reading.input);
+  command
+      .add_option("-o,--output", medial.folder,
+                  "Folder that receives the axis and the reports, or a file for the axis alone (.ma, .ply, .obj, .vtp, "
+                  ".npz or .graphml)")
+      ->required();
   medial.reading.unite = true;  // an axis is that of the solid, not of what lies within
   add_mesh_options(command, medial.reading);
   add_side(command, medial);
@@ -318,6 +317,9 @@ void add_medial(CLI::App& app, Request& request) {
   command.callback([&request, &command] {
     request.medial.output.run = invocation_of(command, request.typed);
     request.medial.given = given_of(command);
+    std::vector<std::string> kinds{"ply", "obj", "vtp", "npz"};
+    if (!request.medial.axis.empty()) kinds.insert(kinds.end(), {"ma", "graphml"});
+    export_single_file(request.medial.folder, kinds, request.medial.exports);
     expand_sweep(command, request.medial);
     request.run = [&request] { request.exit_code = orchard::apps::medial(request.medial); };
   });
@@ -369,10 +371,12 @@ void add_thickness(CLI::App& app, Request& request) {
   CLI::App& command =
       *app.add_subcommand("thickness", "Measure the local thickness of a solid and report where it is too thin");
   ThicknessCommand& thickness = request.thickness;
-  add_mesh(command, thickness.mesh);
+  add_mesh(command, request, thickness.mesh, thickness.reading.input);
   command
-      .add_option("-o,--output", thickness.folder,
-                  "Folder that receives the mesh with its thickness, the histogram and the report")
+      .add_option(
+          "-o,--output", thickness.folder,
+          "Folder that receives the mesh with its thickness, the histogram and the report, or a file for one of "
+          "them (.ply, .vtp, .csv or .svg)")
       ->required();
   add_thickness_options(command, thickness);
   thickness.reading.unite = true;

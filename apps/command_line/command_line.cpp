@@ -10,6 +10,7 @@
 #include "command_line/list_option.h"
 #include "command_line/number_validator.h"
 #include "command_line/shared_options.h"
+#include "orchard/geometry/error.h"
 
 namespace orchard::apps {
 namespace {
@@ -20,13 +21,13 @@ void add_inspect(CLI::App& app, Request& request) {
   InspectCommand& inspect = request.inspect;
   command
       .add_option("file", inspect.file,
-                  "Mesh (.obj, .ply, .stl, .off), sphere-tree (.orchard, .sph), medial axis (.ma, ..), sphere set "
-                  "(.txt, .csv, .json, ..) or points")
+                  mesh_help("Sphere-tree (.orchard, .sph), medial axis (.ma, ..), sphere set (.txt, .csv, .json, ..), "
+                            "points or mesh"))
       ->required();
+  request.meshes.push_back({&inspect.file, &inspect.input});
+  add_mesh_input(command, inspect.input);
   add_join(command, inspect.join);
   command.add_flag("--full", inspect.full, "Search meshes of more than 500,000 triangles for self-intersections, too");
-  command.add_option("--unit", inspect.unit,
-                     "Name of the file's unit, such as mm, to print beside lengths, areas and volumes");
   add_output_flags(command, inspect.output);
   command.footer(
       "Examples:\n  orchard inspect data/lamp.obj --unit cm\n  orchard inspect out/lamp/lamp.orchard\n  orchard "
@@ -87,10 +88,11 @@ void add_view(CLI::App& app, Request& request) {
   ViewCommand& view = request.view;
   command
       .add_option("files", view.files,
-                  "Sphere-trees (.orchard, .sph), sphere sets (.txt, .csv, .json), medial axes (.ma), Voronoi diagrams "
-                  "(.vor), meshes (.obj, .ply, .stl, .off), points (.xyz), views (.vtp, .vtu) or series of views, such "
-                  "as simulations (.pvd)")
+                  mesh_help("Sphere-trees (.orchard, .sph), sphere sets (.txt, .csv, .json), medial axes (.ma), Voronoi "
+                            "diagrams (.vor), points (.xyz), views (.vtp, .vtu), series of views, such as simulations "
+                            "(.pvd), or meshes"))
       ->required();
+  add_mesh_input(command, view.input);
   command.add_option("-o,--output", view.picture,
                      "Picture to write: .png, or .svg or .pdf for a picture of lines, which needs no display. With "
                      "--window, the key s saves it (.png)");
@@ -183,6 +185,17 @@ void refuse_empty_values(CLI::App& app) {
 
 }  // namespace
 
+void take_standard_input(Request& request) {
+  std::vector<Request::MeshArgument> all = request.meshes;
+  for (std::filesystem::path& file : request.view.files) all.push_back({&file, &request.view.input});
+  for (const auto& [file, input] : all) {
+    if (*file != "-") continue;
+    if (input->format.empty()) throw InputError("standard input: --format NAME is needed, such as --format stl");
+    if (!request.standard_input) request.standard_input.emplace(input->format);
+    *file = request.standard_input->file();
+  }
+}
+
 void add_commands(CLI::App& app, Request& request) {
   add_build(app, request);
   add_collide(app, request);
@@ -199,6 +212,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_thickness(app, request);
   add_skeleton(app, request);
   add_segment(app, request);
+  add_offset(app, request);
   add_view(app, request);
   add_report_command(app, request);
   add_completion(app, request);

@@ -10,6 +10,7 @@
 #include "medial/medial_tuning.h"
 #include "orchard/medial/curve_skeleton.h"
 #include "orchard/medial/surface_parts.h"
+#include "orchard/medial/offset.h"
 #include "orchard/medial/thickness.h"
 #include "orchard/spheretree/build.h"
 #include "orchard/spheretree/sphere_set.h"
@@ -62,7 +63,8 @@ void collide(const CollideCommand& command);
 
 struct VerifyCommand {
   std::filesystem::path tree, mesh;
-  std::optional<double> join;  // as in MeshOptions; so below
+  MeshInput input;             // as in MeshOptions; so below
+  std::optional<double> join;  // likewise
   bool box_centered = false;   // a text tree around the centre of the mesh's bounding box
   Output output;
 };
@@ -71,6 +73,7 @@ bool verify(const VerifyCommand& command);  // false: something is not proven
 struct AuditCommand {
   std::filesystem::path spheres, mesh;
   std::filesystem::path folder;  // for the views and the report; empty: none
+  MeshInput input;
   std::string link;              // of a file of several; empty: there is one
   std::optional<double> buffer;  // on every radius, in place of the file's own
   std::optional<double> join;
@@ -136,6 +139,7 @@ void check_options(const SpheresCommand& command);
 
 struct SampleCommand {
   std::filesystem::path mesh, folder;
+  MeshInput input;
   Index samples = 5000;               // in all
   std::optional<Index> edge_samples;  // of them on edges; a fifth unless it is given
   std::optional<double> join;
@@ -276,7 +280,6 @@ struct ThicknessCommand {
   ThicknessOptions options;
   std::optional<double> below;       // mesh units: say where the solid is thinner
   std::optional<double> fail_below;  // the same, and the exit code is kTooThin if it is anywhere
-  std::string unit;                  // of the mesh, for what is printed and written; empty: "mesh units"
   Index bins = 50;                   // of the histogram
   bool report = false;               // a page
   bool views = true;                 // ParaView files, where the program was built with them
@@ -300,6 +303,20 @@ struct SegmentCommand {
 ExitCode segment(const SegmentCommand& command);
 void check_options(const SegmentCommand& command);
 
+struct OffsetCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  std::optional<double> distance;  // mesh units
+  OffsetSide side = OffsetSide::outside;
+  std::optional<double> hollow;                        // thickness of the wall, in place of the distance
+  double tolerance = 100 * OffsetOptions{}.tolerance;  // percent of the diagonal
+  bool views = true;                                   // ParaView files, where the program was built with them
+  bool accept = false;                                 // as of BuildCommand
+  Output output;
+};
+ExitCode offset(const OffsetCommand& command);
+void check_options(const OffsetCommand& command);
+
 struct BatchCommand {
   std::vector<std::string> sources;  // a folder of meshes or a manifest; or "merge" and folders of batches
   std::filesystem::path folder;
@@ -317,9 +334,9 @@ ExitCode batch(const BatchCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;
+  MeshInput input;  // its unit is also that of files of other kinds
   std::optional<double> join;
   bool full = false;  // count self-intersections of large meshes too
-  std::string unit;   // of the file, for what is printed and written; empty: none is named
   Output output;
 };
 void inspect(const InspectCommand& command);
@@ -333,6 +350,7 @@ void report(const ReportCommand& command);
 
 struct ViewCommand {
   std::vector<std::filesystem::path> files;  // trees, axes, diagrams, meshes, points: all in one picture
+  MeshInput input;                           // of the meshes
   std::filesystem::path picture;             // .png, .svg or .pdf; of a window, where s saves to
   std::vector<Index> levels;                 // of the trees, a panel for each; empty: the deepest
   std::string camera, size;                  // "azimuth,elevation" in degrees, "widthxheight" in pixels; empty: as fits

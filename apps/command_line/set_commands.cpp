@@ -1,6 +1,7 @@
 // Options of the commands that make and audit sets of spheres.
 #include <fmt/core.h>
 
+#include <array>
 #include <numbers>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "command_line/tree_options.h"
 #include "command_line/weight_option.h"
 #include "medial/axis_export.h"
+#include "output/outputs.h"
 
 namespace orchard::apps {
 namespace {
@@ -139,14 +141,20 @@ void add_spheres(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("spheres", "Fit a set of spheres to a mesh and prove what the set promises");
   SpheresCommand& spheres = request.spheres;
   command
-      .add_option("mesh", spheres.mesh,
-                  "Triangle mesh to fit, or a sphere set that audit reads, to convert it to other formats or to a tree")
+      .add_option(
+          "mesh", spheres.mesh,
+          mesh_help("Sphere set that audit reads, to convert it to other formats or to a tree, or a mesh to fit"))
       ->required();
-  command.add_option("-o,--output", spheres.folder, "Folder that receives the spheres, the views and the report")
+  command
+      .add_option("-o,--output", spheres.folder,
+                  "Folder that receives the spheres, the views and the report, or a file for the spheres alone (.txt, "
+                  ".csv, .json, .yml, .urdf or .orchard)")
       ->required();
   add_set_options(command, spheres);
   add_place_options(command, spheres);
   add_particle_options(command, spheres);
+  request.meshes.push_back({&spheres.mesh, &spheres.reading.input});
+  add_mesh_input(command, spheres.reading.input);
   add_mesh_options(command, spheres.reading);
   add_list(
       command, "--export", spheres.exports,
@@ -177,6 +185,8 @@ void add_spheres(CLI::App& app, Request& request) {
   command.callback([&request, &command] {
     request.spheres.output.run = invocation_of(command, request.typed);
     request.spheres.given = given_of(command);
+    export_single_file(request.spheres.folder, {"json", "csv", "urdf", "yaml"}, request.spheres.exports);
+    request.spheres.tree |= !file_ending(request.spheres.folder, std::array<std::string, 1>{".orchard"}).empty();
     request.run = [&request] { request.exit_code = orchard::apps::spheres(request.spheres); };
   });
 }
@@ -192,10 +202,10 @@ void add_audit(CLI::App& app, Request& request) {
                   "a folder of MorphIt's files")
       ->required();
   command
-      .add_option(
-          "mesh", audit.mesh,
-          "Triangle mesh (.obj, .ply, .stl or .off), or the .urdf of a robot, to audit the spheres of all its links")
+      .add_option("mesh", audit.mesh, mesh_help("The .urdf of a robot, to audit the spheres of all its links, or a mesh"))
       ->required();
+  request.meshes.push_back({&audit.mesh, &audit.input});
+  add_mesh_input(command, audit.input);
   command.add_option("--link", audit.link, "Link to audit, if the file has several");
   command
       .add_option("--buffer", audit.buffer,

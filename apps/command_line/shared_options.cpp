@@ -2,11 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <optional>
 #include <utility>
 
 #include "command_line/number_validator.h"
 #include "orchard/geometry/tolerance.h"
+#include "output/outputs.h"
 
 namespace orchard::apps {
 namespace {
@@ -78,8 +82,34 @@ std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options
 
 std::vector<std::string> given_of(const CLI::App& command) { return given_of(command.get_options()); }
 
-void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
-  command.add_option("mesh", mesh, "Triangle mesh to read (.obj, .ply, .stl or .off)")->required();
+std::string mesh_help(const std::string& what) {
+  return what + " " + input_formats_in_words() + ", or - for standard input";
+}
+
+void add_mesh_input(CLI::App& command, MeshInput& input) {
+  command.add_option("--format", input.format, "Format of the mesh (default: the ending of its name)")
+      ->check(CLI::IsMember(input_formats()));
+  command.add_option("--scale", input.scale, "Multiply the coordinates of the mesh by this factor")
+      ->check(NumberValidator(CLI::Range(1e-12, 1e12)))
+      ->capture_default_str();
+  command
+      .add_option("--unit", input.unit,
+                  "Name of the mesh's unit, after --scale, such as mm, to print and write beside lengths. It converts "
+                  "nothing")
+      ->check(CLI::Validator(
+          [](std::string& name) {
+            const bool word = !name.empty() && name.size() <= 16 && std::all_of(name.begin(), name.end(), [](char c) {
+              return std::isalnum(static_cast<unsigned char>(c)) != 0;
+            });
+            return word ? std::string() : "expected a word of at most 16 letters and digits, such as mm";
+          },
+          "{a word}"));
+}
+
+void add_mesh(CLI::App& command, Request& request, std::filesystem::path& mesh, MeshInput& input) {
+  command.add_option("mesh", mesh, mesh_help("Mesh to read"))->required();
+  request.meshes.push_back({&mesh, &input});
+  add_mesh_input(command, input);
 }
 
 void add_threads(CLI::App& command, Request& request) {
@@ -118,6 +148,15 @@ CLI::Option* add_report(CLI::App& command, bool& report) {
   return command.add_flag("--report", report,
                           "Also write the report as an .html page that needs no other file: tables with explanations, "
                           "plots and pictures");
+}
+
+void export_single_file(const std::filesystem::path& output, const std::vector<std::string>& kinds,
+                        std::vector<std::string>& exports) {
+  for (const std::string& kind : kinds) {
+    const std::string ending = "." + (kind == "yaml" ? std::string("yml") : kind);
+    if (file_ending(output, std::array{ending}).empty()) continue;
+    if (std::find(exports.begin(), exports.end(), kind) == exports.end()) exports.push_back(kind);
+  }
 }
 
 CLI::Option* add_force(CLI::App& command, Output& output) {

@@ -17,8 +17,11 @@ namespace orchard::apps {
 void add_build(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a triangle mesh");
   BuildCommand& build = request.build;
-  add_mesh(command, build.mesh);
-  command.add_option("-o,--output", build.folder, "Folder that receives the tree, the views and the report")
+  add_mesh(command, request, build.mesh, build.reading.input);
+  command
+      .add_option("-o,--output", build.folder,
+                  "Folder that receives the tree, the views and the report, or a file for the tree alone (.orchard or "
+                  ".sph)")
       ->required();
   add_mesh_options(command, build.reading);
   add_tree_options(command, build.tree);
@@ -88,7 +91,9 @@ void add_verify(CLI::App& app, Request& request) {
   VerifyCommand& verify = request.verify;
   command.add_option("tree", verify.tree, "Sphere-tree to prove: .orchard, or .sph of any system in the mesh's frame")
       ->required();
-  command.add_option("mesh", verify.mesh, "Mesh that the tree was built for")->required();
+  command.add_option("mesh", verify.mesh, mesh_help("Mesh that the tree was built for"))->required();
+  request.meshes.push_back({&verify.mesh, &verify.input});
+  add_mesh_input(command, verify.input);
   add_join(command, verify.join);
   command.add_flag(
       "--bbox-center", verify.box_centered,
@@ -135,7 +140,7 @@ void add_compare(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand(
       "compare", "Compare how well sphere-trees, level by level, or medial axes of equal size fit a mesh");
   CompareCommand& compare = request.compare;
-  add_mesh(command, compare.mesh);
+  add_mesh(command, request, compare.mesh, compare.reading.input);
   command
       .add_option("files", compare.files,
                   "Sphere-trees in the mesh's frame (.orchard, .sph, or .json lists of spheres by level), or medial "

@@ -7,6 +7,7 @@
 
 #include "command_line/number_text.h"
 #include "input/reading_report.h"
+#include "input/standard_input.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/unite.h"
@@ -121,7 +122,7 @@ std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& 
 SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress) {
   WrapOptions wrap{.alpha = options.wrap_alpha};
   if (!options.wrap.empty()) wrap.offset = parse_offset(options.wrap);
-  auto [mesh, reading] = read_mesh_and_report(file);
+  auto [mesh, reading] = read_input(file, options.input, progress);
   const std::string name = file.string();
   if (options.strict) require_complete(name, reading);
   if (!options.wrap.empty()) {
@@ -143,8 +144,8 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
   return solid;
 }
 
-RepairedMesh read_repaired(const std::filesystem::path& file, std::optional<double> join) {
-  auto [mesh, reading] = read_mesh_and_report(file);
+RepairedMesh read_repaired(const std::filesystem::path& file, const MeshInput& input, std::optional<double> join) {
+  auto [mesh, reading] = read_input(file, input);
   TriangleMesh copy = mesh;
   MeshRepairReport repair = repair_mesh(copy, repair_options(join));
   if (!repair.solid)
@@ -157,27 +158,27 @@ RepairedMesh read_repaired(const std::filesystem::path& file, std::optional<doub
 
 void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair, const RepairDistance& distance,
                   double bounding_radius) {
-  for (const std::string& line : repair.lines()) fmt::print("{}: {}\n", file.string(), line);
-  if (repair.changed()) fmt::print("{}: repaired: {}\n", file.string(), in_words(distance, bounding_radius));
+  for (const std::string& line : repair.lines()) fmt::print("{}: {}\n", shown(file), line);
+  if (repair.changed()) fmt::print("{}: repaired: {}\n", shown(file), in_words(distance, bounding_radius));
 }
 
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
   print_reading(file, solid.reading);
   print_repair(file, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
   if (solid.united)
-    fmt::print("{}: {} parts that cut each other in {} pairs of triangles were replaced by their union\n",
-               file.string(), solid.united->parts, solid.united->cut_before);
+    fmt::print("{}: {} parts that cut each other in {} pairs of triangles were replaced by their union\n", shown(file),
+               solid.united->parts, solid.united->cut_before);
   if (solid.self_intersections.value_or(0) > 0)
     fmt::print(
         "{}: {} pair{} of triangles cut or touch each other; inside is what the surface winds around; --wrap makes one "
         "skin of them\n",
-        file.string(), *solid.self_intersections, *solid.self_intersections == 1 ? "" : "s");
+        shown(file), *solid.self_intersections, *solid.self_intersections == 1 ? "" : "s");
   if (!solid.wrap) return;
   const double radius = solid.surface.bounding_radius();
   fmt::print(
       "{}: wrapped, with {} triangles; no point of the wrap is farther than {:.6g} ({:.5f} of the bounding "
       "radius) from the input, no point of the input farther than {:.6g} from the wrap\n",
-      file.string(), solid.surface.mesh().triangles.size(), solid.wrap->distance(), solid.wrap->distance() / radius,
+      shown(file), solid.surface.mesh().triangles.size(), solid.wrap->distance(), solid.wrap->distance() / radius,
       solid.wrap->from_input.upper);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "input/mesh_input.h"
 #include "input/repair_distance.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/progress.h"
@@ -16,6 +17,7 @@
 namespace orchard::apps {
 
 struct MeshOptions {
+  MeshInput input;
   bool strict = false;  // as it is or not at all
   std::string wrap;     // not empty: build on a wrap that lies this far outside, a number of WrapOptions::offset
   double wrap_alpha = WrapOptions{}.alpha;
@@ -72,7 +74,7 @@ struct RepairedMesh {
 
 // For commands that take any triangles: the mesh that load_solid() gives with no other option than `join`, or as it is
 // in the file if that cannot be repaired; then nothing was done.
-RepairedMesh read_repaired(const std::filesystem::path& file, std::optional<double> join);
+RepairedMesh read_repaired(const std::filesystem::path& file, const MeshInput& input, std::optional<double> join);
 
 // What repair_mesh() is asked for.
 RepairMeshOptions repair_options(std::optional<double> join);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "input/standard_input.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 
@@ -9,9 +10,23 @@ namespace orchard::apps {
 
 using nlohmann::json;
 
-void print_reading(const std::filesystem::path& file, const MeshReadReport& reading) {
-  for (const std::string& line : reading.lines()) fmt::print("{}: {}\n", file.string(), line);
+namespace {
+
+json points_json(const PointsReading& points) {
+  return {{"points", points.points},
+          {"spacing", points.spacing},
+          {"mean_from_points", points.mean_from_points},
+          {"max_from_points", points.max_from_points},
+          {"max_to_points", points.max_to_points}};
 }
+
+}  // namespace
+
+void print_reading(const std::filesystem::path& file, const MeshReadReport& reading) {
+  for (const std::string& line : reading.lines()) fmt::print("{}: {}\n", shown(file), line);
+}
+
+std::string with_unit(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
 
 json reading_json(const MeshReadReport& reading) {
   const auto occurrences = [](const MeshReadReport::Occurrences& what) {
@@ -26,6 +41,13 @@ json reading_json(const MeshReadReport& reading) {
           {"bytes_left_out", reading.bytes_left_out},
           {"attribute_bytes", reading.attribute_bytes},
           {"header_lines", reading.header_lines},
+          {"volume_cells", reading.volume_cells},
+          {"cells_beside", reading.cells_beside},
+          {"lines_skipped", reading.lines_skipped},
+          {"curved_cells", reading.curved_cells},
+          {"unit", reading.unit.empty() ? json() : json(reading.unit)},
+          {"scale", reading.scale},
+          {"from_points", reading.from_points ? points_json(*reading.from_points) : json()},
           {"lines", reading.lines()}};
 }
 
@@ -45,7 +67,7 @@ std::string hole_warning(const MeshRepairReport& repair, const RepairDistance& d
 }
 
 void print_warning(const std::filesystem::path& file, const std::string& warning) {
-  fmt::print(stderr, "orchard: warning: {}: {}\n", file.string(), warning);
+  fmt::print(stderr, "orchard: warning: {}: {}\n", shown(file), warning);
 }
 
 void print_hole_warning(const std::filesystem::path& file, const MeshRepairReport& repair,

@@ -12,6 +12,8 @@ namespace orchard::apps {
 
 // A line for each kind of thing that the reader skipped or decided.
 void print_reading(const std::filesystem::path& file, const MeshReadReport& reading);
+// The length's unit behind a number: " mm", or nothing.
+std::string with_unit(const std::string& unit);
 nlohmann::json reading_json(const MeshReadReport& reading);
 
 // For --strict: throws InputError if anything that makes up the surface was skipped.

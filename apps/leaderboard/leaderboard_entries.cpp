@@ -10,6 +10,7 @@
 
 #include "command_line/number_text.h"
 #include "input/input_file.h"
+#include "input/mesh_input.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/text_lines.h"
 #include "orchard/medial/read_axis.h"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 bool one_of(const std::string& word, std::initializer_list<const char*> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
-bool may_be_mesh(const fs::path& file) { return one_of(lower_extension(file), {".obj", ".off", ".stl", ".ply"}); }
+bool may_be_mesh(const fs::path& file) { return is_mesh_name(file); }
 bool may_be_axis(const fs::path& file) {
   const std::span<const char* const> known = axis_extensions();
   return std::find(known.begin(), known.end(), lower_extension(file)) != known.end();
@@ -63,7 +64,7 @@ class Finder {
     if (!fs::is_directory(folder_)) throw InputError(folder_.string() + ": is no folder");
     const std::vector<fs::path> beside = files_of(folder_);
     find_meshes(beside);
-    if (meshes_.empty()) throw InputError(folder_.string() + ": holds no mesh (.obj, .off, .stl or .ply)");
+    if (meshes_.empty()) throw InputError(folder_.string() + ": holds no mesh " + input_formats_in_words());
     for (const fs::path& table : {folder_ / "results.csv", folder_ / "results" / "results.csv"}) {
       if (fs::is_regular_file(table)) read_table(table);
     }

@@ -22,10 +22,10 @@ struct LeaderboardFolder {
   std::vector<std::string> skipped;       // a sentence for each file that is no entry
 };
 
-// Meshes are the .obj, .off, .stl and .ply files of the folder; axes are files MODEL-SYSTEM-N.ext beside them or in its
-// folder `results`, where MODEL is the longest name of a mesh that fits, SYSTEM may have dashes and N may be missing. A
-// table `results.csv` beside them, with the columns file, mesh and system, and n if you like, says otherwise for the
-// files that it lists. Throws InputError if there is no such folder or the table cannot be read.
+// Meshes are the files of the folder whose names end so (input/mesh_input.h); axes are files MODEL-SYSTEM-N.ext beside
+// them or in its folder `results`, where MODEL is the longest name of a mesh that fits, SYSTEM may have dashes and N
+// may be missing. A table `results.csv` beside them, with the columns file, mesh and system, and n if you like, says
+// otherwise for the files that it lists. Throws InputError if there is no such folder or the table cannot be read.
 LeaderboardFolder find_entries(const std::filesystem::path& folder);
 
 }  // namespace orchard::apps

@@ -22,29 +22,20 @@ std::vector<double> flat(const std::vector<Point>& points) {
   return result;
 }
 
-enum Array : std::size_t { kBalls, kStructure, kKind, kEdges, kTriangles, kContacts, kContactBall };
+enum Array : std::size_t {
+  kBalls,
+  kStructure,
+  kKind,
+  kEdges,
+  kTriangles,
+  kContacts,
+  kContactBall,
+  kContactSample,
+  kSamples,
+  kSampleBall
+};
 
 }  // namespace
-
-AxisContacts contacts_of(const MedialAxis& axis) {
-  AxisContacts contacts;
-  for (Index v = 0; v < axis.size(); ++v) {
-    for (const Index point : axis.forming_points[v]) {
-      contacts.balls.push_back(v);
-      contacts.places.push_back(axis.points[point]);
-    }
-  }
-  return contacts;
-}
-
-AxisContacts contacts_of(const Surface& surface, const MedialMesh& mesh) {
-  AxisContacts contacts;
-  for (Index v = 0; v < mesh.size(); ++v) {
-    contacts.balls.push_back(v);
-    contacts.places.push_back(surface.closest(mesh.centers[v]).position);
-  }
-  return contacts;
-}
 
 std::vector<NamedArray> axis_arrays(const MedialMesh& mesh, const AxisContacts& contacts) {
   const MedialStructure structure = medial_structure(mesh);
@@ -61,21 +52,25 @@ std::vector<NamedArray> axis_arrays(const MedialMesh& mesh, const AxisContacts& 
           {"edges", {"a", "b"}, flat(mesh.edges)},
           {"triangles", {"a", "b", "c"}, flat(mesh.triangles)},
           {"contacts", {"x", "y", "z"}, flat(contacts.places)},
-          {"contact_ball", {"ball"}, contacts.balls}};
+          {"contact_ball", {"ball"}, contacts.balls},
+          {"contact_sample", {"sample"}, contacts.samples},
+          {"samples", {"x", "y", "z"}, flat(contacts.sample_places)},
+          {"sample_ball", {"ball"}, contacts.sample_balls}};
 }
 
 std::vector<std::string> axis_table_endings() {
-  return {"-balls.csv", "-edges.csv", "-triangles.csv", "-contacts.csv"};
+  return {"-balls.csv", "-edges.csv", "-triangles.csv", "-contacts.csv", "-samples.csv"};
 }
 
 std::vector<std::pair<std::string, std::string>> axis_tables(const MedialMesh& mesh, const AxisContacts& contacts) {
   const std::vector<NamedArray> all = axis_arrays(mesh, contacts);
-  const std::vector<NamedArray> touching{all[kContactBall], all[kContacts]};
+  const std::vector<NamedArray> touching{all[kContactBall], all[kContacts], all[kContactSample]};
   const std::span<const NamedArray> arrays = all;
   return {{"-balls.csv", to_csv(arrays.subspan(kBalls, 3))},
           {"-edges.csv", to_csv(arrays.subspan(kEdges, 1))},
           {"-triangles.csv", to_csv(arrays.subspan(kTriangles, 1))},
-          {"-contacts.csv", to_csv(touching)}};
+          {"-contacts.csv", to_csv(touching)},
+          {"-samples.csv", to_csv(arrays.subspan(kSamples, 2))}};
 }
 
 }  // namespace orchard::apps

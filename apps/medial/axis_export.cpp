@@ -54,11 +54,11 @@ void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, co
     const std::filesystem::path file = outputs.add(file_name(command, "." + kind), "the axis as " + kind);
     if (kind == "npz") write_file(file, to_npz(axis_arrays(mesh, contacts)));
     if (kind == "ma") write_file(file, to_ma(mesh) + to_structure_section(medial_structure(mesh)));
-    if (kind == "ply") write_file(file, to_ply(mesh));
+    if (kind == "ply") write_file(file, to_ply(mesh, &contacts));
     if (kind == "obj") write_file(file, to_obj(mesh));
     if (kind == "graphml") write_file(file, to_graphml(mesh));
 #ifdef ORCHARD_HAS_VIZ
-    if (kind == "vtp") write_medial_mesh(file, mesh);
+    if (kind == "vtp") write_medial_mesh(file, mesh, {}, &contacts);
 #endif
   }
 }

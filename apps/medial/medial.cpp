@@ -91,6 +91,10 @@ Destination check(const MedialCommand& command) {
                           .report = report_name(command),
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
+  std::vector<std::string> singles;
+  if (command.axis.empty()) singles = {named(command.mesh, ".ma"), named(command.mesh, ".graphml")};
+  for (const std::string& name : axis_export_names(command)) singles.push_back(name);
+  keep_single_file(destination, singles);
   check_outputs(destination, names_of(command), inputs);
   check_few_balls(command, destination, inputs);
   return destination;
@@ -211,7 +215,7 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
       report_quality(command, destination, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
-  write_axis_exports(command, mesh, contacts_of(solid.surface, mesh), outputs);
+  write_axis_exports(command, mesh, axis_contacts(solid.surface, mesh), outputs);
   const std::string picture =
       write_picture(command, solid.surface, pictured, nullptr, named(command.axis, "-quality.png"), outputs);
   finish(command, report, picture, outputs);

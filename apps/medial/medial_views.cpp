@@ -203,6 +203,15 @@ void write_collections(const MedialCommand& command, const std::vector<NamedFile
       parts);
 }
 
+// The ball of each surface point, where the points are those of the axis.
+void add_sample_balls(const MedialAxis& axis, std::size_t points, ViewArrays& of_points) {
+  const AxisContacts contacts = axis_contacts(axis);
+  if (contacts.sample_balls.size() != points) return;
+  ViewArray& balls = of_points.emplace_back(ViewArray{.name = "ball", .values = {}});
+  for (const Index ball : contacts.sample_balls)
+    balls.values.push_back(ball == kNone ? std::numeric_limits<double>::quiet_NaN() : ball);
+}
+
 }  // namespace
 
 void write_views(const MedialCommand& command, const MedialViews& views, Outputs& outputs) {
@@ -224,6 +233,7 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
   for (const int pass : repair_passes(views.build))  // of which pass a point is may not be known
     passes.values.push_back(pass < 0 ? std::numeric_limits<double>::quiet_NaN() : pass);
   const MedialAxis& axis = views.build.axis;
+  add_sample_balls(axis, views.build.sampling.size(), of_points);
   write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), axis,
                     views.segments, of_vertices, of_faces);
   write_mesh(add("-mesh.vtp", "mesh"), views.surface);

@@ -8,6 +8,7 @@
 #include "command_line/console.h"
 #include "input/input_file.h"
 #include "input/reading_report.h"
+#include "input/standard_input.h"
 #include "input/xyz.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
@@ -32,11 +33,12 @@ const char* relaxation_name(Relaxation relaxation) {
   return relaxation == Relaxation::clusters ? "clusters" : "neighbors";
 }
 
-void print_sample(const SampleCommand& command, const json& report) {
-  fmt::print("{}: {} points, {} of them on edges; relaxed {} times ({})\n", command.mesh.string(),
+void print_sample(const SampleCommand& command, const std::string& unit, const json& report) {
+  fmt::print("{}: {} points, {} of them on edges; relaxed {} times ({})\n", shown(command.mesh),
              report["points"].get<std::size_t>(), report["edge_points"].get<std::size_t>(), command.iterations,
              report["relaxation"].get<std::string>());
-  fmt::print("distance to the nearest point     mean  least / mean  deviation / mean\n");
+  fmt::print("distance to the nearest point     mean  least / mean  deviation / mean{}\n",
+             unit.empty() ? "" : "   (lengths in " + unit + ")");
   for (const char* when : {"before", "after"}) {
     const json& evenness = report["evenness"][when];
     fmt::print("{:26} {:11.6g} {:13.3f} {:17.3f}\n", std::string(when) + " relaxation",
@@ -71,13 +73,14 @@ void sample(const SampleCommand& command) {
                     mesh = named(command.mesh, "-sample-mesh.vtp");
   check_input(command.mesh);
   check_sampling(command);
-  const Destination destination{.folder = command.folder,
-                                .report = named(command.mesh, "-sample.json"),
-                                .provenance = provenance_of(command.output.run, std::array{command.mesh}),
-                                .force = command.output.force};
+  Destination destination{.folder = command.folder,
+                          .report = named(command.mesh, "-sample.json"),
+                          .provenance = provenance_of(command.output.run, std::array{command.mesh}),
+                          .force = command.output.force};
+  keep_single_file(destination, std::array{xyz, points});
   check_outputs(destination, std::array{xyz, points, mesh}, std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
-  RepairedMesh read = read_repaired(command.mesh, command.join);
+  RepairedMesh read = read_repaired(command.mesh, command.input, command.join);
   const Surface surface(std::move(read.mesh));
   if (talk) {
     print_reading(command.mesh, read.reading);
@@ -119,7 +122,7 @@ void sample(const SampleCommand& command) {
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
-  print_sample(command, report);
+  print_sample(command, read.reading.unit, report);
   fmt::print("{:.2f} s\n", seconds);
   outputs.print();
 }

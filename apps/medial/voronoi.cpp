@@ -13,7 +13,6 @@
 #include "input/xyz.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/mesh_io.h"
 #include "orchard/voronoi/diagram_io.h"
 #include "orchard/voronoi/quality.h"
 #include "output/outputs.h"
@@ -38,7 +37,7 @@ struct Input {
 
 Input read_input(const VoronoiCommand& command, const Progress& progress) {
   Input input;
-  auto [mesh, reading] = read_points_or_mesh_and_report(command.input);
+  auto [mesh, reading] = read_input_or_points(command.input, command.sampling.input);
   input.reading = std::move(reading);
   if (mesh.triangles.empty()) {
     for (const std::string& option : command.sampling_given)
@@ -48,7 +47,7 @@ Input read_input(const VoronoiCommand& command, const Progress& progress) {
     input.points = std::move(mesh.vertices);
     return input;
   }
-  RepairedMesh read = read_repaired(command.input, command.sampling.join);
+  RepairedMesh read = read_repaired(command.input, command.sampling.input, command.sampling.join);
   const Surface surface(std::move(read.mesh));
   input.points = sample_surface(surface, sampling_options(command.sampling, surface), progress).points;
   input.repair = std::move(read.repair);

@@ -79,9 +79,28 @@ std::optional<RecordedRun> check_owner(const Destination& destination) {
 
 std::string named(const fs::path& model, const std::string& ending) { return model.stem().string() + ending; }
 
+std::string file_ending(const fs::path& output, std::span<const std::string> endings) {
+  const std::string ending = lower_extension(output);
+  std::error_code ignored;
+  const bool known = std::find(endings.begin(), endings.end(), ending) != endings.end();
+  return known && !fs::is_directory(output, ignored) ? ending : std::string();
+}
+
+void keep_single_file(Destination& destination, std::span<const std::string> names) {
+  std::vector<std::string> endings;
+  for (const std::string& name : names) endings.push_back(fs::path(name).extension().string());
+  const std::string ending = file_ending(destination.folder, endings);
+  if (ending.empty()) return;
+  const auto found = std::find(endings.begin(), endings.end(), ending) - endings.begin();
+  destination.single = names[static_cast<std::size_t>(found)];
+  destination.single_as = destination.folder.filename().string();
+  destination.folder = destination.folder.has_parent_path() ? destination.folder.parent_path() : fs::path(".");
+}
+
 void check_outputs(const Destination& destination, std::span<const std::string> names,
                    std::span<const fs::path> inputs) {
   const fs::path& folder = destination.folder;
+  if (!destination.single.empty()) return check_output(folder / destination.single_as, inputs);
   if (folder.empty()) throw InputError("-o: the folder's name is empty; \".\" is the one that you are in");
   const Writing writing;
   std::error_code error;
@@ -151,6 +170,7 @@ void Outputs::add_report(nlohmann::json& report, const std::string& what) {
 void Outputs::commit() {
   throw_if_interrupted();
   const fs::path& folder = destination_.folder;
+  if (!destination_.single.empty()) return commit_single();
   replaced_ = check_owner(destination_);
   const std::string line = line_of(destination_.provenance);
   std::vector<std::string> names;
@@ -167,9 +187,25 @@ void Outputs::commit() {
   fs::remove(staging_);
 }
 
+void Outputs::commit_single() {
+  const fs::path from = staging_ / destination_.single, to = destination_.folder / destination_.single_as;
+  std::error_code error;
+  if (!fs::exists(from, error))
+    throw InputError(to.string() + ": these options write no file of this kind; name a folder with -o to see which");
+  stamp(from, line_of(destination_.provenance));
+  fs::rename(from, to, error);
+  if (error) throw Error(to.string() + ": cannot be written: " + error.message());
+  fs::remove_all(staging_, error);
+}
+
+fs::path Outputs::place_of(const std::string& name) const {
+  return destination_.folder / (name == destination_.single ? destination_.single_as : name);
+}
+
 void Outputs::print() const {
   for (const auto& [name, what] : files_)
-    if (!what.empty()) fmt::print("  {}  ({})\n", place_of(name).string(), what);
+    if (!what.empty() && (destination_.single.empty() || name == destination_.single))
+      fmt::print("  {}  ({})\n", place_of(name).string(), what);
   if (replaced_ && replaced_->command_line != destination_.provenance.run.command_line)
     fmt::print("they replace those of: {}\n", replaced_->command_line);
 }

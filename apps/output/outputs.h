@@ -22,10 +22,20 @@ std::string named(const std::filesystem::path& model, const std::string& ending)
 // Where a command's files go, and whose they are.
 struct Destination {
   std::filesystem::path folder;
-  std::string report;     // the name of the JSON report beside them, by which a later run knows whose they are
-  Provenance provenance;  // which all of them carry
-  bool force = false;     // replace files of another input
+  std::string report;          // the name of the JSON report beside them, by which a later run knows whose they are
+  Provenance provenance;       // which all of them carry
+  bool force = false;          // replace files of another input
+  std::string single = {};     // not empty: of all files, this one alone is kept
+  std::string single_as = {};  // then its name in the folder
 };
+
+// The ending of `output` if -o names a file and not a folder: one of `endings`, such as ".ma", and no folder of this
+// name is there. Else empty.
+std::string file_ending(const std::filesystem::path& output, std::span<const std::string> endings);
+
+// Where the folder of a destination is the name of a file with the ending of one of `names`, the files that a command
+// writes, makes that file the only one. Its folder must be there.
+void keep_single_file(Destination& destination, std::span<const std::string> names);
 
 // For the beginning of a command, before it works for long: throws InputError if the folder cannot be made or written
 // to, if one of `names` in it is something that cannot be replaced, or is one of `inputs`, or if the report that is
@@ -60,7 +70,7 @@ class Outputs {
   std::string take(const std::string& name, bool keep);
 
   // Where commit() puts it.
-  std::filesystem::path place_of(const std::string& name) const { return destination_.folder / name; }
+  std::filesystem::path place_of(const std::string& name) const;
 
   // Writes the report, with the provenance in it.
   void add_report(nlohmann::json& report, const std::string& what = {});
@@ -73,6 +83,8 @@ class Outputs {
   void print() const;
 
  private:
+  void commit_single();
+
   Destination destination_;
   std::filesystem::path staging_;
   std::optional<RecordedRun> replaced_;

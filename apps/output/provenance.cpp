@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "command_line/text.h"
+#include "input/standard_input.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard::apps {
@@ -16,7 +17,10 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
+constexpr const char* kStandardInput = "-";
+
 fs::path whole_path(const fs::path& file) {
+  if (is_standard_input(file)) return kStandardInput;
   std::error_code failure;
   fs::path whole = fs::weakly_canonical(file, failure);
   return failure ? fs::absolute(file).lexically_normal() : whole;
@@ -89,6 +93,7 @@ bool is_of_another_input(const RecordedRun& recorded, const Provenance& provenan
   if (provenance.inputs.empty()) return false;
   const ProvenanceInput& input = provenance.inputs.front();
   std::error_code ignored;
+  if (input.path == kStandardInput) return recorded.checksum != input.checksum;
   const bool same_place = recorded.input == input.path || fs::equivalent(recorded.input, input.path, ignored);
   return !same_place && recorded.checksum != input.checksum;
 }

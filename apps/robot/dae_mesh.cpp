@@ -7,9 +7,9 @@
 
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <map>
 #include <string>
 
+#include "input/scene_mesh.h"
 #include "input/xml_file.h"
 #include "orchard/geometry/error.h"
 
@@ -48,42 +48,6 @@ Eigen::Matrix3d upright(char up) {
   return turn;
 }
 
-// Adds the meshes of a node and of those below it.
-class Scene {
- public:
-  Scene(const aiScene& scene, TriangleMesh& mesh) : scene_(scene), mesh_(mesh) {}
-
-  void add(const aiNode& node, const aiMatrix4x4& above) {
-    const aiMatrix4x4 here = above * node.mTransformation;
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene_.mMeshes[node.mMeshes[i]], here);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], here);
-  }
-
- private:
-  void add(const aiMesh& part, const aiMatrix4x4& place) {
-    std::map<std::array<float, 3>, Index> places;
-    std::vector<Index> corner(part.mNumVertices);
-    for (unsigned v = 0; v < part.mNumVertices; ++v) {
-      const aiVector3D moved = place * part.mVertices[v];
-      const auto [at, is_new] =
-          places.try_emplace({moved.x, moved.y, moved.z}, static_cast<Index>(mesh_.vertices.size()));
-      if (is_new) mesh_.vertices.emplace_back(moved.x, moved.y, moved.z);
-      corner[v] = at->second;
-    }
-    const bool mirrored = place.Determinant() < 0;
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines
-      std::array<Index, 3> triangle{corner[face.mIndices[0]], corner[face.mIndices[1]], corner[face.mIndices[2]]};
-      if (mirrored) std::swap(triangle[1], triangle[2]);
-      mesh_.triangles.push_back(triangle);
-    }
-  }
-
-  const aiScene& scene_;
-  TriangleMesh& mesh_;
-};
-
 }  // namespace
 
 TriangleMesh read_dae(const fs::path& file, const DaeOptions& options) {
@@ -93,8 +57,7 @@ TriangleMesh read_dae(const fs::path& file, const DaeOptions& options) {
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(file.string() + ": cannot be read: " + importer.GetErrorString());
-  TriangleMesh mesh;
-  Scene(*scene, mesh).add(*scene->mRootNode, aiMatrix4x4());
+  TriangleMesh mesh = apps::triangles_of(*scene);
   if (mesh.triangles.empty()) throw InputError(file.string() + ": its scene has no triangle");
   // Assimp has applied the unit.
   const double scale = options.units ? 1 : 1 / asset.meter;

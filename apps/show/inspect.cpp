@@ -10,6 +10,7 @@
 #include "command_line/commands.h"
 #include "input/input_file.h"
 #include "input/reading_report.h"
+#include "input/standard_input.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
@@ -78,7 +79,7 @@ json inspect_sph(const std::filesystem::path& file) {
 }
 
 json inspect_mesh(const InspectCommand& command) {
-  auto [read, reading] = read_mesh_and_report(command.file);
+  auto [read, reading] = read_input(command.file, command.input);
   const Surface surface(std::move(read));
   const MeshDetails details = mesh_details(surface.mesh(), surface.report());
   json report = mesh_json(surface);
@@ -169,9 +170,9 @@ std::string in_words(const json& value) {
 }
 
 void print_inspected(const std::filesystem::path& file, const std::string& unit, const json& report) {
-  fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
+  fmt::print("{}: {}\n", shown(file), report["kind"].get<std::string>());
   if (report.contains("reading"))
-    for (const json& line : report["reading"]["lines"]) fmt::print("{}: {}\n", file.string(), line.get<std::string>());
+    for (const json& line : report["reading"]["lines"]) fmt::print("{}: {}\n", shown(file), line.get<std::string>());
   for (const auto& [key, value] : report.items()) {
     if (key == "kind" || key == "levels" || key == "faults" || key == "repair" || key == "reading") continue;
     fmt::print("  {:24} {}{}\n", key, in_words(value), unit_of(key, unit));
@@ -186,14 +187,15 @@ bool is_among(const std::string& extension, std::initializer_list<const char*> n
 
 // By the ending of the file; those that several kinds of files have are told apart by what is in them.
 json inspect_file(const InspectCommand& command) {
-  const std::string extension = lower_extension(command.file);
+  const std::string extension =
+      command.input.format.empty() ? lower_extension(command.file) : "." + command.input.format;
   if (extension == ".orchard") return inspect_packed(command.file);
   if (extension == ".sph") return inspect_sph(command.file);
   if (is_among(extension, {".ma", ".ma_dup", ".ma_struct", ".swc", ".cg", ".cgal"})) return inspect_axis(command.file);
   if (is_among(extension, {".txt", ".csv", ".json", ".yml", ".yaml", ".xrdf", ".urdf"}))
     return inspect_spheres(command.file);
   if (is_among(extension, {".xyz", ".obj", ".ply"})) {
-    if (std::optional<json> points = inspect_points(command.file)) return *std::move(points);
+    if (std::optional<json> points = inspect_points(command.file, command.input)) return *std::move(points);
   }
   return inspect_mesh(command);
 }
@@ -204,7 +206,10 @@ void inspect(const InspectCommand& command) {
   check_input(command.file);
   const Provenance provenance = provenance_of(command.output.run, std::array{command.file});
   json report = inspect_file(command);
-  if (!command.unit.empty()) report["unit"] = command.unit;
+  const std::string unit = report.contains("reading") && report["reading"]["unit"].is_string()
+                               ? report["reading"]["unit"].get<std::string>()
+                               : command.input.unit;
+  if (!unit.empty()) report["unit"] = unit;
   if (report["kind"] != "mesh" && (command.full || command.join))
     throw InputError(fmt::format("{} has no effect on {}; it is for meshes", command.full ? "--full" : "--join",
                                  command.file.string()));
@@ -212,7 +217,7 @@ void inspect(const InspectCommand& command) {
     report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
-    print_inspected(command.file, command.unit, report);
+    print_inspected(command.file, unit, report);
   }
   if (report.contains("repair") && report["repair"]["warning"].is_string())
     print_warning(command.file, report["repair"]["warning"]);

@@ -102,8 +102,8 @@ json inspect_spheres(const std::filesystem::path& file) {
   return report;
 }
 
-std::optional<json> inspect_points(const std::filesystem::path& file) {
-  const TriangleMesh mesh = read_points_or_mesh(file);
+std::optional<json> inspect_points(const std::filesystem::path& file, const MeshInput& input) {
+  const TriangleMesh mesh = read_input_or_points(file, input).mesh;
   if (!mesh.triangles.empty()) return std::nullopt;
   Box box;
   for (const Point& point : mesh.vertices) box.extend(point);

@@ -251,7 +251,7 @@ void view(const ViewCommand& command) {
   scene.figure = figure_of(command);
   if (command.play) scene.figure.room = room_of(series);
   for (const std::filesystem::path& file : command.files)
-    if (lower_extension(file) != ".pvd") add_file(file, scene, !command.quiet);
+    if (lower_extension(file) != ".pvd") add_file(file, command.input, scene, !command.quiet);
   check_levels(scene);
   check_lines(command, scene);
   const std::size_t still = scene.data.size();

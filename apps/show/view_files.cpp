@@ -8,9 +8,9 @@
 #include <map>
 
 #include "input/input_file.h"
+#include "input/mesh_input.h"
 #include "input/reading_report.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/mesh_io.h"
 #include "orchard/spheretree/ball_tree.h"
 #include "orchard/voronoi/diagram_io.h"
 #include "output/sphere_lists.h"
@@ -85,7 +85,7 @@ std::optional<Box> room_of(const SeriesList& all) {
   return box.isEmpty() ? std::nullopt : std::optional(box);
 }
 
-void add_file(const fs::path& file, Scene& scene, bool talk) {
+void add_file(const fs::path& file, const MeshInput& input, Scene& scene, bool talk) {
   const std::string extension = lower_extension(file), name = file.filename().string();
   if (extension == ".orchard" || extension == ".sph") {
     scene.trees.push_back({name, *read_spheres(file).tree});
@@ -98,7 +98,7 @@ void add_file(const fs::path& file, Scene& scene, bool talk) {
   } else if (extension == ".vor") {
     scene.diagrams.push_back({name, read_vor(file)});
   } else {
-    auto [mesh, reading] = read_points_or_mesh_and_report(file);
+    auto [mesh, reading] = read_input_or_points(file, input);
     if (talk) print_reading(file, reading);
     if (mesh.triangles.empty()) {
       scene.points.push_back({name, std::move(mesh.vertices)});

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "input/mesh_input.h"
 #include "orchard/viz/view.h"
 
 // What `orchard view` draws, read from files.
@@ -31,8 +32,8 @@ void show_step(std::size_t step, const SeriesList& all, std::size_t still, Scene
 // A box around all time steps, for one camera; nothing if there is no point in them.
 std::optional<Box> room_of(const SeriesList& all);
 
-// Adds the contents of a file to the scene by its ending. `talk`: print what reading a mesh changed. Throws InputError.
-void add_file(const std::filesystem::path& file, Scene& scene, bool talk);
+// Adds the contents of a file to the scene by its ending. `input`: how meshes are read. `talk`: print what reading a mesh changed. Throws InputError.
+void add_file(const std::filesystem::path& file, const MeshInput& input, Scene& scene, bool talk);
 
 }  // namespace orchard::apps
 #endif

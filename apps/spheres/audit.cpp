@@ -10,6 +10,7 @@
 #include "input/input_file.h"
 #include "input/load_solid.h"
 #include "input/reading_report.h"
+#include "input/standard_input.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "output/outputs.h"
@@ -124,7 +125,12 @@ void write_audit(const AuditCommand& command, const Plan& plan, const Surface& s
 }  // namespace
 
 ExitCode audit(const AuditCommand& command) {
-  if (lower_extension(command.mesh) == ".urdf") return audit_robot(command);
+  if (lower_extension(command.mesh) == ".urdf") {
+    for (const char* option : {"format", "scale", "unit"})
+      if (std::find(command.given.begin(), command.given.end(), option) != command.given.end())
+        throw InputError(fmt::format("--{} has no effect on a robot: its lengths are metres", option));
+    return audit_robot(command);
+  }
   for (const char* option : {"package-path", "visual", "ignore-units", "ignore-up", "wrap"})
     if (std::find(command.given.begin(), command.given.end(), option) != command.given.end())
       throw InputError(fmt::format("--{} has no effect on a mesh: it belongs to robots, .urdf", option));
@@ -140,7 +146,7 @@ ExitCode audit(const AuditCommand& command) {
                                    command.spheres.string(), set.switched_off,
                                    set.buffer != 0 ? " with the buffer" : ""));
   ProgressBar bar(!command.output.quiet && !command.output.json);
-  RepairedMesh read = read_repaired(command.mesh, command.join);
+  RepairedMesh read = read_repaired(command.mesh, command.input, command.join);
   const Surface surface(std::move(read.mesh));
   for (Audited& set : sets) set.audit = audit_spheres(surface, set.spheres, {}, bar.callback());
   measure_masses(group, sets.front());
@@ -156,9 +162,9 @@ ExitCode audit(const AuditCommand& command) {
     print_reading(command.mesh, read.reading);
     if (read.repair.changed())
       fmt::print("against the repaired mesh: {}\n", in_words(read.distance, surface.bounding_radius()));
-    fmt::print("{}{}: {} spheres ({}) beside {}, diagonal {:.6g}\n", command.spheres.string(),
-               group.name.empty() ? "" : ", " + group.name, group.spheres.size(), file.format, command.mesh.string(),
-               surface.bounding_box().diagonal().norm());
+    fmt::print("{}{}: {} spheres ({}) beside {}, diagonal {:.6g}{}\n", command.spheres.string(),
+               group.name.empty() ? "" : ", " + group.name, group.spheres.size(), file.format, shown(command.mesh),
+               surface.bounding_box().diagonal().norm(), with_unit(read.reading.unit));
     for (const Audited& set : sets) print_set(set, surface);
   }
   write_audit(command, plan, surface, sets.back(), report);

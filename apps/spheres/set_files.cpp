@@ -44,6 +44,13 @@ std::vector<std::string> set_file_names(const SpheresCommand& command) {
   return names;
 }
 
+std::vector<std::string> set_files(const SpheresCommand& command) {
+  std::vector<std::string> names;
+  for (const char* ending : {"-set.txt", "-set.csv", "-set-spheres.json", "-set.yml", "-set.urdf", kTreeEnding})
+    names.push_back(named(command.mesh, ending));
+  return names;
+}
+
 void write_set(const SpheresCommand& command, const Provenance& provenance, const SetToWrite& set, Outputs& outputs) {
   const auto write = [&](const char* ending, std::string_view bytes, const char* what) {
     write_file(outputs.add(named(command.mesh, ending), what), bytes);

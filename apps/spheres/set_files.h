@@ -19,6 +19,9 @@ struct SetToWrite {
 // All names that a set's files may have.
 std::vector<std::string> set_file_names(const SpheresCommand& command);
 
+// Those of them that -o may name a file for: the spheres in one of the formats, or the tree.
+std::vector<std::string> set_files(const SpheresCommand& command);
+
 // As text, and in the formats of --export.
 void write_set(const SpheresCommand& command, const Provenance& provenance, const SetToWrite& set, Outputs& outputs);
 

@@ -68,6 +68,7 @@ Destination check(const SpheresCommand& command) {
                           .report = named(command.mesh, "-set.json"),
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
+  keep_single_file(destination, set_files(command));
   check_outputs(destination, set_file_names(command), inputs);
   return destination;
 }

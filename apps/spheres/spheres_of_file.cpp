@@ -36,10 +36,11 @@ ExitCode spheres_of_file(const SpheresCommand& command) {
   check_input(command.mesh);
   refuse_idle(command);
   const std::vector<fs::path> inputs{command.mesh};
-  const Destination destination{.folder = command.folder,
-                                .report = named(command.mesh, "-set.json"),
-                                .provenance = provenance_of(command.output.run, inputs),
-                                .force = command.output.force};
+  Destination destination{.folder = command.folder,
+                          .report = named(command.mesh, "-set.json"),
+                          .provenance = provenance_of(command.output.run, inputs),
+                          .force = command.output.force};
+  keep_single_file(destination, set_files(command));
   check_outputs(destination, set_file_names(command), inputs);
   const SphereFile file = read_sphere_file(command.mesh);
   const SphereGroup& group = group_named(file, command.mesh, command.link);

@@ -60,7 +60,7 @@ void write_files(const ThicknessCommand& command, const ThicknessReport& report,
   of_triangles.push_back({"triangle", as_numbers(thickness.of_triangle)});
   if (report.below) of_triangles.push_back({"thin_region", as_numbers(report.thin.of_triangle)});
   std::vector<std::string> comments;
-  if (!command.unit.empty()) comments.push_back("unit " + command.unit);
+  if (!report.unit.empty()) comments.push_back("unit " + report.unit);
   write_file(outputs.add(names.ply, "the mesh, divided, with ball_diameter and thickness"),
              to_ply(thickness.mesh, of_vertices, of_triangles, comments));
 #ifdef ORCHARD_HAS_VIZ
@@ -72,7 +72,7 @@ void write_files(const ThicknessCommand& command, const ThicknessReport& report,
       return result;
     };
     write_mesh_with_arrays(outputs.add(names.vtp, "the same; open it in ParaView"), thickness.mesh, views(of_vertices),
-                           views(of_triangles), command.unit);
+                           views(of_triangles), report.unit);
   }
 #endif
   write_file(outputs.add(names.csv, "the histogram: area by thickness"), to_csv(report));
@@ -84,10 +84,11 @@ void write_files(const ThicknessCommand& command, const ThicknessReport& report,
 ExitCode thickness(const ThicknessCommand& command) {
   check_input(command.mesh);
   const FileNames names(command.mesh);
-  const Destination destination{.folder = command.folder,
-                                .report = names.report,
-                                .provenance = provenance_of(command.output.run, std::array{command.mesh}),
-                                .force = command.output.force};
+  Destination destination{.folder = command.folder,
+                          .report = names.report,
+                          .provenance = provenance_of(command.output.run, std::array{command.mesh}),
+                          .force = command.output.force};
+  keep_single_file(destination, std::array{names.ply, names.csv, names.svg, names.vtp});
   check_outputs(destination, std::array{names.ply, names.csv, names.svg, names.vtp, names.page},
                 std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
@@ -100,7 +101,7 @@ ExitCode thickness(const ThicknessCommand& command) {
   const std::optional<double> below = command.fail_below ? command.fail_below : command.below;
   const ThicknessReport report{.thickness = found,
                                .options = command.options,
-                               .unit = command.unit,
+                               .unit = solid.reading.unit,
                                .below = below,
                                .thin = thin_regions(found, below.value_or(0)),
                                .histogram = thickness_histogram(found, command.bins)};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "input/reading_report.h"
 #include "output/json_values.h"
 #include "svg_plot.h"
 
@@ -56,8 +57,6 @@ const char* name_of(ThicknessDefinition definition) { return definition == Thick
 double degrees(double radians) { return std::round(radians * 180 / std::numbers::pi * 1e9) / 1e9; }
 
 }  // namespace
-
-std::string with_unit(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
 
 json to_json(const ThicknessReport& report) {
   const Summary summary = summary_of(report.thickness);

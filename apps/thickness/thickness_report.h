@@ -18,9 +18,6 @@ struct ThicknessReport {
   ThicknessHistogram histogram;
 };
 
-// The length's unit behind a number: " mm", or nothing.
-std::string with_unit(const std::string& unit);
-
 nlohmann::json to_json(const ThicknessReport& report);
 void print(const ThicknessReport& report);
 

@@ -12,6 +12,7 @@
 #include "input/input_file.h"
 #include "input/load_solid.h"
 #include "input/reading_report.h"
+#include "input/standard_input.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
@@ -104,6 +105,7 @@ Destination check(const BuildCommand& command) {
                           .report = named(command.mesh, ".json"),
                           .provenance = provenance_of(command.output.run, inputs),
                           .force = command.output.force};
+  keep_single_file(destination, std::array{named(command.mesh, ".orchard"), named(command.mesh, ".sph")});
   check_outputs(destination, names_of(command), inputs);
   return destination;
 }
@@ -207,8 +209,9 @@ void print_cost(const BuildCommand& command, const BuildCost& cost) {
 void print_result(const BuildCommand& command, const SolidMesh& solid, const SphereTreeBuild& result,
                   const Outputs& outputs, const std::vector<std::string>& last_lines) {
   const Surface& surface = solid.surface;
-  fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}\n", command.mesh.string(),
-             surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
+  fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}{}\n", shown(command.mesh),
+             surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius(),
+             with_unit(solid.reading.unit));
   print_build(result, surface.bounding_radius(), solid.wrap ? solid.wrap->distance() : 0);
   const Index depth = result.tree.depth(), wanted = levels_of(command.tree);
   if (depth < wanted && command.tree.method == TreeMethod::tightened)

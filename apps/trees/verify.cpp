@@ -94,7 +94,7 @@ bool built_on(const fs::path& wrap, const VerifyCommand& command, const Tree& tr
 }
 
 Subject subject_of(const VerifyCommand& command, const Tree& tree, const Progress& progress) {
-  RepairedMesh read = read_repaired(command.mesh, command.join);
+  RepairedMesh read = read_repaired(command.mesh, command.input, command.join);
   Subject subject{.surface = Surface(std::move(read.mesh)),
                   .reading = std::move(read.reading),
                   .repair = std::move(read.repair),

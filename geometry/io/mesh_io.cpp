@@ -13,52 +13,43 @@
 namespace orchard {
 namespace {
 
-// Reads the file at once instead of mapping it: if a mapped file is cut short meanwhile, the process is killed.
-std::string read_bytes(const std::filesystem::path& file) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) throw InputError(file.string() + ": no such file");
-  if (status.type() == fs::file_type::directory) throw InputError(file.string() + ": a folder, not a mesh file");
-  if (status.type() != fs::file_type::regular)
-    throw InputError(file.string() + ": not a regular file that can be read");
-  const std::uintmax_t size = fs::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) throw InputError(file.string() + ": cannot be opened for reading; check its permissions");
-  if (size == 0) throw InputError(file.string() + ": the file is empty");
-  std::string bytes(size, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
-    throw InputError(file.string() + ": cannot be read to its end");
-  return bytes;
-}
-
-std::string lower_case_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
+std::string format_of(const std::filesystem::path& file, const std::string& format) {
+  std::string name = format.empty() ? file.extension().string() : format;
+  if (format.empty() && !name.empty()) name.erase(0, 1);
+  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return name;
 }
 
 using Reader = TriangleMesh (*)(std::string_view, const std::string&, MeshReadReport&);
 
-Reader reader_for(const std::filesystem::path& file) {
-  const std::string extension = lower_case_extension(file);
-  if (extension == ".obj") return read_obj;
-  if (extension == ".ply") return read_ply;
-  if (extension == ".stl") return read_stl;
-  if (extension == ".off") return read_off;
-  throw InputError(file.string() + ": unknown mesh format \"" + extension + "\"; use .obj, .ply, .stl or .off");
-}
+// A format with its readers: of meshes, none where there are only points, and of points or a mesh.
+struct Format {
+  std::string_view name;
+  Reader mesh, any;
+};
+constexpr std::array kFormats{Format{"obj", read_obj, read_obj_or_points},
+                              Format{"ply", read_ply, read_ply_or_points},
+                              Format{"stl", read_stl, read_stl},
+                              Format{"off", read_off, read_off},
+                              Format{"vtp", read_vtk_xml, read_vtk_xml},
+                              Format{"vtu", read_vtk_xml, read_vtk_xml},
+                              Format{"vtk", read_legacy_vtk, read_legacy_vtk},
+                              Format{"msh", read_gmsh, read_gmsh},
+                              Format{"mesh", read_medit, read_medit},
+                              Format{"meshb", read_binary_medit, read_binary_medit},
+                              Format{"xyz", nullptr, read_xyz}};
 
-Reader point_reader_for(const std::filesystem::path& file) {
-  const std::string extension = lower_case_extension(file);
-  if (extension == ".xyz") return read_xyz;
-  if (extension == ".obj") return read_obj_or_points;
-  if (extension == ".ply") return read_ply_or_points;
-  if (extension == ".stl") return read_stl;
-  if (extension == ".off") return read_off;
-  throw InputError(file.string() + ": unknown format \"" + extension +
-                   "\"; points: .xyz, .ply or .obj; meshes: .obj, .ply, .stl or .off");
+Reader reader_for(const std::filesystem::path& file, const std::string& format, bool needs_faces) {
+  const std::string name = format_of(file, format);
+  std::string known;
+  for (const Format& one : kFormats) {
+    const Reader reader = needs_faces ? one.mesh : one.any;
+    if (reader == nullptr) continue;
+    if (one.name == name) return reader;
+    known += (known.empty() ? "." : ", .") + std::string(one.name);
+  }
+  throw InputError(file.string() + ": unknown " + (needs_faces ? "mesh format \"" : "format \"") +
+                   (name.empty() ? "" : ".") + name + "\"; known are " + known);
 }
 
 // Collects text in memory and writes it to the stream in large pieces.
@@ -95,8 +86,35 @@ class TextBuffer {
 
 }  // namespace
 
-MeshReading read_mesh_and_report(const std::filesystem::path& file) {
-  const Reader reader = reader_for(file);
+// In one read: a mapped file that someone cuts short meanwhile would kill the process.
+std::string read_bytes(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) throw InputError(file.string() + ": no such file");
+  if (status.type() == fs::file_type::directory) throw InputError(file.string() + ": a folder, not a mesh file");
+  if (status.type() != fs::file_type::regular)
+    throw InputError(file.string() + ": not a regular file that can be read");
+  const std::uintmax_t size = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw InputError(file.string() + ": cannot be opened for reading; check its permissions");
+  if (size == 0) throw InputError(file.string() + ": the file is empty");
+  std::string bytes(size, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
+    throw InputError(file.string() + ": cannot be read to its end");
+  return bytes;
+}
+
+std::vector<std::string> mesh_formats() {
+  std::vector<std::string> names;
+  for (const Format& format : kFormats)
+    if (format.mesh != nullptr) names.emplace_back(format.name);
+  return names;
+}
+
+MeshReading read_mesh_and_report(const std::filesystem::path& file, const std::string& format) {
+  const Reader reader = reader_for(file, format, true);
   MeshReading reading;
   reading.mesh = reader(read_bytes(file), file.string(), reading.report);
   try {
@@ -109,8 +127,8 @@ MeshReading read_mesh_and_report(const std::filesystem::path& file) {
 
 TriangleMesh read_mesh(const std::filesystem::path& file) { return read_mesh_and_report(file).mesh; }
 
-MeshReading read_points_or_mesh_and_report(const std::filesystem::path& file) {
-  const Reader reader = point_reader_for(file);
+MeshReading read_points_or_mesh_and_report(const std::filesystem::path& file, const std::string& format) {
+  const Reader reader = reader_for(file, format, false);
   MeshReading reading;
   reading.mesh = reader(read_bytes(file), file.string(), reading.report);
   return reading;

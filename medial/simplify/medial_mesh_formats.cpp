@@ -32,14 +32,37 @@ FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh) {
   return flagged;
 }
 
-std::string to_ply(const MedialMesh& mesh) {
+namespace {
+
+std::string contact_elements(const AxisContacts& contacts) {
+  return "element contact " + std::to_string(contacts.balls.size()) +
+         "\nproperty int ball\nproperty int sample\nelement sample " + std::to_string(contacts.sample_places.size()) +
+         "\nproperty double x\nproperty double y\nproperty double z\nproperty int ball\n";
+}
+
+void append_contacts(std::string& text, const AxisContacts& contacts) {
+  for (std::size_t i = 0; i < contacts.balls.size(); ++i)
+    text += std::to_string(contacts.balls[i]) + ' ' + std::to_string(contacts.samples[i]) + '\n';
+  for (std::size_t i = 0; i < contacts.sample_places.size(); ++i) {
+    std::string line;
+    append_place(line, contacts.sample_places[i]);
+    text.append(line, 1);
+    const Index ball = contacts.sample_balls[i];
+    text += ball == kNone ? " -1\n" : ' ' + std::to_string(ball) + '\n';
+  }
+}
+
+}  // namespace
+
+std::string to_ply(const MedialMesh& mesh, const AxisContacts* contacts) {
   const std::vector<Index> sheet = medial_structure(mesh).of_face;
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.centers.size()) +
                      "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n"
                      "element face " +
                      std::to_string(mesh.triangles.size()) +
                      "\nproperty list uchar int vertex_indices\nproperty int sheet\nelement edge " +
-                     std::to_string(mesh.edges.size()) + "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+                     std::to_string(mesh.edges.size()) + "\nproperty int vertex1\nproperty int vertex2\n" +
+                     (contacts == nullptr ? std::string() : contact_elements(*contacts)) + "end_header\n";
   for (Index v = 0; v < mesh.size(); ++v) {
     std::string line;
     append_place(line, mesh.centers[v]);
@@ -54,6 +77,7 @@ std::string to_ply(const MedialMesh& mesh) {
     text += '\n';
   }
   for (const auto& [a, b] : mesh.edges) text += std::to_string(a) + ' ' + std::to_string(b) + '\n';
+  if (contacts != nullptr) append_contacts(text, *contacts);
   return text;
 }
 

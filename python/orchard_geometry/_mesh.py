@@ -105,7 +105,8 @@ class Mesh:
 
     @classmethod
     def load(cls, file: PathLike, *, root_ball: str = "minimal") -> Mesh:
-        """Reads .obj, .ply, .stl or .off, as it stands. MeshError names line or byte, what is wrong and what to do."""
+        """Reads .obj, .ply, .stl, .off, .vtp, .vtu, .vtk, .msh, .mesh or .meshb, as it stands. MeshError names line or
+        byte, what is wrong and what to do."""
         path = os.fspath(file)
         surface, lines, _ = _construction.load(path, choice("root_ball", root_ball, ("minimal", "ritter")))
         mesh = cls._of(surface, path)
@@ -327,7 +328,7 @@ def _unpickled(vertices: Floats, faces: Indices, root_ball: str, name: str) -> M
 
 
 def load(file: PathLike, *, root_ball: str = "minimal") -> Mesh:
-    """Reads a mesh: .obj, .ply, .stl or .off."""
+    """Reads a mesh: .obj, .ply, .stl, .off, .vtp, .vtu, .vtk, .msh, .mesh or .meshb."""
     return Mesh.load(file, root_ball=root_ball)
 
 

@@ -82,6 +82,8 @@ RUNS = [
     ("thickness", "thickness box.obj -o thick --samples 200 --below 1.5"),
     ("skeleton", "skeleton box.obj -o skeleton --samples 300"),
     ("segment", "segment box.obj -o segment --samples 300 --triangles 500 --meshes"),
+    ("offset", "offset box.obj -o offset --distance 0.2 --tolerance 3"),
+    ("offset", "offset box.obj -o hollow --hollow 0.2 --tolerance 3 --unit mm --scale 10"),
 ]
 
 

@@ -56,7 +56,7 @@ TEST_F(MeshIo, SaysWhatIsWrongWithAFileItCannotOpen) {
   write_file(folder_ / "mesh", kObj);
   const std::pair<const char*, const char*> cases[] = {
       {"none.obj", "no such file"},       {"none/none.ply", "no such file"},   {"folder.obj", "a folder"},
-      {"empty.obj", "the file is empty"}, {"mesh.xyz", "unknown mesh format"}, {"mesh", "use .obj, .ply, .stl or .off"},
+      {"empty.obj", "the file is empty"}, {"mesh.xyz", "unknown mesh format"}, {"mesh", "known are .obj, .ply, .stl"},
   };
   for (const auto& [name, fault] : cases) {
     test::expect_input_error([&] { read_mesh(folder_ / name); }, {(folder_ / name).string(), fault});

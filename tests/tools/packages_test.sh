@@ -21,7 +21,7 @@ install() { printf '%s\n' "$@" >> "$FAKE/installed"; }
 user_without_sudo() { echo 1000 > "$FAKE/user"; rm "$FAKE/bin/sudo"; }
 
 plain=(g++ cmake ninja-build libgtest-dev libcgal-dev libeigen3-dev libopenmesh-dev libtbb-dev libcli11-dev libfmt-dev
-  nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libassimp-dev python3-jsonschema xvfb xauth)
+  nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libassimp-dev zlib1g-dev python3-jsonschema xvfb xauth)
 
 # VTK's packages and ParaView's as Debian 12 has them, in short.
 set_up() {

@@ -62,6 +62,10 @@ def check_axis_and_diagram(folder):
         vertices, _, triangles = (int(word) for word in file.readline().split()[:3])
     assert axis.GetNumberOfPoints() == vertices and axis.GetNumberOfPolys() == triangles
     assert (values(axis, "radius") >= 0).all()
+    # Every vertex and cell has a part of the structure.
+    assert (values(axis, "structure") >= 0).all() and set(values(axis, "structure_kind")) <= {0, 1, 2, 3, 4}
+    cells = vtk_to_numpy(axis.GetCellData().GetArray("structure_kind"))
+    assert len(cells) == axis.GetNumberOfCells() and (cells[-triangles:] == 0).all()
     diagram = simple.OpenDataFile(glob.glob(os.path.join(folder, "*.vor"))[0])
     drawn = fetched(diagram)
     assert drawn.GetNumberOfPoints() > 300 and drawn.GetNumberOfLines() > drawn.GetNumberOfPoints()

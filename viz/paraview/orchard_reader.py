@@ -104,12 +104,47 @@ def read_sph(name):
                 leaves)
 
 
+def structure_of(words, counts):
+    """Part and kind of each vertex, edge and triangle by the structure section; None where there is none. A vertex has
+    the part of the least dimension that it is in."""
+    try:
+        numbers = [int(word) for word in words]
+        at, parts = 1, []
+        for _ in range(numbers[0]):
+            number, kind, count = numbers[at:at + 3]
+            parts.append((kind, number, numbers[at + 3:at + 3 + count]))
+            at += 3 + count
+        if not parts or len(numbers) != at:
+            return None
+        of = [numpy.full((count, 2), -1) for count in counts]  # of vertices, edges, triangles
+        for kind, number, cells in sorted(parts, key=lambda part: part[0] == 3):
+            of[0 if kind == 3 else 2 if kind == 0 else 1][cells] = number, kind
+        return of
+    except (ValueError, IndexError):
+        return None
+
+
+def spread_to_vertices(of, edges, triangles):
+    junctions = of[0][:, 0] >= 0
+    for cells, own in ((triangles, of[2]), (edges, of[1])):
+        for cell, value in zip(cells, own):
+            if value[0] < 0:
+                continue
+            for vertex in cell:
+                if not junctions[vertex]:
+                    of[0][vertex] = value
+
+
 def read_ma(name):
-    """Centers, radii, edges that no triangle has, triangles; deleted cells are left out."""
+    """Centers, radii, edges that no triangle has, triangles, and their arrays structure and structure_kind: of points, and
+    of the edges and triangles. Deleted cells are left out."""
     lines = lines_of(name)
     counts = [int(word) for word in next(lines)[:3]]
-    vertices, edges, triangles, gone = [], [], [], set()
+    vertices, edges, triangles, gone, rest = [], [], [], set(), []
     for words in lines:
+        if words[0] not in ("v", "e", "f"):
+            rest += words
+            continue
         flags = words[{"v": 5, "e": 3, "f": 4}.get(words[0], len(words)):]
         deleted = flags[{"v": 1, "e": 1, "f": 0}.get(words[0], 0):][:1] == ["1"]
         if words[0] == "v":
@@ -120,13 +155,20 @@ def read_ma(name):
             edges.append(tuple(int(word) for word in words[1:3]))
         elif words[0] == "f" and not deleted:
             triangles.append(tuple(int(word) for word in words[1:4]))
+    whole = [len(vertices), len(edges), len(triangles)] == counts and not gone
+    of = structure_of(rest, counts) if whole else None
     if len(vertices) != counts[0]:
         raise ValueError(f"{name}: {len(vertices)} vertices, and {counts[0]} promised")
     edges = [edge for edge in edges if not gone & set(edge)]
     triangles = [triangle for triangle in triangles if not gone & set(triangle)]
     of_triangles = {frozenset(pair) for a, b, c in triangles for pair in ((a, b), (b, c), (c, a))}
     table = numpy.array(vertices).reshape(-1, 4)
-    return table[:, :3], table[:, 3], [edge for edge in edges if frozenset(edge) not in of_triangles], triangles
+    curves = [i for i, edge in enumerate(edges) if frozenset(edge) not in of_triangles]
+    arrays = None
+    if of is not None:
+        spread_to_vertices(of, edges, triangles)
+        arrays = of[0], numpy.concatenate([of[1][curves], of[2]])
+    return table[:, :3], table[:, 3], [edges[i] for i in curves], triangles, arrays
 
 
 def read_vor(name):
@@ -297,7 +339,8 @@ class OrchardTreeReader(Reader):
 @smproxy.reader(name="OrchardMedialReader", label="orchard medial mesh", extensions="ma",
                 file_description="medial meshes")
 class OrchardMedialReader(Reader):
-    """Triangles and the edges that none has, with the point array radius."""
+    """Triangles and the edges that none has, with the point array radius and, where the file has them, structure and
+    structure_kind (0 sheet, 1 seam, 2 border, 3 junction, 4 curve) of points and cells."""
 
     @smproperty.stringvector(name="FileName")
     @smdomain.filelist()
@@ -306,12 +349,16 @@ class OrchardMedialReader(Reader):
         self.set_name(name)
 
     def RequestData(self, request, inputs, outputs):
-        centers, radii, edges, triangles = read_ma(self._name)
+        centers, radii, edges, triangles, structure = read_ma(self._name)
         output = vtkPolyData.GetData(outputs, 0)
         set_points(output, centers)
         output.SetLines(cells_of(edges, 2))
         output.SetPolys(cells_of(triangles, 3))
         add(output.GetPointData(), "radius", radii)
+        if structure is not None:
+            for data, values in zip((output.GetPointData(), output.GetCellData()), structure):
+                add(data, "structure", values[:, 0])
+                add(data, "structure_kind", values[:, 1])
         return 1
 
 

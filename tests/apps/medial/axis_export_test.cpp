@@ -1,6 +1,7 @@
 // Axes as arrays: tables, and NumPy's archive of the same numbers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
@@ -63,7 +64,7 @@ TEST(AxisExport, TablesHaveTheBallsAndTheContactsThatTheyTouchTheSurfaceAt) {
       here.run({"medial", mesh, "-o", (here / "out").string(), "--samples", "500", "--export", "csv,npz"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto balls = rows_of(text_of(here, "box-axis-balls.csv"), "x,y,z,radius,structure,structure_kind");
-  const auto contacts = rows_of(text_of(here, "box-axis-contacts.csv"), "ball,x,y,z");
+  const auto contacts = rows_of(text_of(here, "box-axis-contacts.csv"), "ball,x,y,z,sample");
   ASSERT_FALSE(balls.empty());
   ASSERT_FALSE(contacts.empty());
   const Surface surface(box);
@@ -72,6 +73,21 @@ TEST(AxisExport, TablesHaveTheBallsAndTheContactsThatTheyTouchTheSurfaceAt) {
     const Point place(contact[1], contact[2], contact[3]);
     EXPECT_LT(surface.distance(place), 1e-9);
     EXPECT_NEAR((place - Point(ball[0], ball[1], ball[2])).norm(), ball[3], 1e-6);
+  }
+  const auto samples = rows_of(text_of(here, "box-axis-samples.csv"), "x,y,z,ball");
+  std::vector<double> largest(samples.size(), -1);  // ball that touches each sample
+  for (const auto& contact : contacts) {
+    const auto& sample = samples.at(static_cast<std::size_t>(contact[4]));
+    EXPECT_EQ(Point(sample[0], sample[1], sample[2]), Point(contact[1], contact[2], contact[3]));
+    double& ball = largest.at(static_cast<std::size_t>(contact[4]));
+    ball = std::max(ball, balls.at(static_cast<std::size_t>(contact[0]))[3]);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (largest[i] < 0) {
+      EXPECT_EQ(samples[i][3], 4294967295.0);
+    } else {
+      EXPECT_EQ(balls.at(static_cast<std::size_t>(samples[i][3]))[3], largest[i]);
+    }
   }
   const auto triangles = rows_of(text_of(here, "box-axis-triangles.csv"), "a,b,c");
   for (const auto& triangle : triangles) {

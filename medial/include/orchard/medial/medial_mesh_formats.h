@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "orchard/medial/contacts.h"
 #include "orchard/medial/medial_mesh.h"
 
 // Writes medial meshes in formats that other programs read.
@@ -13,8 +14,9 @@ namespace orchard {
 FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh);
 
 // Returns a text PLY file: vertices with x, y, z and radius, edges (vertex1, vertex2), and triangles with the number of
-// their sheet (medial_structure()). Numbers have the fewest digits that read back as the same value.
-std::string to_ply(const MedialMesh& mesh);
+// their sheet (medial_structure()). With `contacts`, it also has the elements contact (ball, sample) and sample (x, y,
+// z, ball; -1 for none). Numbers have the fewest digits that read back as the same value.
+std::string to_ply(const MedialMesh& mesh, const AxisContacts* contacts = nullptr);
 
 // Returns a Wavefront OBJ file: a group for the triangles of each sheet, and a group `wires` of lines for the edges
 // without triangles. The file does not contain the radii.

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "orchard/geometry/surface.h"
+#include "orchard/medial/contacts.h"
 #include "orchard/medial/medial_mesh.h"
 #include "orchard/medial/quality.h"
 #include "orchard/medial/segments.h"
@@ -22,6 +23,7 @@ namespace orchard {
 // border, 3 junction, 4 curve).
 // The file also contains the arrays `of_vertices`, and the arrays `of_faces`, which have one value for each face and
 // then one for each wall; lines get NaN. Surface points are numbered as in the contacts of write_medial_axis().
+// Field data: contact_ball, contact_sample, sample_ball and samples, as in write_medial_mesh().
 void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
                        const ViewArrays& of_vertices = {}, const ViewArrays& of_faces = {});
 
@@ -32,8 +34,10 @@ void write_thickness(const std::filesystem::path& vtp, const Surface& surface, c
 
 // Writes a complete medial mesh of any system: its triangles, and lines for the other edges. Point arrays: radius,
 // structure and structure_kind, as in write_medial_grid(), and the arrays `of_vertices`. Cell arrays: structure,
-// structure_kind.
-void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {});
+// structure_kind. With `contacts`, field data: contact_ball and contact_sample (for each contact), sample_ball (for
+// each sample, -1 for none) and samples (their places).
+void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {},
+                       const AxisContacts* contacts = nullptr);
 
 // Writes one vertex for each place, in order. Point arrays: number (from 1, as in reports), measure (0 protrusion, 1
 // coverage, 2 dent), value (in % of the diagonal), outward (the surface's normal at the place).

@@ -1,0 +1,110 @@
+#include "orchard/medial/offset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "../simplify/level_set.h"
+#include "offset_bound.h"
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+namespace {
+
+constexpr double kBoundAccuracy = 0.02;             // tolerances
+constexpr std::size_t kMaxOffsetParts = 4'000'000;  // beside the triangles; a minute at most
+constexpr double kMostCells = 2e7;                  // of a grid: some ten gigabytes
+constexpr double kClearOfWall = 1 + 1e-3;           // cells that a cavity is deeper than the wall
+
+void require_offset_options(const Surface& surface, const OffsetOptions& options) {
+  if (!(options.distance > 0) || !(options.distance <= kMaxCoordinate))
+    throw InputError("the distance of an offset is to be above 0");
+  if (!(options.tolerance >= kMinOffsetTolerance && options.tolerance <= 0.5))
+    throw InputError("the tolerance of an offset is to be from 0.0002 to 0.5 diagonals");
+  if (options.side != OffsetSide::both && !surface.solid())
+    throw InputError("an offset on one side needs a solid: " + surface.report().faults() +
+                     "; a shell on both sides does not");
+}
+
+double value_at(const Surface& surface, OffsetSide side, double distance, const Point& place) {
+  if (side == OffsetSide::both) return surface.distance(place) - distance;
+  const double own = surface.signed_distance(place);
+  return side == OffsetSide::outside ? own - distance : own + distance;
+}
+
+// An estimate: the level has about the area of the surface, and each cell of it some two cubes.
+void require_room(const Surface& surface, double cell) {
+  if (2 * surface.report().area / (cell * cell) <= kMostCells) return;
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  const double enough = std::sqrt(2 * surface.report().area / kMostCells) * std::sqrt(3.0) / diagonal;
+  throw InputError("the offset would need more than 20 million cells; a tolerance of " + std::to_string(100 * enough) +
+                   " % of the diagonal can be kept, with a distance above " + std::to_string(2 * enough * diagonal));
+}
+
+// The level set at `distance` on a grid of cells.
+OffsetMesh level_mesh(const Surface& surface, OffsetSide side, double distance, double cell, double tolerance,
+                      const Progress& progress) {
+  require_room(surface, cell);
+  Box box = surface.bounding_box();
+  if (side != OffsetSide::inside) {
+    box.min().array() -= distance;
+    box.max().array() += distance;
+  }
+  if (side != OffsetSide::both) surface.self_intersections();  // which signed distances need
+  detail::LevelSet level([&](const Point& place) { return value_at(surface, side, distance, place); }, box, cell,
+                         progress, "meshing the offset");
+  OffsetMesh result{.mesh = level.mesh(), .distance = distance, .tolerance = tolerance, .cell = cell};
+  if (result.mesh.triangles.empty()) return result;
+  const detail::DistanceRange range =
+      detail::distance_range(result.mesh, surface, kBoundAccuracy * tolerance, kMaxOffsetParts);
+  result.min_distance = range.min;
+  result.max_distance = range.max;
+  result.nearest = range.nearest;
+  result.farthest = range.farthest;
+  return result;
+}
+
+double cell_for(double tolerance, double distance) {
+  return std::min(tolerance / (std::sqrt(3.0) * (1 + 1e-9)), distance / 2);
+}
+
+void require_any(const OffsetMesh& offset) {
+  if (offset.mesh.triangles.empty())
+    throw InputError("no part of the solid is deeper than " + std::to_string(offset.distance) +
+                     " by more than the grid's cells show; take a smaller distance or tolerance");
+}
+
+}  // namespace
+
+double OffsetMesh::error() const { return std::max(max_distance - distance, distance - min_distance); }
+
+OffsetMesh offset_mesh(const Surface& surface, const OffsetOptions& options, const Progress& progress) {
+  require_offset_options(surface, options);
+  const double tolerance = options.tolerance * surface.bounding_box().diagonal().norm();
+  OffsetMesh result =
+      level_mesh(surface, options.side, options.distance, cell_for(tolerance, options.distance), tolerance, progress);
+  require_any(result);
+  return result;
+}
+
+HollowMesh hollow_mesh(const Surface& surface, double wall, const OffsetOptions& options, const Progress& progress) {
+  OffsetOptions own = options;
+  own.distance = wall;
+  own.side = OffsetSide::inside;
+  require_offset_options(surface, own);
+  const double tolerance = own.tolerance * surface.bounding_box().diagonal().norm(), cell = cell_for(tolerance, wall);
+  HollowMesh result;
+  // No place of a triangle is farther from a corner of it than a cell.
+  result.cavity = level_mesh(surface, own.side, wall + kClearOfWall * cell, cell, tolerance, progress);
+  require_any(result.cavity);
+  result.min_wall = result.cavity.min_distance;
+  result.mesh = surface.mesh();
+  const auto first = static_cast<Index>(result.mesh.vertices.size());
+  const TriangleMesh& cavity = result.cavity.mesh;
+  result.mesh.vertices.insert(result.mesh.vertices.end(), cavity.vertices.begin(), cavity.vertices.end());
+  for (const auto& [a, b, c] : cavity.triangles) result.mesh.triangles.push_back({first + a, first + c, first + b});
+  return result;
+}
+
+}  // namespace orchard

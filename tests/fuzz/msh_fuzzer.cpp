@@ -1,0 +1,6 @@
+#include "reader_entry.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  orchard::test::read_bytes(orchard::read_gmsh, data, size);
+  return 0;
+}
