@@ -83,11 +83,11 @@ struct Group {
 const std::vector<Group>& groups() {
   static const std::vector<Group> table{
       {"Input",
-       {"strict",  "wrap",        "wrap-alpha",   "fill-holes",     "join",          "union",          "points",
-        "diagram", "from-axis",   "axis",         "features",       "side",          "outside-radius", "clip",
-        "buffer",  "bbox-center", "pose",         "pose-a",         "simulate tree", "replay",         "vertex-weights",
-        "full",    "box",         "inspect unit", "thickness unit", "audit link",    "weight",         "package-path",
-        "no-wrap", "visual",      "ignore-units", "ignore-up",      "from"}},
+       {"strict",         "wrap",    "wrap-alpha",  "noise",        "fill-holes",     "join",          "union",
+        "points",         "diagram", "from-axis",   "axis",         "features",       "side",          "outside-radius",
+        "clip",           "buffer",  "bbox-center", "pose",         "pose-a",         "simulate tree", "replay",
+        "vertex-weights", "full",    "box",         "inspect unit", "thickness unit", "audit link",    "weight",
+        "package-path",   "no-wrap", "visual",      "ignore-units", "ignore-up",      "from"}},
       {"Output", {"output",     "views",         "no-views",   "picture",      "export",       "export-level", "report",
                   "up",         "json",          "quiet",      "force",        "accept",       "plot",         "csv",
                   "envelope",   "envelope-cell", "curve",      "spheres tree", "spheres link", "record",       "cells",

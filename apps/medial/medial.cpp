@@ -21,6 +21,7 @@
 #include "medial/medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/outside_solid.h"
 #include "orchard/medial/read_axis.h"
 #include "output/json_values.h"
@@ -34,6 +35,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
+constexpr const char* kSmoothedEnding = "-smoothed.obj";
 constexpr double kDistanceAccuracy = 1e-4;  // of the diagonal: to which the largest distance of two axes is searched
 
 SegmentOptions segment_options(const MedialCommand& command, const Surface& surface, const MedialBuild& build) {
@@ -53,7 +55,8 @@ std::vector<std::string> names_of(const MedialCommand& command) {
     return names;
   }
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
-  for (const char* ending : {".ma", ".graphml", "-features.obj"}) names.push_back(named(command.mesh, ending));
+  for (const char* ending : {".ma", ".graphml", "-features.obj", kSmoothedEnding})
+    names.push_back(named(command.mesh, ending));
   return names;
 }
 
@@ -198,6 +201,17 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
   finish(command, report, outputs);
 }
 
+// Where noise was smoothed away, borders and features may lose as much, unless the command says how much.
+MedialTuning tuning_for(const MedialCommand& command, const SolidMesh& solid) {
+  MedialTuning tuning = command.tuning;
+  if (!solid.is_smoothed()) return tuning;
+  const RefineOptions standard;
+  const double times = std::max(1.0, solid.noise->level / standard.border_loss);
+  if (!given(command, "border-loss")) tuning.refinement.border_loss = times * standard.border_loss;
+  if (!given(command, "feature-loss")) tuning.refinement.feature_loss = times * standard.feature_loss;
+  return tuning;
+}
+
 // What the command promised beside what it made; the line that says so comes last.
 Broken broken_promises(const MedialCommand& command, const SolidMesh& solid, const MedialBuild& build,
                        const MedialFindings& findings, const FewBalls& few) {
@@ -280,6 +294,9 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   if (!build.features.empty())
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
+  if (solid.is_smoothed())
+    write_obj(outputs.add(named(command.mesh, kSmoothedEnding), "the mesh without its noise, whose axis this is"),
+              surface.mesh());
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
   write_axis_exports(command, mesh, contacts_of(build.axis), outputs);
   write_few_balls(command, destination.provenance, few, report, outputs);
@@ -351,7 +368,8 @@ void check_options(const MedialCommand& command) {
   check_sweep(command);  // without a sweep, that of the one combination that there is
 }
 
-ExitCode medial(const MedialCommand& command) {
+ExitCode medial(const MedialCommand& given_command) {
+  MedialCommand command = given_command;
   const Destination destination = check(command);
   std::vector<ForeignAxis> foreign = read_axes(command.beside);
   if (!command.axis.empty()) foreign.push_back(read_axis(command.axis));
@@ -360,6 +378,7 @@ ExitCode medial(const MedialCommand& command) {
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
   print_hole_warning(command.mesh, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
+  command.tuning = tuning_for(command, solid);
   std::optional<SolidMesh> outside;
   if (command.outside) {
     outside = SolidMesh{.surface = Surface(outside_solid(solid.surface, command.outside_radius)),
@@ -367,7 +386,8 @@ ExitCode medial(const MedialCommand& command) {
                         .repair = {},
                         .repair_distance = {},
                         .wrap = {},
-                        .self_intersections = solid.self_intersections};
+                        .self_intersections = solid.self_intersections,
+                        .noise = solid.noise};
     if (!command.output.quiet && !command.output.json)
       fmt::print("outside: the space around it, within a sphere of {:.6g} bounding radii\n", command.outside_radius);
   }
