@@ -12,6 +12,7 @@
 #include "command_line/sweep_option.h"
 #include "command_line/tree_options.h"
 #include "medial/axis_export.h"
+#include "orchard/geometry/noise.h"
 
 namespace orchard::apps {
 namespace {
@@ -258,6 +259,24 @@ void add_voronoi(CLI::App& app, Request& request) {
   });
 }
 
+// Either a word or a level.
+CLI::Validator noise_validator() {
+  const NumberValidator level(CLI::Range(1e-4, 100 * kMaxNoise));
+  return {[level](std::string& text) { return text == "auto" ? std::string() : level(text); }, "auto or a percentage"};
+}
+
+void add_noise(CLI::App& command, MeshOptions& reading) {
+  CLI::Option* noise = command.add_option(
+      "--noise", reading.noise,
+      fmt::format("Smooth away the noise of a scan, a standard deviation in percent of the diagonal, or auto to "
+                  "estimate it. Borders and features may then lose as much, unless --border-loss and --feature-loss "
+                  "say else (0.0001 to {:g})",
+                  100 * kMaxNoise));
+  noise->check(noise_validator());
+  for (const char* other : {"--strict", "--wrap", "--features", "--points", "--diagram", "--axis"})
+    noise->excludes(command.get_option(other));
+}
+
 void add_medial(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("medial", "Build, measure or simplify the medial axis of a mesh");
   MedialCommand& medial = request.medial;
@@ -287,6 +306,7 @@ void add_medial(CLI::App& app, Request& request) {
       ->capture_default_str();
   add_other_axis(command, medial);
   add_axis_source(command, medial.source);
+  add_noise(command, medial.reading);
   add_few_balls(command, medial);
   add_sweep(command, medial);
   add_tuning(command, medial.tuning, false);

@@ -87,10 +87,11 @@ void add_view(CLI::App& app, Request& request) {
       *app.add_subcommand("view", "Render meshes, medial axes and sphere-trees to a picture or an interactive window");
   ViewCommand& view = request.view;
   command
-      .add_option("files", view.files,
-                  mesh_help("Sphere-trees (.orchard, .sph), sphere sets (.txt, .csv, .json), medial axes (.ma), Voronoi "
-                            "diagrams (.vor), points (.xyz), views (.vtp, .vtu), series of views, such as simulations "
-                            "(.pvd), or meshes"))
+      .add_option(
+          "files", view.files,
+          mesh_help("Sphere-trees (.orchard, .sph), sphere sets (.txt, .csv, .json), medial axes (.ma), Voronoi "
+                    "diagrams (.vor), points (.xyz), views (.vtp, .vtu), series of views, such as simulations "
+                    "(.pvd), or meshes"))
       ->required();
   add_mesh_input(command, view.input);
   command.add_option("-o,--output", view.picture,

@@ -202,7 +202,8 @@ void add_audit(CLI::App& app, Request& request) {
                   "a folder of MorphIt's files")
       ->required();
   command
-      .add_option("mesh", audit.mesh, mesh_help("The .urdf of a robot, to audit the spheres of all its links, or a mesh"))
+      .add_option("mesh", audit.mesh,
+                  mesh_help("The .urdf of a robot, to audit the spheres of all its links, or a mesh"))
       ->required();
   request.meshes.push_back({&audit.mesh, &audit.input});
   add_mesh_input(command, audit.input);

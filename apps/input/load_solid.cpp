@@ -10,6 +10,7 @@
 #include "input/standard_input.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/noise.h"
 #include "orchard/geometry/unite.h"
 
 namespace orchard::apps {
@@ -94,6 +95,44 @@ void unite(SolidMesh& solid, BoundingBall ball, const Progress& progress) {
   solid.surface = Surface(std::move(united->mesh), ball);
 }
 
+// Replaces the surface by one without its noise, if that is more than nothing.
+void smooth(SolidMesh& solid, const MeshOptions& options, const Progress& progress) {
+  NoiseResult noise{.estimated = options.noise == "auto"};
+  const TriangleMesh& mesh = solid.surface.mesh();
+  noise.level = noise.estimated ? noise_level(mesh) : *finite_number(options.noise) / 100;
+  if (noise.level > kMaxNoise)
+    throw InputError(
+        fmt::format("the noise was estimated as {:.2g} % of the diagonal, more than the {:.2g} % that can "
+                    "be smoothed away; give a lower level to --noise, or take --wrap",
+                    100 * noise.level, 100 * kMaxNoise));
+  if (!noise.estimated || noise.level > kNegligibleNoise) {
+    DenoisedMesh smoothed = denoise(mesh, {.level = noise.level}, progress);
+    noise.rounds = smoothed.rounds;
+    noise.moved_rms = smoothed.moved_rms;
+    noise.moved_max = smoothed.moved_max;
+    solid.surface = Surface(std::move(smoothed.mesh), options.ball);
+    if (!solid.surface.solid())
+      throw InputError("without its noise the mesh is no solid any more; give a lower level to --noise");
+  }
+  solid.noise = noise;
+}
+
+json noise_json(const NoiseResult& noise) {
+  return {{"estimated", noise.estimated},
+          {"level_over_diagonal", noise.level},
+          {"rounds", noise.rounds},
+          {"moved_rms_over_diagonal", noise.moved_rms},
+          {"moved_max_over_diagonal", noise.moved_max}};
+}
+
+std::string in_words(const NoiseResult& noise) {
+  std::string text =
+      fmt::format("noise of {:.2g} % of the diagonal{}", 100 * noise.level, noise.estimated ? ", as estimated," : "");
+  if (noise.rounds == 0) return text + " was left: it is too low to matter";
+  return text + fmt::format(" was smoothed away; no vertex moved by more than {:.2g} % of the diagonal",
+                            100 * noise.moved_max);
+}
+
 json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
 
 }  // namespace
@@ -136,6 +175,13 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
   }
   SolidMesh solid =
       options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options, progress);
+  if (!options.noise.empty()) {
+    try {
+      smooth(solid, options, progress);
+    } catch (const InputError& error) {
+      throw InputError(name + ": " + error.what());
+    }
+  }
   if (solid.surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     solid.self_intersections = solid.surface.self_intersections().size();
   if (options.unite && !options.strict && solid.self_intersections.value_or(0) > 0)
@@ -165,6 +211,7 @@ void print_repair(const std::filesystem::path& file, const MeshRepairReport& rep
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
   print_reading(file, solid.reading);
   print_repair(file, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
+  if (solid.noise) fmt::print("{}: {}\n", file.string(), in_words(*solid.noise));
   if (solid.united)
     fmt::print("{}: {} parts that cut each other in {} pairs of triangles were replaced by their union\n", shown(file),
                solid.united->parts, solid.united->cut_before);
@@ -230,6 +277,7 @@ void add_solid_json(const SolidMesh& solid, json& report) {
   report["reading"] = reading_json(solid.reading);
   if (!solid.wrap) {
     report["repair"] = to_json(solid.repair, solid.repair_distance, solid.surface.bounding_radius());
+    if (solid.noise) report["noise"] = noise_json(*solid.noise);
     report["self_intersections"] = solid.self_intersections ? json(*solid.self_intersections) : json();
     report["union"] =
         !solid.united ? json()

@@ -23,6 +23,7 @@ struct MeshOptions {
   double wrap_alpha = WrapOptions{}.alpha;
   std::optional<double> join;        // corners up to this far apart, in bounding radii; else as repair.h says
   std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
+  std::string noise;                 // not empty: what to smooth away, "auto" or a level in percent of the diagonal
   bool unite = false;                // parts that cut each other become one
   BoundingBall ball = BoundingBall::minimal;
 
@@ -43,6 +44,16 @@ struct UnionResult {
   Index parts = 0, cut_before = 0, cut_left = 0;  // as in UnitedMesh
 };
 
+// The noise that was smoothed away. Lengths are fractions of the diagonal, as in noise.h.
+struct NoiseResult {
+  bool estimated = false;
+  double level = 0;
+  int rounds = 0;  // 0: the level is too low to matter, and the mesh is as it was
+  double moved_rms = 0, moved_max = 0;
+};
+// An estimated level up to this is left alone: the borders of axes lose twice as much anyway.
+inline constexpr double kNegligibleNoise = 0.0005;
+
 struct SolidMesh {
   Surface surface;
   MeshReadReport reading;
@@ -53,9 +64,11 @@ struct SolidMesh {
   // Not counted for a wrap, which has none, and beyond kMaxForSelfIntersections.
   std::optional<std::size_t> self_intersections;
   std::optional<UnionResult> united = {};  // then `surface` is the union
+  std::optional<NoiseResult> noise = {};   // if asked for
 
+  bool is_smoothed() const { return noise && noise->rounds > 0; }
   // Whether `surface` is neither the file's nor a wrap.
-  bool changed() const { return repair.changed() || united.has_value(); }
+  bool changed() const { return repair.changed() || united.has_value() || is_smoothed(); }
 };
 
 inline constexpr std::size_t kMaxForSelfIntersections = 500'000;  // triangles: a few seconds
@@ -90,7 +103,7 @@ void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
 // build ends with.
 std::string certificate(const SolidMesh& solid, const std::filesystem::path& written);
 nlohmann::json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
-// Sets "reading", and "repair", "self_intersections" and "union", or "wrap" and "wrap_distance".
+// Sets "reading", and "repair", "noise", "self_intersections" and "union", or "wrap" and "wrap_distance".
 void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
 
 }  // namespace orchard::apps

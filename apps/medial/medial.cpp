@@ -22,6 +22,7 @@
 #include "medial/medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/outside_solid.h"
 #include "orchard/medial/read_axis.h"
 #include "output/json_values.h"
@@ -37,6 +38,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
+constexpr const char* kSmoothedEnding = "-smoothed.obj";
 constexpr double kDistanceAccuracy = 1e-4;  // of the diagonal: to which the largest distance of two axes is searched
 
 SegmentOptions segment_options(const MedialCommand& command, const Surface& surface, const MedialBuild& build) {
@@ -58,7 +60,8 @@ std::vector<std::string> names_of(const MedialCommand& command) {
   }
   names.push_back(page_name(command.mesh, "medial"));
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
-  for (const char* ending : {".ma", ".graphml", "-features.obj"}) names.push_back(named(command.mesh, ending));
+  for (const char* ending : {".ma", ".graphml", "-features.obj", kSmoothedEnding})
+    names.push_back(named(command.mesh, ending));
   return names;
 }
 
@@ -297,6 +300,9 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   if (!build.features.empty())
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
+  if (solid.is_smoothed())
+    write_obj(outputs.add(named(command.mesh, kSmoothedEnding), "the mesh without its noise, whose axis this is"),
+              surface.mesh());
   write_file(outputs.add(named(command.mesh, ".graphml"), "its structure graph"), to_graphml(graph, build.axis));
   write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,
@@ -340,12 +346,22 @@ void write_axis(const MedialCommand& command, const MedialBuild& build, const Me
   write_file(
       outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
       to_ma(mesh) + to_structure_section(medial_structure(mesh)) + (last_line.empty() ? "" : "# " + last_line + "\n"));
-  write_axis_exports(command, mesh, contacts_of(build.axis), outputs);
+  write_axis_exports(command, mesh, axis_contacts(build.axis), outputs);
 }
 
 void add_quality(const MedialJudgement& judgement, json& report) {
   report["quality"] = to_json(judgement);
   report["diagonal"] = judgement.quality.diagonal;
+}
+
+MedialTuning tuning_for(const MedialCommand& command, const SolidMesh& solid) {
+  MedialTuning tuning = command.tuning;
+  if (!solid.is_smoothed()) return tuning;
+  const RefineOptions standard;
+  const double times = std::max(1.0, solid.noise->level / standard.border_loss);
+  if (!given(command, "border-loss")) tuning.refinement.border_loss = times * standard.border_loss;
+  if (!given(command, "feature-loss")) tuning.refinement.feature_loss = times * standard.feature_loss;
+  return tuning;
 }
 
 QualityOptions quality_options(const MedialCommand& command) {
@@ -397,7 +413,8 @@ void check_options(const MedialCommand& command) {
   check_sweep(command);  // without a sweep, that of the one combination that there is
 }
 
-ExitCode medial(const MedialCommand& command) {
+ExitCode medial(const MedialCommand& given_command) {
+  MedialCommand command = given_command;
   const Destination destination = check(command);
   std::vector<ForeignAxis> foreign = read_axes(command.beside);
   if (!command.axis.empty()) foreign.push_back(read_axis(command.axis));
@@ -410,6 +427,7 @@ ExitCode medial(const MedialCommand& command) {
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
   print_hole_warning(command.mesh, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
+  command.tuning = tuning_for(command, solid);
   std::optional<SolidMesh> outside;
   if (command.outside) {
     outside = outside_of(solid, command.outside_radius);

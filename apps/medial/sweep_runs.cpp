@@ -135,7 +135,7 @@ class SweepRunner {
   json make(const MedialCommand& run, const std::string& key) {
     const SolidMesh& solid = solid_of(run);
     const Surface& surface = solid.surface;
-    const MedialBuildOptions options = build_options(run.tuning);
+    const MedialBuildOptions options = build_options(tuning_for(run, solid));
     if (!build_ || built_ != key) build_ = build_medial_axis(surface, options, progress_);
     built_ = key;
     const MedialMesh mesh = medial_mesh(build_->axis);

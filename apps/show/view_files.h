@@ -32,7 +32,8 @@ void show_step(std::size_t step, const SeriesList& all, std::size_t still, Scene
 // A box around all time steps, for one camera; nothing if there is no point in them.
 std::optional<Box> room_of(const SeriesList& all);
 
-// Adds the contents of a file to the scene by its ending. `input`: how meshes are read. `talk`: print what reading a mesh changed. Throws InputError.
+// Adds the contents of a file to the scene by its ending. `input`: how meshes are read. `talk`: print what reading a
+// mesh changed. Throws InputError.
 void add_file(const std::filesystem::path& file, const MeshInput& input, Scene& scene, bool talk);
 
 }  // namespace orchard::apps

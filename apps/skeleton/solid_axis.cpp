@@ -19,7 +19,8 @@ SolidMesh outside_of(const SolidMesh& solid, double radius) {
           .repair = {},
           .repair_distance = {},
           .wrap = {},
-          .self_intersections = solid.self_intersections};
+          .self_intersections = solid.self_intersections,
+          .noise = solid.noise};
 }
 
 SolidAxis solid_axis(const MedialCommand& command, const Progress& progress, ProgressBar& bar) {

@@ -119,8 +119,7 @@ TEST(Offset, OfABallAndATorusIsBetweenThoseOfTheRoundOnes) {
   EXPECT_LT(check_mesh(grown_ball.mesh).volume, ball(1.5 + off));
   check_bounds(grown_ball, test::icosphere(3), 401);
   const TriangleMesh ring = test::torus(64, 32);
-  const OffsetMesh thin =
-      offset_mesh(Surface(ring), {.distance = 0.15, .side = OffsetSide::inside, .tolerance = 0.02});
+  const OffsetMesh thin = offset_mesh(Surface(ring), {.distance = 0.15, .side = OffsetSide::inside, .tolerance = 0.02});
   const auto torus = [](double r) { return 2 * kPi * kPi * r * r; };
   const double tolerance = thin.tolerance + 0.01;
   EXPECT_GT(check_mesh(thin.mesh).volume, torus(0.2 - tolerance));
