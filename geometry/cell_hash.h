@@ -13,7 +13,7 @@ namespace orchard::detail {
 struct Cell {
   std::int32_t x = 0, y = 0, z = 0;
   friend bool operator==(const Cell&, const Cell&) = default;
-  friend auto operator<=>(const Cell&, const Cell&) = default;
+  friend auto operator<=>(const Cell&, const Cell&) = default;  // NOLINT(modernize-use-nullptr): no 0 here
 };
 
 // A grid of cubes (squares, for points with z = 0) that stores only what is occupied: Turk's spatial hash. Items of a

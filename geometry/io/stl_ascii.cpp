@@ -66,7 +66,7 @@ class AsciiStl {
   // not passed.
   std::string next() {
     for (; more(); words_.word()) {
-      const std::string word = lower_case(words_.peek());
+      std::string word = lower_case(words_.peek());
       if (words_.rest_of_line().data() == first_of_line_ || std::ranges::count(kKeywords, word) > 0) return word;
     }
     return {};

@@ -111,6 +111,7 @@ class CornerJoiner {
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     std::vector<Point> places;
+    places.reserve(ends.size());
     for (const Index end : ends) places.push_back(place(end));
     std::vector<Match> matches = nearest(places, [&](Index a, Index b) { return between(ends[a], ends[b]); });
     for (Match& match : matches) match.a = ends[match.a], match.b = ends[match.b];
