@@ -119,8 +119,7 @@ TEST(Offset, OfABallAndATorusIsBetweenThoseOfTheRoundOnes) {
   EXPECT_LT(check_mesh(grown_ball.mesh).volume, ball(1.5 + off));
   check_bounds(grown_ball, test::icosphere(3), 401);
   const TriangleMesh ring = test::torus(64, 32);
-  const OffsetMesh thin =
-      offset_mesh(Surface(ring), {.distance = 0.15, .side = OffsetSide::inside, .tolerance = 0.02});
+  const OffsetMesh thin = offset_mesh(Surface(ring), {.distance = 0.15, .side = OffsetSide::inside, .tolerance = 0.02});
   const auto torus = [](double r) { return 2 * kPi * kPi * r * r; };
   const double tolerance = thin.tolerance + 0.01;
   EXPECT_GT(check_mesh(thin.mesh).volume, torus(0.2 - tolerance));
@@ -175,7 +174,7 @@ TEST(Offset, RefusesWhatCannotBe) {
   for (const double tolerance : {0.0, 1e-5, 0.7})
     EXPECT_THROW(offset_mesh(box, {.distance = 1, .tolerance = tolerance}), InputError) << tolerance;
   EXPECT_THROW(offset_mesh(box, {.distance = 0.6, .side = OffsetSide::inside}), InputError);
-  EXPECT_THROW(offset_mesh(box, {.distance = 1e-6}), InputError);  // too many cells
+  EXPECT_THROW(offset_mesh(box, {.distance = 1e-6, .side = OffsetSide::both}), InputError);  // too many cells
 }
 
 }  // namespace
