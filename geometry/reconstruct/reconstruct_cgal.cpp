@@ -1,4 +1,5 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Random.h>
 #include <CGAL/poisson_surface_reconstruction.h>
 #include <CGAL/property_map.h>
 
@@ -8,6 +9,7 @@
 
 #include "../repair/cgal_mesh.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
 #include "orchard/geometry/reconstruct.h"
 
 namespace orchard {
@@ -19,6 +21,31 @@ using PointWithNormal = std::pair<PoissonKernel::Point_3, PoissonKernel::Vector_
 constexpr std::size_t kFewestPoints = 16;
 constexpr unsigned kNeighbors = 6;
 constexpr double kMinAngle = 20;  // degrees, of the triangles
+// Mean distances between points that each is moved by at most: CGAL's refinement of a triangulation fails where the
+// centres of all its balls are one place, as for points of an exact sphere.
+constexpr double kUnlike = 5e-3;
+
+// CGAL's own checks end a call without a word, and its random numbers are the same in each.
+class QuietCgal {
+ public:
+  QuietCgal() : before_(CGAL::set_error_handler(silent)) { CGAL::get_default_random() = CGAL::Random(0); }
+  ~QuietCgal() { CGAL::set_error_handler(before_); }
+  QuietCgal(const QuietCgal&) = delete;
+  QuietCgal& operator=(const QuietCgal&) = delete;
+
+ private:
+  static void silent(const char*, const char*, const char*, int, const char*) {}
+  CGAL::Failure_function before_;
+};
+
+void make_unlike(std::vector<PointWithNormal>& points, double spacing) {
+  Random random(0, 0, 0);
+  for (PointWithNormal& point : points) {
+    const auto shift = [&] { return random.uniform(-kUnlike, kUnlike) * spacing; };
+    const double x = shift(), y = shift(), z = shift();
+    point.first = point.first + PoissonKernel::Vector_3(x, y, z);
+  }
+}
 
 // Distances to points are those to a mesh of triangles without extent.
 Surface surface_of_points(const std::vector<Point>& points) {
@@ -58,6 +85,8 @@ ReconstructedMesh reconstruct_surface(const OrientedPoints& points, const Recons
   result.spacing =
       CGAL::compute_average_spacing<CGAL::Sequential_tag>(input, kNeighbors, CGAL::parameters::point_map(place));
   if (!(result.spacing > 0)) throw InputError("all points lie in one place");
+  make_unlike(input, result.spacing);
+  const QuietCgal quiet;
   detail::CgalMesh mesh;
   bool made = false;
   try {

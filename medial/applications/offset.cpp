@@ -65,8 +65,10 @@ OffsetMesh level_mesh(const Surface& surface, OffsetSide side, double distance, 
   return result;
 }
 
-double cell_for(double tolerance, double distance) {
-  return std::min(tolerance / (std::sqrt(3.0) * (1 + 1e-9)), distance / 2);
+// A shell must not lose its inside between the corners of the grid.
+double cell_for(OffsetSide side, double tolerance, double distance) {
+  const double cell = tolerance / (std::sqrt(3.0) * (1 + 1e-9));
+  return side == OffsetSide::both ? std::min(cell, distance / 2) : cell;
 }
 
 void require_any(const OffsetMesh& offset) {
@@ -82,8 +84,8 @@ double OffsetMesh::error() const { return std::max(max_distance - distance, dist
 OffsetMesh offset_mesh(const Surface& surface, const OffsetOptions& options, const Progress& progress) {
   require_offset_options(surface, options);
   const double tolerance = options.tolerance * surface.bounding_box().diagonal().norm();
-  OffsetMesh result =
-      level_mesh(surface, options.side, options.distance, cell_for(tolerance, options.distance), tolerance, progress);
+  OffsetMesh result = level_mesh(surface, options.side, options.distance,
+                                 cell_for(options.side, tolerance, options.distance), tolerance, progress);
   require_any(result);
   return result;
 }
@@ -93,7 +95,8 @@ HollowMesh hollow_mesh(const Surface& surface, double wall, const OffsetOptions&
   own.distance = wall;
   own.side = OffsetSide::inside;
   require_offset_options(surface, own);
-  const double tolerance = own.tolerance * surface.bounding_box().diagonal().norm(), cell = cell_for(tolerance, wall);
+  const double tolerance = own.tolerance * surface.bounding_box().diagonal().norm(),
+               cell = cell_for(own.side, tolerance, wall);
   HollowMesh result;
   // No place of a triangle is farther from a corner of it than a cell.
   result.cavity = level_mesh(surface, own.side, wall + kClearOfWall * cell, cell, tolerance, progress);

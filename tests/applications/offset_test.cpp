@@ -174,7 +174,7 @@ TEST(Offset, RefusesWhatCannotBe) {
   for (const double tolerance : {0.0, 1e-5, 0.7})
     EXPECT_THROW(offset_mesh(box, {.distance = 1, .tolerance = tolerance}), InputError) << tolerance;
   EXPECT_THROW(offset_mesh(box, {.distance = 0.6, .side = OffsetSide::inside}), InputError);
-  EXPECT_THROW(offset_mesh(box, {.distance = 1e-6}), InputError);  // too many cells
+  EXPECT_THROW(offset_mesh(box, {.distance = 1e-6, .side = OffsetSide::both}), InputError);  // too many cells
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ struct OffsetMesh {
 };
 
 // Returns the offset of a surface by its exact distance field: the mesh of the level set on a grid (as that of
-// envelope_mesh()) whose cells are the tolerance over sqrt(3), or half the distance if that is smaller. Two things
-// hold:
+// envelope_mesh()) whose cells are the tolerance over sqrt(3), or, of a shell, half the distance if that is smaller.
+// Two things hold:
 // 1. No place of the mesh has a distance that differs from the one asked for by more than the tolerance. The result
 //    has bounds for all places, found by branch and bound and not by samples.
 // 2. Every place whose distance differs by more than the tolerance is on its right side of the mesh. So parts that
