@@ -56,7 +56,7 @@ void add_axis_options(CLI::App& command, MedialCommand& axis, Request& request, 
 void add_skeleton(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("skeleton", "Reduce the medial axis of a mesh to curves with radii");
   SkeletonCommand& skeleton = request.skeleton;
-  add_mesh(command, skeleton.axis.mesh);
+  add_mesh(command, request, skeleton.axis.mesh, skeleton.axis.reading.input);
   command.add_option("-o,--output", skeleton.axis.folder, "Folder that receives the skeleton and the report")
       ->required();
   add_side(command, skeleton.axis);
@@ -88,7 +88,7 @@ void add_segment(CLI::App& app, Request& request) {
   CLI::App& command =
       *app.add_subcommand("segment", "Divide a surface into parts by the sheets and necks of its medial axis");
   SegmentCommand& segment = request.segment;
-  add_mesh(command, segment.axis.mesh);
+  add_mesh(command, request, segment.axis.mesh, segment.axis.reading.input);
   command.add_option("-o,--output", segment.axis.folder, "Folder that receives the labelled mesh and the report")
       ->required();
   command

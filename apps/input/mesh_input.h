@@ -14,6 +14,7 @@ struct MeshInput {
   std::string format = {};  // a name of input_formats(); empty: the extension of the file
   double scale = 1;         // the coordinates are multiplied by it
   std::string unit = {};    // of the mesh as it is used, for what is printed and written; empty: the file's, if any
+  bool operator==(const MeshInput&) const = default;
 };
 
 // The names of all formats, in lower case without a dot: those of meshes, of scenes, and of points with normals.

@@ -17,11 +17,9 @@
 namespace orchard {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Of a box or prism grown by d, by Steiner: area, half the sum of edges times their exterior angles.
 double grown(double volume, double area, double edges, double d) {
-  return volume + area * d + edges * d * d + 4 * kPi / 3 * d * d * d;
+  return volume + area * d + edges * d * d + 4 * std::numbers::pi / 3 * d * d * d;
 }
 
 double brute_distance(const TriangleMesh& mesh, const Point& place) {
@@ -91,7 +89,8 @@ TriangleMesh plate_with_hole() {
 
 TEST(Offset, OfABoxIsRoundOutsideAndSharpInside) {
   const TriangleMesh box = test::box(Point(0, 0, 0), Point(3, 2, 1));
-  check_offset(box, {.distance = 0.3, .tolerance = 0.02}, 23, [](double d) { return grown(6, 22, kPi * 6, d); });
+  check_offset(box, {.distance = 0.3, .tolerance = 0.02}, 23,
+               [](double d) { return grown(6, 22, std::numbers::pi * 6, d); });
   check_offset(box, {.distance = 0.2, .side = OffsetSide::inside, .tolerance = 0.02}, 23,
                [](double d) { return (3 - 2 * d) * (2 - 2 * d) * (1 - 2 * d); });
 }
@@ -99,20 +98,22 @@ TEST(Offset, OfABoxIsRoundOutsideAndSharpInside) {
 TEST(Offset, OfACylinder) {
   constexpr int kSides = 24;
   std::vector<std::array<double, 2>> outline;
-  for (int i = 0; i < kSides; ++i) outline.push_back({std::cos(2 * kPi * i / kSides), std::sin(2 * kPi * i / kSides)});
+  for (int i = 0; i < kSides; ++i)
+    outline.push_back({std::cos(2 * std::numbers::pi * i / kSides), std::sin(2 * std::numbers::pi * i / kSides)});
   std::vector<std::array<Index, 3>> caps;
   for (Index i = 1; i + 1 < kSides; ++i) caps.push_back({0, i, i + 1});
   const TriangleMesh cylinder = test::prism(outline, caps);
   const MeshReport report = check_mesh(cylinder);
-  const double height = report.volume / (kSides * std::sin(2 * kPi / kSides) / 2),
-               around = 2 * kSides * std::sin(kPi / kSides);
+  const double height = report.volume / (kSides * std::sin(2 * std::numbers::pi / kSides) / 2),
+               around = 2 * kSides * std::sin(std::numbers::pi / kSides);
   check_offset(cylinder, {.distance = 0.25, .tolerance = 0.03}, 37, [&](double d) {
-    return grown(report.volume, report.area, (2 * around * kPi / 2 + height * 2 * kPi) / 2, d);
+    return grown(report.volume, report.area, (2 * around * std::numbers::pi / 2 + height * 2 * std::numbers::pi) / 2,
+                 d);
   });
 }
 
 TEST(Offset, OfABallAndATorusIsBetweenThoseOfTheRoundOnes) {
-  const auto ball = [](double r) { return 4 * kPi / 3 * r * r * r; };
+  const auto ball = [](double r) { return 4 * std::numbers::pi / 3 * r * r * r; };
   const OffsetMesh grown_ball = offset_mesh(Surface(test::icosphere(3)), {.distance = 0.5, .tolerance = 0.02});
   const double off = 0.01 + grown_ball.tolerance;  // of the facets, and of the offset
   EXPECT_GT(check_mesh(grown_ball.mesh).volume, ball(1.5 - off));
@@ -120,7 +121,7 @@ TEST(Offset, OfABallAndATorusIsBetweenThoseOfTheRoundOnes) {
   check_bounds(grown_ball, test::icosphere(3), 401);
   const TriangleMesh ring = test::torus(64, 32);
   const OffsetMesh thin = offset_mesh(Surface(ring), {.distance = 0.15, .side = OffsetSide::inside, .tolerance = 0.02});
-  const auto torus = [](double r) { return 2 * kPi * kPi * r * r; };
+  const auto torus = [](double r) { return 2 * std::numbers::pi * std::numbers::pi * r * r; };
   const double tolerance = thin.tolerance + 0.01;
   EXPECT_GT(check_mesh(thin.mesh).volume, torus(0.2 - tolerance));
   EXPECT_LT(check_mesh(thin.mesh).volume, torus(0.2 + tolerance));
@@ -128,8 +129,9 @@ TEST(Offset, OfABallAndATorusIsBetweenThoseOfTheRoundOnes) {
 }
 
 TEST(Offset, OfAPlateWithAHoleIsRoundAtItsReflexEdgesInside) {
-  check_offset(plate_with_hole(), {.distance = 0.2, .side = OffsetSide::inside, .tolerance = 0.01}, 11,
-               [](double d) { return (1 - 2 * d) * ((4 - 2 * d) * (4 - 2 * d) - (4 + 8 * d + kPi * d * d)); });
+  check_offset(plate_with_hole(), {.distance = 0.2, .side = OffsetSide::inside, .tolerance = 0.01}, 11, [](double d) {
+    return (1 - 2 * d) * ((4 - 2 * d) * (4 - 2 * d) - (4 + 8 * d + std::numbers::pi * d * d));
+  });
 }
 
 TEST(Offset, MakesAShellOfAnOpenSurface) {

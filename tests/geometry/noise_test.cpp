@@ -12,7 +12,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/surface.h"
-#include "support.h"
+#include "support/shapes.h"
 
 namespace orchard {
 namespace {

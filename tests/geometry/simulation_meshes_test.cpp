@@ -91,7 +91,9 @@ TEST(SimulationMeshes, HaveTheirOuterSurfaceFacingOutward) {
     EXPECT_NEAR(check_mesh(reading.mesh).volume, known.volume, 1e-6);
     // Gmsh divides some edges of the two cubes.
     EXPECT_GE(reading.mesh.vertices.size(), known.vertices);
-    if (known.volume < 2) EXPECT_EQ(reading.mesh.vertices.size(), known.vertices);
+    if (known.volume < 2) {
+      EXPECT_EQ(reading.mesh.vertices.size(), known.vertices);
+    }
   }
 }
 

@@ -10,7 +10,7 @@
 namespace orchard {
 namespace {
 
-TriangleMesh box(double lower, double upper) { return test::box(Point::Constant(lower), Point::Constant(upper)); }
+TriangleMesh cube(double lower, double upper) { return test::box(Point::Constant(lower), Point::Constant(upper)); }
 
 TriangleMesh random_triangles(std::uint64_t seed, int count) {
   Random random(seed, 7);
@@ -29,18 +29,18 @@ TEST(SurfaceDistance, IsRightWhereTheAnswerIsKnown) {
     double distance;
   } cases[] = {
       {"itself", test::l_shape(), test::l_shape(), 0},
-      {"box in a larger one", box(0, 1), box(-d, 1 + d), d},
-      {"box around a smaller one", box(-d, 1 + d), box(0, 1), d * std::sqrt(3.0)},
-      {"moved box", box(0, 1), test::transformed(box(0, 1), 1, Vector(d, 0, 0)), d},
+      {"box in a larger one", cube(0, 1), cube(-d, 1 + d), d},
+      {"box around a smaller one", cube(-d, 1 + d), cube(0, 1), d * std::sqrt(3.0)},
+      {"moved box", cube(0, 1), test::transformed(cube(0, 1), 1, Vector(d, 0, 0)), d},
       {"without a lid", test::box(Point(0, 0, 0), Point(1, 1, 1)), test::open_box(), 0.5},
       {"only a lid more", test::open_box(), test::box(Point(0, 0, 0), Point(1, 1, 1)), 0},
-      {"part far away", test::two_boxes(5), box(0, 1), 6},
+      {"part far away", test::two_boxes(5), cube(0, 1), 6},
       {"plane over a point-like triangle",
        {{{-1, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}}},
        {{{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}}, {{0, 1, 2}}},
        std::sqrt(2.0)},
-      {"far from the origin", test::transformed(box(-d, 1 + d), 1, Vector(1e6, -1e6, 1e6)),
-       test::transformed(box(0, 1), 1, Vector(1e6, -1e6, 1e6)), d * std::sqrt(3.0)},
+      {"far from the origin", test::transformed(cube(-d, 1 + d), 1, Vector(1e6, -1e6, 1e6)),
+       test::transformed(cube(0, 1), 1, Vector(1e6, -1e6, 1e6)), d * std::sqrt(3.0)},
   };
   for (const auto& [name, from, to, distance] : cases) {
     const SurfaceDistanceOptions options{.tolerance = 1e-5};
@@ -99,7 +99,7 @@ TEST(SurfaceDistance, ScalesExactlyByPowersOfTwo) {
 }
 
 TEST(SurfaceDistance, StopsWhenAskedTo) {
-  const Surface box_surface(box(0, 1));
+  const Surface box_surface(cube(0, 1));
   EXPECT_THROW(surface_distance(box_surface, box_surface, {}, [](std::string_view, double) { return false; }),
                Cancelled);
 }
