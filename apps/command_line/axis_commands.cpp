@@ -268,10 +268,11 @@ CLI::Validator noise_validator() {
 void add_noise(CLI::App& command, MeshOptions& reading) {
   CLI::Option* noise = command.add_option(
       "--noise", reading.noise,
-      fmt::format("Smooth away the noise of a scan, a standard deviation in percent of the diagonal, or auto to "
-                  "estimate it. Borders and features may then lose as much, unless --border-loss and --feature-loss "
-                  "say else (0.0001 to {:g})",
-                  100 * kMaxNoise));
+      fmt::format(
+          "Smooth away the noise of a scan before anything else. The value is its standard deviation in percent "
+          "of the diagonal (0.0001 to {:g}), or auto to estimate it. Unless they are given, --border-loss and "
+          "--feature-loss grow with it",
+          100 * kMaxNoise));
   noise->check(noise_validator());
   for (const char* other : {"--strict", "--wrap", "--features", "--points", "--diagram", "--axis"})
     noise->excludes(command.get_option(other));

@@ -17,7 +17,7 @@ namespace orchard::apps {
 // What the command asks for: all counts go with --quality-samples.
 QualityOptions quality_options(const MedialCommand& command);
 
-// How the axis of the solid is tuned. Where noise was smoothed away, borders and features may lose as much, unless the
+// How the axis of the solid is tuned. Where noise was smoothed away, borders and features may lose more, unless the
 // command says how much.
 MedialTuning tuning_for(const MedialCommand& command, const SolidMesh& solid);
 
