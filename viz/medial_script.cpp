@@ -93,7 +93,7 @@ def show_importance(view, options):
 
 
 def show_lines(view, options):
-    lines = simple.XMLPolyDataReader(registrationName="borders and seams", FileName=file("-skeleton.vtp"))
+    lines = simple.XMLPolyDataReader(registrationName="borders and seams", FileName=file("-structure.vtp"))
     shown = simple.Show(lines, view)
     shown.LineWidth = 3
     color_by_number(shown, "kind", KINDS, 3)

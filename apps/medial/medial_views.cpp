@@ -196,11 +196,12 @@ Index write_light_balls(const MedialCommand& command, const MedialAxis& axis, Ou
 void write_collections(const MedialCommand& command, const std::vector<NamedFile>& parts, Outputs& outputs) {
   std::vector<NamedFile> seen{{"outline of the solid", named(command.mesh, "-medial-outline.vtp")}};
   for (const NamedFile& part : parts)
-    if (part.name == "medial faces" || part.name == "skeleton" || part.name == "worst places") seen.push_back(part);
+    if (part.name == "medial faces" || part.name == "structure graph" || part.name == "worst places")
+      seen.push_back(part);
   write_multiblock(outputs.add(named(command.mesh, "-medial.vtm"), "the axis between the lines of its solid"), seen);
-  write_multiblock(
-      outputs.add(named(command.mesh, "-medial-parts.vtm"), "mesh, points, parts of the axis and skeleton at once"),
-      parts);
+  write_multiblock(outputs.add(named(command.mesh, "-medial-parts.vtm"),
+                               "mesh, points, parts of the axis and structure graph at once"),
+                   parts);
 }
 
 // The ball of each surface point, where the points are those of the axis.

@@ -64,7 +64,7 @@ def check_vtm(folder):
     whole.UpdatePipeline()
     data = simple.servermanager.Fetch(whole)
     names = [data.GetMetaData(i).Get(data.NAME()) for i in range(data.GetNumberOfBlocks())]
-    assert names == ["outline of the solid", "medial faces", "skeleton"], names
+    assert names == ["outline of the solid", "medial faces", "structure graph"], names
     axis = simple.XMLPolyDataReader(FileName=[os.path.join(folder, "lamp-medial-faces.vtp")])
     lines = simple.XMLPolyDataReader(FileName=[os.path.join(folder, "lamp-medial-outline.vtp")])
     both, camera = picture_of(os.path.join(folder, "vtm.png"), [(whole, [0, 0, 0])], None)

@@ -31,7 +31,7 @@ using test::TestFolder;
 constexpr double kScale = 4;  // of the second model: a power of two scales lengths exactly, and nothing else
 
 // What an array holds. Lengths are in mesh units; percent are of the diagonal.
-enum class Unit { length, angle, percent, ratio, count, direction };
+enum class Unit { length, place, angle, percent, ratio, count, direction };
 struct Rule {
   Unit unit = Unit::count;
   bool none = false;                // NaN among numbers, -1 among counts
@@ -62,6 +62,7 @@ const std::map<std::string, Rule>& rules() {
       {"value", {Unit::percent}},
       {"centredness", {.unit = Unit::ratio, .none = true}},
       {"repair_pass", {.unit = Unit::ratio, .none = true}},
+      {"samples", {Unit::place}},
       {"outward", {Unit::direction}},
       {"origin", {.max = 2}},
       {"measure", {.max = 2}},
@@ -77,6 +78,9 @@ const std::map<std::string, Rule>& rules() {
       {"point_a", {.none = true, .counts_in = "-medial-contacts.vtp"}},
       {"point_b", {.none = true, .counts_in = "-medial-contacts.vtp"}},
       {"vertex", {.counts_in = "-medial-vertices.vtp"}},
+      {"contact_ball", {.counts_in = "-medial-vertices.vtp"}},
+      {"contact_sample", {}},
+      {"sample_ball", {.none = true, .counts_in = "-medial-vertices.vtp"}},
       {"segment", {.none = true}},
       {"thin_region", {.none = true}},
       {"structure", {}},
@@ -155,6 +159,7 @@ Rule rule_of(const std::string& name) {
 double max_of(const Rule& rule, double diagonal, const Views& views) {
   switch (rule.unit) {
     case Unit::length:
+    case Unit::place:
       return 100 * diagonal;  // the lines of a structure graph wind
     case Unit::angle:
       return 180 + 1e-9;
@@ -177,7 +182,8 @@ void expect_by_rule(vtkDataArray* array, const Rule& rule, double diagonal, cons
   const bool counts = rule.unit == Unit::count;
   EXPECT_EQ(array->GetDataTypeAsString() == std::string("double"), !counts);
   const double max = max_of(rule, diagonal, views);
-  const double min = rule.unit == Unit::direction ? -max : counts && rule.none ? -1 : 0;
+  const bool either_sign = rule.unit == Unit::direction || rule.unit == Unit::place;
+  const double min = either_sign ? -max : counts && rule.none ? -1 : 0;
   for (const double number : numbers(array)) {
     if (std::isnan(number)) {
       ASSERT_TRUE(rule.none && !counts) << "no value, where there must be one";
@@ -226,6 +232,7 @@ std::map<std::string, std::string> descriptions_of(vtkDataSet* view) {
 std::string named_unit(Unit unit) {
   switch (unit) {
     case Unit::length:
+    case Unit::place:
       return " [mesh units]: ";
     case Unit::angle:
       return " [degrees]: ";
@@ -287,7 +294,8 @@ TEST(ViewArrays, ScaleWithTheModelIfTheyAreLengthsAndNotOtherwise) {
       if (data->GetArray(i) == nullptr) continue;
       const std::string name = data->GetArray(i)->GetName();
       SCOPED_TRACE(file + ", " + kind + ", " + name);
-      const double factor = rule_of(name).unit == Unit::length ? kScale : 1;
+      const Unit unit = rule_of(name).unit;
+      const double factor = unit == Unit::length || unit == Unit::place ? kScale : 1;
       const std::vector<double> values = numbers(data->GetArray(i)), before = numbers(others->GetArray(name.c_str()));
       ASSERT_EQ(values.size(), before.size());
       for (std::size_t k = 0; k < values.size(); ++k) {

@@ -48,7 +48,7 @@ TEST(NoiseOption, GivesTheAxisOfTheSurfaceBelowTheNoise) {
   EXPECT_NEAR(noise["level_over_diagonal"].get<double>(), 0.003 / std::sqrt(3), 0.0006);
   EXPECT_GT(noise["rounds"].get<int>(), 0);
   EXPECT_EQ(report["topology"], report["topology_of_solid"]);
-  const auto balls = [](const json& of) { return of["build"]["medial_axis"]["vertices"].get<int>(); };
+  const auto balls = [](const json& of) { return of["build"]["vertices"].get<int>(); };
   EXPECT_LT(2 * balls(report), balls(medial_report(here, mesh, {})));
   EXPECT_EQ(here.files("out").count("torus-smoothed.obj"), 1u);
 }

@@ -33,7 +33,8 @@ TEST(SkeletonCommand, WritesTheSameCurvesInEveryFormatOnAnyNumberOfThreads) {
   };
   const auto one = skeleton("1"), two = skeleton("2");
   EXPECT_EQ(one.at("torus-skeleton.swc"), two.at("torus-skeleton.swc"));
-  for (const char* ending : {".graphml", ".obj", ".csv"}) {
+  EXPECT_EQ(one.at("torus-skeleton.graphml"), two.at("torus-skeleton.graphml"));
+  for (const char* ending : {".obj", ".csv"}) {
     const std::string name = std::string("torus-skeleton") + ending;
     EXPECT_EQ(test::without_provenance(one.at(name)), test::without_provenance(two.at(name))) << name;
   }
