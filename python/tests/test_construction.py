@@ -33,8 +33,8 @@ def test_every_tuning_option_of_the_command_is_a_keyword(box):
 
     known = set(og.tuning_options())
     assert known <= set(inspect.signature(og.medial_axis).parameters)
-    assert {row["name"] for row in _construction.tuning_table()} - {"segment-angle"} == {
-        name.replace("_", "-") for name in known}
+    names = {row["name"].replace(" ", "-") for row in _construction.tuning_table()}  # "prune angle" is prune_angle
+    assert names - {"segment-angle"} == {name.replace("_", "-") for name in known}
     raw = og.medial_axis(box, samples=200, refine=False, gaps="strict", seed=3, iterations=10, thin=False)
     assert len(raw) > 0 and raw.report["points"] <= 200
     assert len(raw.prune(angle=60)) < len(raw)
