@@ -311,6 +311,7 @@ struct OffsetCommand {
   std::optional<double> hollow;                        // thickness of the wall, in place of the distance
   double tolerance = 100 * OffsetOptions{}.tolerance;  // percent of the diagonal
   bool views = true;                                   // ParaView files, where the program was built with them
+  bool report = false;                                 // an .html page
   bool accept = false;                                 // as of BuildCommand
   Output output;
 };

@@ -58,6 +58,7 @@ void add_offset(CLI::App& app, Request& request) {
   add_mesh_options(command, offset.reading);
   add_threads(command, request);
   command.add_flag("!--no-views", offset.views, "Do not write files for ParaView");
+  add_report(command, offset.report);
   add_accept(command, offset.accept);
   add_force(command, offset.output);
   add_output_flags(command, offset.output);

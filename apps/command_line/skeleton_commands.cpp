@@ -45,6 +45,7 @@ void add_axis_options(CLI::App& command, MedialCommand& axis, Request& request, 
   add_tuning(command, axis.tuning, false, std::move(measures));
   // These are named like those of the axis' own report, of which nothing is written here.
   command.remove_option(command.get_option("--segment-angle"));
+  add_report(command, axis.report);
   add_threads(command, request);
   command.add_flag("!--no-views", axis.views, "Do not write files for ParaView");
   add_force(command, axis.output);

@@ -11,6 +11,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_arrays.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/arrays_writer.h"
@@ -39,7 +40,8 @@ Destination check(const OffsetCommand& command) {
                           .provenance = provenance_of(command.output.run, std::array{command.mesh}),
                           .force = command.output.force};
   keep_single_file(destination, std::array{names.obj, names.ply, names.vtp});
-  check_outputs(destination, std::array{names.obj, names.ply, names.vtp}, std::array{command.mesh});
+  check_outputs(destination, std::array{names.obj, names.ply, names.vtp, page_name(command.mesh, "offset")},
+                std::array{command.mesh});
   return destination;
 }
 
@@ -107,6 +109,7 @@ ExitCode offset(const OffsetCommand& command) {
   document["seconds"] = seconds;
   add_solid_json(solid, document);
   outputs.add_report(document, "this report as JSON");
+  if (command.report) write_report_page(page_name(command.mesh, "offset"), {.report = document}, outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", document.dump(2));
   if (talk) {

@@ -10,6 +10,7 @@
 #include "orchard/geometry/mesh_arrays.h"
 #include "output/json_values.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 #include "skeleton/segment_report.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -72,6 +73,7 @@ ExitCode segment(const SegmentCommand& command) {
                                 .force = axis_command.output.force};
   std::vector<std::string> names;
   for (const char* ending : kSegmentEndings) names.push_back(named(axis_command.mesh, ending));
+  names.push_back(page_name(axis_command.mesh, "segment"));
   check_outputs(destination, names, std::array{axis_command.mesh});
   const bool talk = !axis_command.output.quiet && !axis_command.output.json;
   ProgressBar bar(talk);
@@ -88,6 +90,7 @@ ExitCode segment(const SegmentCommand& command) {
   document["seconds"] = seconds_json(seconds);
   add_solid_json(axis.solid, document);
   outputs.add_report(document, "this report as JSON");
+  if (axis_command.report) write_report_page(page_name(axis_command.mesh, "segment"), {.report = document}, outputs);
   outputs.commit();
   if (axis_command.output.json) fmt::print("{}\n", document.dump(2));
   if (talk) {

@@ -55,7 +55,14 @@ TEST(ReportPage, IsWrittenByEveryCommandThatMeasures) {
          "box-spheres-report.html",
          "Largest protrusion"},
         {{"audit", set, model.mesh}, "box-audit-report.html", "cuRobo defines it"},
-        {{"thickness", model.mesh, "--samples", "100", "--no-views"}, "box-thickness-report.html", "Median by area"}}) {
+        {{"thickness", model.mesh, "--samples", "100", "--no-views"}, "box-thickness-report.html", "Median by area"},
+        {{"skeleton", model.mesh, "--samples", "200", "--no-views"}, "box-skeleton-report.html", "Ends of curves"},
+        {{"segment", model.mesh, "--samples", "200", "--no-views"},
+         "box-segment-report.html",
+         "What divides the surface"},
+        {{"offset", model.mesh, "--distance", "0.1", "--tolerance", "3", "--no-views"},
+         "box-offset-report.html",
+         "Edge length of the cells"}}) {
     std::vector<std::string> words = one.words;
     words.insert(words.end(), {"-o", model.out, "--report", "--quiet"});
     const Finished run = model.here.run(words);
