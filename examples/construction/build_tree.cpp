@@ -9,7 +9,8 @@
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fputs("usage: build_tree model.obj\n", stderr), 2;
   const orchard::Surface surface(orchard::read_mesh(argv[1]));
-  const orchard::SphereTreeBuild build = orchard::build_sphere_tree(surface, {.depth = 2});
+  const orchard::SphereTreeBuild build =
+      orchard::build_sphere_tree(surface, {.tree = orchard::TightenOptions{.depth = 2}});
   std::printf("%u medial vertices, %u spheres, certified: %s\n", build.medial->axis.size(), build.packed.node_count,
               build.certificate.ok() ? "yes" : "no");
 
