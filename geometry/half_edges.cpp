@@ -45,4 +45,23 @@ std::vector<std::array<Index, 3>> triangle_neighbors(const TriangleMesh& mesh) {
   return neighbors;
 }
 
+Rows triangles_around_vertices(const TriangleMesh& mesh) {
+  Rows rows;
+  rows.offsets.assign(mesh.vertices.size() + 1, 0);
+  const auto for_each_corner = [&](const auto& visit) {
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      visit(a, t);
+      if (b != a) visit(b, t);
+      if (c != a && c != b) visit(c, t);
+    }
+  };
+  for_each_corner([&](Index vertex, Index) { ++rows.offsets[vertex + 1]; });
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) rows.offsets[v + 1] += rows.offsets[v];
+  rows.items.resize(rows.offsets.back());
+  std::vector<Index> next(rows.offsets.begin(), rows.offsets.end() - 1);
+  for_each_corner([&](Index vertex, Index t) { rows.items[next[vertex]++] = t; });
+  return rows;
+}
+
 }  // namespace orchard

@@ -29,4 +29,7 @@ void for_each_edge(std::span<const EdgeUse> uses, const Visit& visit) {
 // Across edge i of each triangle: the other triangle, or kNone at a boundary and where more than two triangles meet.
 std::vector<std::array<Index, 3>> triangle_neighbors(const TriangleMesh& mesh);
 
+// The triangles at each vertex, ascending; one with a repeated corner once.
+Rows triangles_around_vertices(const TriangleMesh& mesh);
+
 }  // namespace orchard

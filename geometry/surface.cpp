@@ -32,25 +32,6 @@ Vector area_vector(const std::array<Point, 3>& p) {
   return cross.norm() <= tolerance::kNoArea * lengths[b] * lengths[c] ? Vector::Zero() : cross;
 }
 
-Rows find_triangles_around(const TriangleMesh& mesh) {
-  Rows rows;
-  rows.offsets.assign(mesh.vertices.size() + 1, 0);
-  const auto for_each_corner = [&](const auto& visit) {
-    for (Index t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      visit(a, t);
-      if (b != a) visit(b, t);
-      if (c != a && c != b) visit(c, t);
-    }
-  };
-  for_each_corner([&](Index vertex, Index) { ++rows.offsets[vertex + 1]; });
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) rows.offsets[v + 1] += rows.offsets[v];
-  rows.items.resize(rows.offsets.back());
-  std::vector<Index> next(rows.offsets.begin(), rows.offsets.end() - 1);
-  for_each_corner([&](Index vertex, Index t) { rows.items[next[vertex]++] = t; });
-  return rows;
-}
-
 TriangleMesh validated(TriangleMesh mesh) {
   validate(mesh);
   return mesh;
@@ -86,7 +67,7 @@ struct Surface::Data {
         ball_kind(kind),
         ball(kind == BoundingBall::minimal ? minimal_ball(mesh.vertices) : ritter_ball(mesh.vertices)),
         neighbors(triangle_neighbors(mesh)),
-        triangles_around(find_triangles_around(mesh)),
+        triangles_around(triangles_around_vertices(mesh)),
         tree(mesh) {
     for (const Point& p : mesh.vertices) box.extend(p);
     find_normals();

@@ -7,7 +7,6 @@
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty.h>
-#include <vtkProperty2D.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
@@ -18,13 +17,16 @@
 #include <set>
 #include <stdexcept>
 
+#include "screen_shapes.h"
+
 namespace orchard::detail {
 namespace {
 
 constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
-const std::set<std::string> kCategories{"answer", "body",      "branch",         "carried", "cluster", "component",
-                                        "kind",   "measure",   "node",           "origin",  "parent",  "segment",
-                                        "sheet",  "structure", "structure_kind", "trunk",   "wall"};
+const std::set<std::string> kCategories{"answer",         "body",    "branch", "carried",     "cluster", "component",
+                                        "kind",           "measure", "node",   "origin",      "parent",  "segment",
+                                        "part",           "region",  "curve",  "thin_region", "sheet",   "structure",
+                                        "structure_kind", "trunk",   "wall"};
 
 std::vector<vtkPolyData*> all_of(const ViewParts& parts) {
   std::vector<vtkPolyData*> all;
@@ -89,22 +91,7 @@ void add_print(vtkRenderer* renderer, const std::string& text, double x, double 
 
 // A short line on the right of the bar.
 void add_mark(vtkRenderer* renderer, double left, double right, double y, double width) {
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(left, y, 0);
-  points->InsertNextPoint(right, y, 0);
-  vtkNew<vtkCellArray> line;
-  const std::array<vtkIdType, 2> ends{0, 1};
-  line->InsertNextCell(2, ends.data());
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetLines(line);
-  vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(data);
-  vtkNew<vtkActor2D> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(kInk[0], kInk[1], kInk[2]);
-  actor->GetProperty()->SetLineWidth(static_cast<float>(width));
-  renderer->AddViewProp(actor);
+  add_screen_line(renderer, {left, y}, {right, y}, kInk, width);
 }
 
 // Rectangles one above the other.

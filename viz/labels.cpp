@@ -1,12 +1,9 @@
 #include "labels.h"
 
-#include <vtkActor2D.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkPolyDataMapper2D.h>
-#include <vtkProperty2D.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
@@ -17,35 +14,13 @@
 
 #include "actors.h"
 #include "label_layout.h"
+#include "screen_shapes.h"
 
 namespace orchard::detail {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-void add_shape(vtkRenderer* renderer, vtkPolyData* shape, const Color& color, double width) {
-  vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(shape);
-  vtkNew<vtkActor2D> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(color[0], color[1], color[2]);
-  actor->GetProperty()->SetLineWidth(static_cast<float>(width));
-  renderer->AddViewProp(actor);
-}
-
-void add_line(vtkRenderer* renderer, const Vector2d& from, const Vector2d& to, const Color& color, double width) {
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(from.x(), from.y(), 0);
-  points->InsertNextPoint(to.x(), to.y(), 0);
-  vtkNew<vtkCellArray> line;
-  const std::array<vtkIdType, 2> ends{0, 1};
-  line->InsertNextCell(2, ends.data());
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetLines(line);
-  add_shape(renderer, data, color, width);
-}
 
 void add_dot(vtkRenderer* renderer, const Vector2d& middle, double radius, const Color& color) {
   constexpr int kCorners = 16;
@@ -60,7 +35,7 @@ void add_dot(vtkRenderer* renderer, const Vector2d& middle, double radius, const
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetPolys(polygon);
-  add_shape(renderer, data, color, 1);
+  add_screen_shape(renderer, data, color, 1);
 }
 
 void add_word(vtkRenderer* renderer, const std::string& text, const Vector2d& middle, double print) {
@@ -97,8 +72,8 @@ void add_labels(vtkRenderer* renderer, const std::vector<Label>& labels, const V
   place_words(words, {0, room.below}, {room.width, room.height}, projection(view.center).head<2>());
   const double width = std::max(1.0, room.print / 12);
   for (const PlacedWord& word : words) {
-    add_line(renderer, word.anchor, word.middle, {1, 1, 1}, 2.5 * width);
-    add_line(renderer, word.anchor, word.middle, kInk, width);
+    add_screen_line(renderer, word.anchor, word.middle, {1, 1, 1}, 2.5 * width);
+    add_screen_line(renderer, word.anchor, word.middle, kInk, width);
     add_dot(renderer, word.anchor, 0.24 * room.print, {1, 1, 1});
     add_dot(renderer, word.anchor, 0.16 * room.print, kInk);
   }

@@ -121,13 +121,7 @@ def balls_to_draw(most):
 
 def show_balls(view, options):
     shown = simple.Show(balls_to_draw(options.balls), view)
-    shown.SetRepresentationType("3D Glyphs")
-    shown.GlyphType = "Sphere"
-    shown.GlyphType.ThetaResolution = shown.GlyphType.PhiResolution = 16
-    shown.Scaling = 1
-    shown.ScaleMode = "Magnitude"
-    shown.SelectScaleArray = "radius"
-    shown.ScaleFactor = 2  # ParaView's sphere has radius 1/2
+    as_spheres(shown, 16)
     color_by_value(shown, view, "POINTS", "radius", "radius (mesh units)")
 
 
@@ -137,25 +131,12 @@ SHOW = {"radius": show_radius, "sheets": show_sheets, "importance": show_importa
 
 def main():
     options = arguments()
-    simple._DisableFirstRenderCameraReset()  # which would step back further than the model needs
-    view = simple.GetActiveViewOrCreate("RenderView")
+    view = white_view()
     if options.output:
         view.ViewSize = options.size
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1, 1, 1]
-    view.OrientationAxesLabelColor = [0.1] * 3
     show_mesh(view, options.opacity)
     SHOW[options.preset](view, options)
-    view.CameraParallelProjection = 1
-    view.CameraFocalPoint = CENTER
-    view.CameraPosition = [c + 4 * RADIUS * d for c, d in zip(CENTER, TO_EYE)]
-    view.CameraViewUp = UP
-    view.CameraParallelScale = HALF_HEIGHT
-    simple.Render(view)
-    if options.output:
-        simple.SaveScreenshot(options.output, view, ImageResolution=options.size)
-    elif os.path.basename(sys.executable or sys.argv[0]).startswith("pvbatch"):
-        print("name a picture: pvbatch", os.path.basename(own_path()), "--preset", options.preset, "-o picture.png")
+    look(view, options, "--preset", options.preset)
 
 
 main()

@@ -34,13 +34,7 @@ def show_mesh(view):
 def show_spheres(view):
     levels = simple.PVDReader(registrationName="levels", FileName=os.path.join(FOLDER, PREFIX + ".pvd"))
     shown = simple.Show(levels, view)
-    shown.SetRepresentationType("3D Glyphs")
-    shown.GlyphType = "Sphere"
-    shown.GlyphType.ThetaResolution = shown.GlyphType.PhiResolution = 32
-    shown.Scaling = 1
-    shown.ScaleMode = "Magnitude"
-    shown.SelectScaleArray = "radius"
-    shown.ScaleFactor = 2  # ParaView's sphere has radius 1/2
+    as_spheres(shown, 32)
     simple.ColorBy(shown, ("POINTS", COLOR))
     colors = simple.GetColorTransferFunction(COLOR)
     colors.ApplyPreset("Viridis (matplotlib)", True)
@@ -55,11 +49,7 @@ def show_spheres(view):
 
 def main():
     options = arguments()
-    simple._DisableFirstRenderCameraReset()  # which would step back further than the model needs
-    view = simple.GetActiveViewOrCreate("RenderView")
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1, 1, 1]
-    view.OrientationAxesLabelColor = [0.1] * 3
+    view = white_view()
     show_mesh(view)
     if LAST_LEVEL >= 0:
         levels, shown = show_spheres(view)
@@ -70,16 +60,7 @@ def main():
         view.ViewTime = scene.AnimationTime
         levels.UpdatePipeline(scene.AnimationTime)
         shown.RescaleTransferFunctionToDataRange(False, True)
-    view.CameraParallelProjection = 1
-    view.CameraFocalPoint = CENTER
-    view.CameraPosition = [c + 4 * RADIUS * d for c, d in zip(CENTER, TO_EYE)]
-    view.CameraViewUp = UP
-    view.CameraParallelScale = HALF_HEIGHT
-    simple.Render(view)
-    if options.output:
-        simple.SaveScreenshot(options.output, view, ImageResolution=options.size)
-    elif os.path.basename(sys.executable or sys.argv[0]).startswith("pvbatch"):
-        print("name a picture: pvbatch", os.path.basename(own_path()), "-o picture.png")
+    look(view, options)
 
 
 main()
@@ -109,6 +90,40 @@ def own_path():
 
 
 FOLDER = os.path.dirname(own_path())
+
+
+def white_view():
+    simple._DisableFirstRenderCameraReset()  # which would step back further than the model needs
+    view = simple.GetActiveViewOrCreate("RenderView")
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.OrientationAxesLabelColor = [0.1] * 3
+    return view
+
+
+def as_spheres(shown, corners):
+    """Draws points as spheres of their radius, each of so many corners around."""
+    shown.SetRepresentationType("3D Glyphs")
+    shown.GlyphType = "Sphere"
+    shown.GlyphType.ThetaResolution = shown.GlyphType.PhiResolution = corners
+    shown.Scaling = 1
+    shown.ScaleMode = "Magnitude"
+    shown.SelectScaleArray = "radius"
+    shown.ScaleFactor = 2  # ParaView's sphere has radius 1/2
+
+
+def look(view, options, *example):
+    """Turns the camera to the model, and saves the picture if one is named."""
+    view.CameraParallelProjection = 1
+    view.CameraFocalPoint = CENTER
+    view.CameraPosition = [c + 4 * RADIUS * d for c, d in zip(CENTER, TO_EYE)]
+    view.CameraViewUp = UP
+    view.CameraParallelScale = HALF_HEIGHT
+    simple.Render(view)
+    if options.output:
+        simple.SaveScreenshot(options.output, view, ImageResolution=options.size)
+    elif os.path.basename(sys.executable or sys.argv[0]).startswith("pvbatch"):
+        print("name a picture: pvbatch", os.path.basename(own_path()), *example, "-o picture.png")
 
 )PY";
 

@@ -11,7 +11,8 @@ constexpr double kParaViewRoom = 1.15;  // the spheres of the first levels reach
 // From the right and above, as in the picture.
 Vector towards_eye(UpAxis up);
 
-// The beginning of every script: what it imports, own_path() and FOLDER, which is where it lies.
+// The beginning of every script: what it imports, own_path() and FOLDER, which is where it lies, white_view(),
+// as_spheres() and look(), for which the script sets CENTER, RADIUS, HALF_HEIGHT, TO_EYE and UP.
 extern const char* const kScriptBegin;
 
 // Values as Python has them.

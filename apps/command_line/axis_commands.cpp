@@ -201,6 +201,7 @@ void add_sample(CLI::App& app, Request& request) {
   add_sampling_options(command, sample);
   add_threads(command, request);
   command.add_flag("!--no-views", sample.views, "Do not write files for ParaView");
+  add_report(command, sample.report);
   add_force(command, sample.output);
   add_output_flags(command, sample.output);
   command.footer(
@@ -247,6 +248,7 @@ void add_voronoi(CLI::App& app, Request& request) {
   const auto all = std::as_const(command).get_options();
   const std::vector<const CLI::Option*> sampling(all.begin() + others, all.end());
   add_threads(command, request);
+  add_report(command, voronoi.report)->needs(folder);
   add_force(command, voronoi.output)->needs(folder);
   add_output_flags(command, voronoi.output);
   command.footer(

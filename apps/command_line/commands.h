@@ -148,7 +148,8 @@ struct SampleCommand {
   Relaxation relaxation = Relaxation::automatic;
   std::optional<double> cluster_degrees;
   std::optional<double> crease_degrees;
-  bool views = true;  // ParaView files, where the program was built with them
+  bool views = true;    // ParaView files, where the program was built with them
+  bool report = false;  // an .html page
   Output output;
 };
 void sample(const SampleCommand& command);
@@ -165,6 +166,7 @@ struct VoronoiCommand {
   std::vector<Index> cells;                 // to write; empty: all
   std::vector<double> box;                  // that cells are clipped to: x y z of two corners; empty: around the points
   std::vector<std::string> sampling_given;  // the options of `sampling` on the command line, as of BuildCommand
+  bool report = false;                      // an .html page
   Output output;
 };
 void voronoi(const VoronoiCommand& command);

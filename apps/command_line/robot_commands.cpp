@@ -76,10 +76,11 @@ void add_file_options(CLI::App& command, RobotCommand& robot) {
       ->allow_extra_args(false);
   command
       .add_option("--acceleration", robot.acceleration,
-                  "Limit of the acceleration of all joints, for XRDF and cuRobo, because a URDF has none. Without it, "
-                  "the files have a marked placeholder")
+                  "Limit of the acceleration of all joints, for XRDF and cuRobo, because a URDF has none (default: 15, "
+                  "cuRobo's own, with a comment that says so)")
       ->check(NumberValidator(CLI::Range(1e-6, 1e9)));
-  command.add_option("--jerk", robot.jerk, "Limit of the jerk of all joints, for the same files")
+  command
+      .add_option("--jerk", robot.jerk, "Limit of the jerk of all joints, for the same files (default: 500, likewise)")
       ->check(NumberValidator(CLI::Range(1e-6, 1e9)));
   command
       .add_option("--buffer", robot.buffer,

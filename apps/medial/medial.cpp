@@ -418,6 +418,8 @@ void check_options(const MedialCommand& command) {
 
 ExitCode medial(const MedialCommand& given_command) {
   MedialCommand command = given_command;
+  for (MedialCommand& run : command.runs)
+    run.mesh = command.mesh;  // where standard input is kept, if it came from there
   const Destination destination = check(command);
   std::vector<ForeignAxis> foreign = read_axes(command.beside);
   if (!command.axis.empty()) foreign.push_back(read_axis(command.axis));

@@ -14,6 +14,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/sampling.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/vtk_writer.h"
@@ -70,7 +71,7 @@ SamplingOptions sampling_options(const SampleCommand& command, const Surface& su
 
 void sample(const SampleCommand& command) {
   const std::string xyz = named(command.mesh, ".xyz"), points = named(command.mesh, "-sample-points.vtp"),
-                    mesh = named(command.mesh, "-sample-mesh.vtp");
+                    mesh = named(command.mesh, "-sample-mesh.vtp"), page = page_name(command.mesh, "sample");
   check_input(command.mesh);
   check_sampling(command);
   Destination destination{.folder = command.folder,
@@ -78,7 +79,7 @@ void sample(const SampleCommand& command) {
                           .provenance = provenance_of(command.output.run, std::array{command.mesh}),
                           .force = command.output.force};
   keep_single_file(destination, std::array{xyz, points});
-  check_outputs(destination, std::array{xyz, points, mesh}, std::array{command.mesh});
+  check_outputs(destination, std::array{xyz, points, mesh, page}, std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
   RepairedMesh read = read_repaired(command.mesh, command.input, command.join);
   const Surface surface(std::move(read.mesh));
@@ -119,6 +120,7 @@ void sample(const SampleCommand& command) {
               {"repair", to_json(read.repair, read.distance, surface.bounding_radius())},
               {"seconds", seconds}};
   outputs.add_report(report, "this report as JSON");
+  if (command.report) write_report_page(page, {.report = report}, outputs);
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;

@@ -16,6 +16,7 @@
 #include "orchard/voronoi/diagram_io.h"
 #include "orchard/voronoi/quality.h"
 #include "output/outputs.h"
+#include "report/report_page.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/voronoi_writer.h"
@@ -225,7 +226,7 @@ Destination check(const VoronoiCommand& command) {
                           .provenance = provenance_of(command.output.run, std::array{command.input}),
                           .force = command.output.force};
   if (command.folder.empty()) return destination;
-  std::vector<std::string> names{points_name(command)};
+  std::vector<std::string> names{points_name(command), page_name(command.input, "voronoi")};
   for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
     if (command.compare || algorithm == command.algorithm)
       for (const char* extension : {".vor", ".vtu"}) names.push_back(diagram_name(command, algorithm, extension));
@@ -262,6 +263,7 @@ void voronoi(const VoronoiCommand& command) {
     Outputs outputs(destination);
     write_diagrams(command, input, runs, outputs);
     outputs.add_report(report, "this report as JSON");
+    if (command.report) write_report_page(page_name(command.input, "voronoi"), {.report = report}, outputs);
     outputs.commit();
     if (talk) outputs.print();
   }

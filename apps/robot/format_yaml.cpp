@@ -8,8 +8,8 @@ namespace orchard::robot {
 namespace {
 
 constexpr double kUsualAcceleration = 15, kUsualJerk = 500;  // cuRobo's own defaults
-constexpr const char* kPlaceholder =
-    "PLACEHOLDER: URDF has no such limit; state the robot's own with --acceleration and --jerk";
+constexpr const char* kAssumedLimit =
+    "ASSUMED: a URDF has no such limit; give that of the robot by --acceleration and --jerk";
 
 // A document that is written from the top down. Numbers come as text, so that floats stay floats.
 class Yaml {
@@ -104,9 +104,9 @@ void write_cspace(const SphereModel& model, const FormatOptions& options, const 
   yaml.key("cspace").begin().key("joint_names").names(names).key(rest).numbers(positions);
   yaml.key("null_space_weight").numbers(ones).key("cspace_distance_weight").numbers(ones);
   yaml.key("max_acceleration").raw(float_text(options.max_acceleration.value_or(kUsualAcceleration)));
-  if (!options.max_acceleration) yaml.comment(kPlaceholder);
+  if (!options.max_acceleration) yaml.comment(kAssumedLimit);
   yaml.key("max_jerk").raw(float_text(options.max_jerk.value_or(kUsualJerk)));
-  if (!options.max_jerk) yaml.comment(kPlaceholder);
+  if (!options.max_jerk) yaml.comment(kAssumedLimit);
   yaml.end();
 }
 
@@ -157,9 +157,9 @@ Files write_xrdf(const SphereModel& model, const FormatOptions& options) {
   yaml.end().key("cspace").begin().key("joint_names").names(names);
   yaml.key("acceleration_limits");
   yaml.numbers(std::vector<double>(joints.size(), options.max_acceleration.value_or(kUsualAcceleration)));
-  if (!options.max_acceleration) yaml.comment(kPlaceholder);
+  if (!options.max_acceleration) yaml.comment(kAssumedLimit);
   yaml.key("jerk_limits").numbers(std::vector<double>(joints.size(), options.max_jerk.value_or(kUsualJerk)));
-  if (!options.max_jerk) yaml.comment(kPlaceholder);
+  if (!options.max_jerk) yaml.comment(kAssumedLimit);
   yaml.end().key("tool_frames").names(tool_frames(model, options));
   yaml.key("collision").begin().key("geometry").name(geometry).key("buffer_distance").begin();
   for (const apps::SphereGroup& group : model.groups)

@@ -28,8 +28,8 @@ struct FormatOptions {
   std::string prefix;                         // of the files' names
   std::vector<std::string> tool_frames{};     // links; empty: the last link of the longest chain
   std::map<std::string, double> positions{};  // of joints, where they rest; others as joint_values() has them
-  std::optional<double> max_acceleration{};   // of XRDF and cuRobo, rad/s^2 or m/s^2; nothing: a marked placeholder
-  std::optional<double> max_jerk{};           // likewise, rad/s^3 or m/s^3
+  std::optional<double> max_acceleration{};   // of XRDF and cuRobo, rad/s^2 or m/s^2; nothing: 15, marked as assumed
+  std::optional<double> max_jerk{};           // likewise, rad/s^3 or m/s^3; nothing: 500
   Index resolution = 32;                      // of VAMP's motion checks
 };
 

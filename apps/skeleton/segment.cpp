@@ -5,12 +5,9 @@
 
 #include "command_line/commands.h"
 #include "command_line/console.h"
-#include "input/input_file.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/mesh_arrays.h"
-#include "output/json_values.h"
 #include "output/outputs.h"
-#include "report/report_page.h"
 #include "skeleton/segment_report.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -19,8 +16,6 @@
 
 namespace orchard::apps {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::array kSegmentEndings{"-segments.ply", "-segments.csv", "-segments.vtp"};
 
@@ -66,17 +61,9 @@ void check_options(const SegmentCommand& command) { check_options(command.axis);
 ExitCode segment(const SegmentCommand& command) {
   check_options(command);
   const MedialCommand& axis_command = command.axis;
-  check_input(axis_command.mesh);
-  const Destination destination{.folder = axis_command.folder,
-                                .report = named(axis_command.mesh, "-segments.json"),
-                                .provenance = provenance_of(axis_command.output.run, std::array{axis_command.mesh}),
-                                .force = axis_command.output.force};
-  std::vector<std::string> names;
-  for (const char* ending : kSegmentEndings) names.push_back(named(axis_command.mesh, ending));
-  names.push_back(page_name(axis_command.mesh, "segment"));
-  check_outputs(destination, names, std::array{axis_command.mesh});
-  const bool talk = !axis_command.output.quiet && !axis_command.output.json;
-  ProgressBar bar(talk);
+  const Destination destination =
+      destination_of(axis_command, named(axis_command.mesh, "-segments.json"), "segment", kSegmentEndings);
+  ProgressBar bar(!axis_command.output.quiet && !axis_command.output.json);
   const SolidAxis axis = solid_axis(axis_command, bar.callback(), bar);
   const Stopwatch watch;
   const SurfaceParts parts = surface_parts(axis.solid.surface, axis.mesh, command.options, bar.callback());
@@ -86,18 +73,7 @@ ExitCode segment(const SegmentCommand& command) {
   const SegmentReport report{.command = command, .axis = axis, .parts = parts};
   Outputs outputs(destination);
   write_segment_files(command, parts, outputs);
-  json document = to_json(report);
-  document["seconds"] = seconds_json(seconds);
-  add_solid_json(axis.solid, document);
-  outputs.add_report(document, "this report as JSON");
-  if (axis_command.report) write_report_page(page_name(axis_command.mesh, "segment"), {.report = document}, outputs);
-  outputs.commit();
-  if (axis_command.output.json) fmt::print("{}\n", document.dump(2));
-  if (talk) {
-    print(report);
-    for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
-    outputs.print();
-  }
+  finish(axis_command, "segment", axis, seconds, to_json(report), outputs, [&] { print(report); });
   if (const std::string warning = axis_warning(axis); !warning.empty())
     fmt::print(stderr, "orchard: warning: {}: {}\n", axis_command.mesh.string(), warning);
   return kSucceeded;

@@ -4,11 +4,8 @@
 
 #include "command_line/commands.h"
 #include "command_line/console.h"
-#include "input/input_file.h"
 #include "orchard/geometry/atomic_file.h"
-#include "output/json_values.h"
 #include "output/outputs.h"
-#include "report/report_page.h"
 #include "skeleton/skeleton_report.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -17,8 +14,6 @@
 
 namespace orchard::apps {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::array kSkeletonEndings{"-skeleton.swc", "-skeleton.graphml", "-skeleton.obj", "-skeleton.csv",
                                       "-skeleton.vtp"};
@@ -43,17 +38,9 @@ void check_options(const SkeletonCommand& command) { check_options(command.axis)
 ExitCode skeleton(const SkeletonCommand& command) {
   check_options(command);
   const MedialCommand& axis_command = command.axis;
-  check_input(axis_command.mesh);
-  const Destination destination{.folder = axis_command.folder,
-                                .report = named(axis_command.mesh, "-skeleton.json"),
-                                .provenance = provenance_of(axis_command.output.run, std::array{axis_command.mesh}),
-                                .force = axis_command.output.force};
-  std::vector<std::string> names;
-  for (const char* ending : kSkeletonEndings) names.push_back(named(axis_command.mesh, ending));
-  names.push_back(page_name(axis_command.mesh, "skeleton"));
-  check_outputs(destination, names, std::array{axis_command.mesh});
-  const bool talk = !axis_command.output.quiet && !axis_command.output.json;
-  ProgressBar bar(talk);
+  const Destination destination =
+      destination_of(axis_command, named(axis_command.mesh, "-skeleton.json"), "skeleton", kSkeletonEndings);
+  ProgressBar bar(!axis_command.output.quiet && !axis_command.output.json);
   const SolidAxis axis = solid_axis(axis_command, bar.callback(), bar);
   const Stopwatch watch;
   const CurveSkeleton found = curve_skeleton(axis.solid.surface, axis.mesh, command.options, bar.callback());
@@ -65,18 +52,7 @@ ExitCode skeleton(const SkeletonCommand& command) {
   const Broken promise = broken(report);
   Outputs outputs(destination);
   write_skeleton_files(command, found, outputs);
-  json document = to_json(report);
-  document["seconds"] = seconds_json(seconds);
-  add_solid_json(axis.solid, document);
-  outputs.add_report(document, "this report as JSON");
-  if (axis_command.report) write_report_page(page_name(axis_command.mesh, "skeleton"), {.report = document}, outputs);
-  outputs.commit();
-  if (axis_command.output.json) fmt::print("{}\n", document.dump(2));
-  if (talk) {
-    print(report);
-    for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
-    outputs.print();
-  }
+  finish(axis_command, "skeleton", axis, seconds, to_json(report), outputs, [&] { print(report); });
   if (!promise.none()) fmt::print(stderr, "orchard: {}: {}\n", axis_command.mesh.string(), in_one_line(promise));
   return exit_code(promise, axis_command.accept);
 }

@@ -2,9 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <array>
+
+#include "input/input_file.h"
 #include "input/reading_report.h"
 #include "medial/medial_warning.h"
 #include "orchard/geometry/outside_solid.h"
+#include "output/json_values.h"
+#include "report/report_page.h"
 
 namespace orchard::apps {
 namespace {
@@ -48,6 +53,34 @@ SolidAxis solid_axis(const MedialCommand& command, const Progress& progress, Pro
   }
   return {
       .solid = std::move(solid), .build = std::move(build), .mesh = std::move(mesh), .found = found, .wanted = wanted};
+}
+
+Destination destination_of(const MedialCommand& command, const std::string& report, const char* typed,
+                           std::span<const char* const> endings) {
+  check_input(command.mesh);
+  const std::array inputs{command.mesh};
+  Destination destination{.folder = command.folder,
+                          .report = report,
+                          .provenance = provenance_of(command.output.run, inputs),
+                          .force = command.output.force};
+  std::vector<std::string> names{page_name(command.mesh, typed)};
+  for (const char* ending : endings) names.push_back(named(command.mesh, ending));
+  check_outputs(destination, names, inputs);
+  return destination;
+}
+
+void finish(const MedialCommand& command, const char* typed, const SolidAxis& axis, const StageTimes& seconds,
+            nlohmann::json report, Outputs& outputs, const std::function<void()>& print) {
+  report["seconds"] = seconds_json(seconds);
+  add_solid_json(axis.solid, report);
+  outputs.add_report(report, "this report as JSON");
+  if (command.report) write_report_page(page_name(command.mesh, typed), {.report = report}, outputs);
+  outputs.commit();
+  if (command.output.json) fmt::print("{}\n", report.dump(2));
+  if (command.output.quiet || command.output.json) return;
+  print();
+  for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
+  outputs.print();
 }
 
 std::string axis_warning(const SolidAxis& axis) { return medial_warning(axis.solid, axis.build, findings_of(axis)); }

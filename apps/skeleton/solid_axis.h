@@ -1,9 +1,15 @@
 #pragma once
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
 #include "command_line/commands.h"
 #include "command_line/console.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/medial_mesh.h"
 #include "orchard/medial/topology.h"
+#include "output/outputs.h"
 
 // The medial axis that commands beside `orchard medial` start from.
 namespace orchard::apps {
@@ -20,6 +26,16 @@ struct SolidAxis {
 };
 // Reads the mesh, prints what was done to it, and builds the axis that the command's tuning asks for.
 SolidAxis solid_axis(const MedialCommand& command, const Progress& progress, ProgressBar& bar);
+
+// Where the files of such a command go: the report of this name, the page of --report, named for the command as it is
+// typed, and the others by their endings. Throws InputError if the mesh is missing or files of another input are there.
+Destination destination_of(const MedialCommand& command, const std::string& report, const char* typed,
+                           std::span<const char* const> endings);
+
+// Completes the report by the solid and the times, writes it and its page, and puts all files in place. Then prints the
+// report as JSON, or what `print` prints, the times and the files.
+void finish(const MedialCommand& command, const char* typed, const SolidAxis& axis, const StageTimes& seconds,
+            nlohmann::json report, Outputs& outputs, const std::function<void()>& print);
 
 // What is wrong with the axis and what to do about it, in a line; empty if nothing is.
 std::string axis_warning(const SolidAxis& axis);

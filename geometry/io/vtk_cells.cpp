@@ -46,17 +46,17 @@ void VtkCells::check() const {
                  std::to_string(connectivity.size()) + " numbers");
 }
 
-Index VtkCells::point(std::int64_t id) const {
+Index VtkCells::point(std::size_t cell, std::int64_t id) const {
   if (id < 0 || id >= static_cast<std::int64_t>(points))
-    fail(at,
-         "a cell names point " + std::to_string(id) + ", but there are " + std::to_string(points) + ", counted from 0");
+    fail(at, "cell " + std::to_string(cell) + " of those that begin here names point " + std::to_string(id) +
+                 ", but there are " + std::to_string(points) + "; both are counted from 0");
   return first_point + static_cast<Index>(id);
 }
 
 void VtkCells::corners_of(std::size_t cell, std::vector<Index>& out) const {
   out.clear();
   for (std::int64_t i = offsets[cell]; i < offsets[cell + 1]; ++i)
-    out.push_back(point(connectivity[static_cast<std::size_t>(i)]));
+    out.push_back(point(cell, connectivity[static_cast<std::size_t>(i)]));
 }
 
 void add_vtk_polygons(const VtkCells& cells, CellShape shape, CellMesh& mesh) {
@@ -68,7 +68,7 @@ void add_vtk_polygons(const VtkCells& cells, CellShape shape, CellMesh& mesh) {
   }
 }
 
-void add_vtk_polyhedron(const VtkCells& cells, std::span<const std::int64_t> stream, CellMesh& mesh) {
+void add_vtk_polyhedron(const VtkCells& cells, std::size_t cell, std::span<const std::int64_t> stream, CellMesh& mesh) {
   const auto cut_short = [&] { cells.fail(cells.at, "the faces of a polyhedron are cut short"); };
   if (stream.empty()) cut_short();
   std::int64_t faces = stream.front();
@@ -78,7 +78,7 @@ void add_vtk_polyhedron(const VtkCells& cells, std::span<const std::int64_t> str
     if (stream.empty() || stream[0] < 0 || static_cast<std::uint64_t>(stream[0]) > stream.size() - 1) cut_short();
     const auto count = static_cast<std::size_t>(stream[0]);
     corners.clear();
-    for (const std::int64_t id : stream.subspan(1, count)) corners.push_back(cells.point(id));
+    for (const std::int64_t id : stream.subspan(1, count)) corners.push_back(cells.point(cell, id));
     mesh.add_face(corners);
     stream = stream.subspan(count + 1);
   }
@@ -96,7 +96,7 @@ void add_vtk_cells(const VtkCells& cells, std::span<const std::int64_t> types, s
       const std::int64_t end = cell < face_ends.size() ? face_ends[cell] : -1;
       if (end < static_cast<std::int64_t>(face_from) || end > static_cast<std::int64_t>(faces.size()))
         cells.fail(cells.at, "polyhedron " + std::to_string(cell) + " has no faces");
-      add_vtk_polyhedron(cells, faces.subspan(face_from, static_cast<std::size_t>(end) - face_from), mesh);
+      add_vtk_polyhedron(cells, cell, faces.subspan(face_from, static_cast<std::size_t>(end) - face_from), mesh);
       face_from = static_cast<std::size_t>(end);
       continue;
     }

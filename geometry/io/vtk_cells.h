@@ -25,7 +25,8 @@ struct VtkCells {
   void check() const;
   // The points of a cell, in `out`.
   void corners_of(std::size_t cell, std::vector<Index>& out) const;
-  Index point(std::int64_t id) const;
+  // The point that a cell names, as a vertex of the mesh.
+  Index point(std::size_t cell, std::int64_t id) const;
 };
 
 // Adds all cells as polygons or strips.
@@ -34,7 +35,7 @@ void add_vtk_polygons(const VtkCells& cells, CellShape shape, CellMesh& mesh);
 // and these; face_offsets[i]: where in `faces` cell i ends, or -1.
 void add_vtk_cells(const VtkCells& cells, std::span<const std::int64_t> types, std::span<const std::int64_t> faces,
                    std::span<const std::int64_t> face_ends, CellMesh& mesh);
-// Adds a polyhedron from the numbers that describe its faces.
-void add_vtk_polyhedron(const VtkCells& cells, std::span<const std::int64_t> stream, CellMesh& mesh);
+// Adds the polyhedron `cell` from the numbers that describe its faces.
+void add_vtk_polyhedron(const VtkCells& cells, std::size_t cell, std::span<const std::int64_t> stream, CellMesh& mesh);
 
 }  // namespace orchard

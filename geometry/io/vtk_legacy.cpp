@@ -195,7 +195,7 @@ class LegacyVtkReader {
       const auto from = static_cast<std::size_t>(cells_->offsets[cell]),
                  to = static_cast<std::size_t>(cells_->offsets[cell + 1]);
       if (types_[cell] == kVtkPolyhedron) {
-        add_vtk_polyhedron(*cells_, std::span(cells_->connectivity).subspan(from, to - from), mesh_);
+        add_vtk_polyhedron(*cells_, cell, std::span(cells_->connectivity).subspan(from, to - from), mesh_);
         continue;
       }
       const CellKind* kind = vtk_cell_kind(types_[cell]);

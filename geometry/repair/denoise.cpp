@@ -98,9 +98,9 @@ class Denoiser {
         differences += (facets_[t].normal - facets_[other].normal).squaredNorm();
         ++count;
       }
-    if (count == 0) return;
-    per_distance_ = 1 / (2 * (distances / count) * (distances / count));
-    per_difference_ = 1 / (2 * differences / count);
+    // Without a width, neighbours differ in nothing: a flat mesh has one normal.
+    if (distances > 0) per_distance_ = 1 / (2 * (distances / count) * (distances / count));
+    if (differences > 0) per_difference_ = 1 / (2 * differences / count);
   }
 
   void filter_normals() {

@@ -1,27 +1,11 @@
 #include "repair/vertex_rings.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "half_edges.h"
 
 namespace orchard {
-namespace {
-
-Rows triangles_at_vertices(const TriangleMesh& mesh) {
-  Rows rows;
-  rows.offsets.assign(mesh.vertices.size() + 1, 0);
-  for (const auto& triangle : mesh.triangles)
-    for (const Index corner : triangle) ++rows.offsets[corner + 1];
-  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
-  rows.items.resize(3 * mesh.triangles.size());
-  std::vector<Index> end(rows.offsets.begin(), rows.offsets.end() - 1);
-  for (Index t = 0; t < mesh.triangles.size(); ++t)
-    for (const Index corner : mesh.triangles[t]) rows.items[end[corner]++] = t;
-  return rows;
-}
-
-}  // namespace
-
-VertexRings::VertexRings(const TriangleMesh& given) : mesh(given), triangles_at(triangles_at_vertices(given)) {}
+VertexRings::VertexRings(const TriangleMesh& given) : mesh(given), triangles_at(triangles_around_vertices(given)) {}
 
 std::vector<Index> VertexRings::two_rings(Index vertex, std::size_t limit) const {
   std::vector<Index> found{vertex};

@@ -39,7 +39,7 @@ class Tracer {
  private:
   Kind kind(Index edge) const {
     const std::size_t faces = complex_.faces_at(edge).size();
-    return faces == 0 ? Kind::curve : faces == 1 ? Kind::border : Kind::junction;
+    return faces == 0 ? Kind::curve : faces == 1 ? Kind::border : Kind::seam;
   }
   bool is_node(Index vertex) const {
     const auto& lines = lines_[vertex];
@@ -86,7 +86,7 @@ StructureGraph structure_graph(const MedialAxis& axis) { return Tracer(axis).run
 
 std::string to_graphml(const StructureGraph& graph, const MedialAxis& axis) {
   constexpr std::array kNumbers{"length", "mean_radius"};
-  constexpr std::array kNames{"curve", "border", "junction"};
+  constexpr std::array kNames{"curve", "border", "seam"};
   detail::GraphmlText text("structure", kNumbers);
   for (const Index vertex : graph.nodes) text.add_node(axis.centers[vertex], axis.radii[vertex]);
   for (const StructureGraph::Arc& arc : graph.arcs) {

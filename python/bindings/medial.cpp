@@ -153,7 +153,7 @@ py::dict structure_graph_of(const Axis& axis) {
     const py::gil_scoped_release release;
     graph = structure_graph(axis.build ? axis.build->axis : complex_of(axis.mesh));
   }
-  constexpr std::array kNames{"curve", "border", "junction"};
+  constexpr std::array kNames{"curve", "border", "seam"};
   py::list arcs;
   for (StructureGraph::Arc& arc : graph.arcs) {
     py::dict row;

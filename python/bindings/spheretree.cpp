@@ -40,10 +40,17 @@ Refinement refinement_of(const py::dict& given) {
   return refinement;
 }
 
-AnnealingOptions to_annealing(const py::dict& given, Selection redundancy, double first_acceptance) {
-  AnnealingOptions options = annealing_options(effort_of(given));
+// What the builders have in common.
+template <class Options>
+void set_common(const py::dict& given, Options& options) {
   set(given, "depth", options.depth);
   set(given, "branching", options.branching);
+  options.refinement = refinement_of(given);
+}
+
+AnnealingOptions to_annealing(const py::dict& given, Selection redundancy, double first_acceptance) {
+  AnnealingOptions options = annealing_options(effort_of(given));
+  set_common(given, options);
   set_named(given, "energy", options.energy, {{"maximum", SetEnergy::maximum}, {"sum", SetEnergy::sum}});
   set_named(given, "anneal_distance", options.distance,
             {{"lemma", SphereEnergy::lemma},
@@ -62,14 +69,12 @@ AnnealingOptions to_annealing(const py::dict& given, Selection redundancy, doubl
   set(given, "anneal_first_iterations", options.iterations_first);
   set(given, "anneal_iterations", options.iterations);
   if (redundancy == Selection::independent) options.redundancy = redundancy;
-  options.refinement = refinement_of(given);
   return options;
 }
 
 TightenOptions to_tightening(const py::dict& given) {
   TightenOptions options;
-  set(given, "depth", options.depth);
-  set(given, "branching", options.branching);
+  set_common(given, options);
   set(given, "spheres", options.spheres);
   if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
   options.effort = effort_of(given);
@@ -78,24 +83,19 @@ TightenOptions to_tightening(const py::dict& given) {
              {"maximum", Objective::maximum},
              {"mean", Objective::mean},
              {"volume", Objective::volume}});
-  options.refinement = refinement_of(given);
   return options;
 }
 
 MergeOptions to_merging(const py::dict& given) {
   MergeOptions options;
-  set(given, "depth", options.depth);
-  set(given, "branching", options.branching);
+  set_common(given, options);
   set_named(given, "closing", options.closing, {{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}});
-  options.refinement = refinement_of(given);
   return options;
 }
 
 OctreeOptions to_octree(const py::dict& given) {
   OctreeOptions options;
-  set(given, "depth", options.depth);
-  set(given, "branching", options.branching);
-  options.refinement = refinement_of(given);
+  set_common(given, options);
   return options;
 }
 

@@ -42,7 +42,7 @@ class Arc:
 
     start: int  #: a vertex of the axis: a node
     end: int
-    kind: str  #: curve, border or junction, where three or more sheets meet
+    kind: str  #: curve, border or seam, where three or more sheets meet
     length: float  #: mesh units
     mean_radius: float
     vertices: Indices  #: of the axis, ends included
@@ -50,7 +50,7 @@ class Arc:
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class StructureGraph:
-    """The lines of an axis: borders of sheets, junctions of three or more, and curves."""
+    """The lines of an axis: borders of sheets, seams of three or more, and curves."""
 
     nodes: Indices  #: vertices of the axis
     arcs: list[Arc]

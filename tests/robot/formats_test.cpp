@@ -189,9 +189,9 @@ TEST(Formats, OfXrdfHaveWhatItsReaderRequires) {
   EXPECT_EQ(root["tool_frames"][0].Scalar(), "123");
   std::ifstream in(file);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  EXPECT_NE(text.find("PLACEHOLDER"), std::string::npos);
+  EXPECT_NE(text.find("ASSUMED"), std::string::npos);
   const auto stated = write_format("xrdf", m.model, {.prefix = "r", .max_acceleration = 12.5, .max_jerk = 300});
-  EXPECT_EQ(stated.front().text.find("PLACEHOLDER"), std::string::npos);
+  EXPECT_EQ(stated.front().text.find("ASSUMED"), std::string::npos);
   EXPECT_EQ(YAML::Load(stated.front().text)["cspace"]["jerk_limits"][0].as<double>(), 300);
 }
 

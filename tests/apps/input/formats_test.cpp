@@ -112,6 +112,9 @@ TEST(StandardInput, IsReadLikeAFileAndNamedInMessages) {
   const json report = json::parse(content(out));
   EXPECT_NEAR(report["volume"].get<double>(), 6, 1e-12);
   EXPECT_EQ(report["provenance"]["run"]["paths"][0], "-");
+  const std::string sweep = "medial - --format obj -o '" + (here / "sweep").string() +
+                            "' --raw --samples 100 --quality-samples 200 --sweep 'prune angle=0,40'";
+  EXPECT_EQ(through_a_pipe(box, sweep, out, err), 0) << content(err);
   EXPECT_EQ(through_a_pipe(box, "inspect - --format stl", out, err), 2);
   EXPECT_NE(content(err).find("orchard: standard input"), std::string::npos) << content(err);
   EXPECT_EQ(through_a_pipe(box, "inspect -", out, err), 2);

@@ -43,11 +43,10 @@ struct MedialSegments {
 // Divides an axis into segments. Sheets come first, in the order of their first face. O(n log n).
 MedialSegments medial_segments(const MedialAxis& axis, const SegmentOptions& options);
 
-// The lines of an axis as a graph. A line is a border of a sheet, a junction where three or more sheets meet, or a
-// curve. The nodes are the ends of lines and the places where lines meet or change their kind. A closed line has one
-// node.
+// The lines of an axis as a graph. A line is a border of a sheet, a seam where three or more sheets meet, or a curve.
+// The nodes are the ends of lines and the places where lines meet or change their kind. A closed line has one node.
 struct StructureGraph {
-  enum class Kind : std::uint8_t { curve, border, junction };
+  enum class Kind : std::uint8_t { curve, border, seam };
   struct Arc {
     Index from = 0, to = 0;  // The nodes at the ends, as indices into `nodes`.
     Kind kind = Kind::curve;

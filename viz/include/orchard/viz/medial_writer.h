@@ -44,7 +44,7 @@ void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh,
 void write_worst_places(const std::filesystem::path& vtp, const std::vector<WorstPlace>& places);
 
 // Writes a polyline for each arc. Point arrays: radius; vertex (of the axis). Cell arrays: kind (0 curve, 1 border, 2
-// junction), length, mean_radius, from, to (nodes, as in the GraphML).
+// seam), length, mean_radius, from, to (nodes, as in the GraphML).
 void write_structure_graph(const std::filesystem::path& vtp, const MedialAxis& axis, const StructureGraph& graph);
 
 }  // namespace orchard

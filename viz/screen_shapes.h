@@ -1,0 +1,17 @@
+#pragma once
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+
+#include <Eigen/Core>
+
+#include "palette.h"
+
+// Shapes that lie on the picture, in pixels of its panel, in front of everything.
+namespace orchard::detail {
+
+// Lines are so many pixels wide.
+void add_screen_shape(vtkRenderer* renderer, vtkPolyData* shape, const Color& color, double width);
+void add_screen_line(vtkRenderer* renderer, const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Color& color,
+                     double width);
+
+}  // namespace orchard::detail
