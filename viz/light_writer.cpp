@@ -77,7 +77,7 @@ void add_section(const TriangleMesh& mesh, int axis, double place, OutlineSegmen
 void write_outline(const std::filesystem::path& vtp, const Surface& surface, int sections) {
   OutlineSegments lines;
   add_sharp_edges(surface.mesh(), lines);
-  const Box box = surface.bounding_box();
+  const Box& box = surface.bounding_box();
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < sections; ++i)
       add_section(surface.mesh(), axis, box.min()[axis] + (i + 0.5) / sections * box.sizes()[axis], lines);

@@ -56,6 +56,7 @@ Worker::Worker(const std::vector<std::string>& words, const WorkerLimits& limits
   std::vector<std::string> all{"orchard"};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> pointers;
+  pointers.reserve(all.size() + 1);
   for (std::string& word : all) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   const Pipe out = new_pipe(), err = new_pipe();

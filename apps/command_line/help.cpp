@@ -59,7 +59,7 @@ std::string help_of(const std::string& program, const CommandEntry& command) {
     std::string rows;
     for (const OptionEntry& option : command.options)
       if (group_of(option) == group) rows += row_of(option);
-    if (!rows.empty()) text += "\n" + group + ":\n" + rows;
+    if (!rows.empty()) text += fmt::format("\n{}:\n{}", group, rows);
   }
   return command.footer.empty() ? text : text + "\n" + command.footer + "\n";
 }

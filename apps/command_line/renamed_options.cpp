@@ -65,7 +65,7 @@ void rename_swept(std::vector<std::string>& words, std::size_t at, std::vector<s
     if (name != option.was.substr(2) && !is_alias) continue;
     const std::string is = fmt::format("{} {}", option.option.substr(2), option.measure);
     warnings.push_back(renamed_warning("--sweep " + name + "=", fmt::format("--sweep '{}='", is)));
-    word = word.substr(0, begin) + is + word.substr(end);
+    word.replace(begin, end - begin, is);
     return;
   }
 }

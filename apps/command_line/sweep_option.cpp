@@ -70,7 +70,7 @@ std::vector<std::string> words_of_runs(const CLI::App& command, const std::vecto
       else if (flag && (value == "true" || value == "false"))
         words.push_back("--" + name);
       else
-        words.push_back("--" + name + "=" + value);
+        words.push_back(fmt::format("--{}={}", name, value));
     }
   }
   return words;

@@ -46,7 +46,7 @@ Vector vector(const XMLElement& element, const char* name, const Vector& standar
 
 Vector positive_vector(const XMLElement& element, const char* name, const fs::path& file) {
   required(element, name, file);
-  const Vector value = vector(element, name, Vector::Zero(), file);
+  Vector value = vector(element, name, Vector::Zero(), file);
   if (!(value.array() > 0).all())
     throw InputError(fmt::format("{}: {} is to be three numbers above 0", at_line(file, element), name));
   return value;

@@ -60,6 +60,7 @@ std::vector<TimeStep> read_series(const fs::path& pvd) {
   }
   if (steps.empty()) throw InputError(pvd.string() + ": there is no time step in it");
   std::vector<TimeStep> series;
+  series.reserve(steps.size());
   for (auto& [time, step] : steps) series.push_back(std::move(step));
   return series;
 }

@@ -39,6 +39,7 @@ std::vector<std::string> set_file_names(const SpheresCommand& command) {
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   endings.emplace_back(kClippedEnding);
   std::vector<std::string> names;
+  names.reserve(endings.size() + 1);
   for (const std::string& ending : endings) names.push_back(named(command.mesh, ending));
   names.push_back(page_name(command.mesh, "spheres"));
   return names;

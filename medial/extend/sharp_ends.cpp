@@ -7,7 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-Vector direction(const ExactBall& ball, int i) { return (ball.contacts[i].position - ball.center) / ball.radius; }
+Vector direction(const ExactBall& ball, int i) {
+  return (ball.contacts[static_cast<std::size_t>(i)].position - ball.center) / ball.radius;
+}
 
 }  // namespace
 
