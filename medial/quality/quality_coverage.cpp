@@ -14,7 +14,7 @@ constexpr std::size_t kMaxParts = 1'000'000;  // of the surface's triangles that
 constexpr std::size_t kCoverageBlock = 256;   // vertices or triangles that one task takes, one after the other
 constexpr double kBesideBorder = 1e-9;        // of the diagonal: what rounding puts beside a border
 
-// The borders of sheets, the free ends of wires and the balls without edges, as flat triangles.
+// The borders of sheets, the free ends of curves and the balls without edges, as flat triangles.
 TriangleMesh borders_of(const MedialMesh& mesh) {
   TriangleMesh borders{.vertices = mesh.centers, .triangles = {}};
   const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());

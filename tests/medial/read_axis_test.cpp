@@ -43,7 +43,7 @@ class ReadAxis : public testing::Test {
   fs::path folder_;
 };
 
-// A triangle and a wire at its last corner.
+// A triangle and a curve at its last corner.
 void expect_kite(const MedialMesh& mesh) {
   EXPECT_EQ(mesh.size(), 4u);
   EXPECT_EQ(mesh.edges, (std::vector<std::array<Index, 2>>{{0, 1}, {0, 2}, {1, 2}, {2, 3}}));

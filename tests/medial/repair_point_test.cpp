@@ -130,7 +130,7 @@ TEST(FoldBottom, IsNowhereBetweenSidesThatDoNotMeet) {
 }
 
 TEST(Neck, IsACellThatWrapsAroundAWire) {
-  // Three points along a wire: the middle one's cell is a ring, and so it shares no point with three others.
+  // Three points along a rod: the middle one's cell is a ring, and so it shares no point with three others.
   Scene scene(test::box({0, 0, 0}, {10, 0.1, 0.1}));
   for (const Point& near : {Point(5, 0.05, 0), Point(1, 0.05, 0), Point(9, 0.04, 0), Point(0, 0, 0.1)}) {
     add_point(scene.surface, scene.sampling, near);
@@ -141,7 +141,7 @@ TEST(Neck, IsACellThatWrapsAroundAWire) {
   EXPECT_EQ(scene.crossings[0].component.euler_characteristic, 0);
   const auto [position, triangle] = farthest_corner(*scene.restricted, scene.crossings[0].component, kNone);
   EXPECT_NEAR(std::abs(position.x() - 5), 2, 0.1) << "half-way to the next point";
-  EXPECT_NEAR(position.z(), 0.1, 1e-9) << "on the far side of the wire";
+  EXPECT_NEAR(position.z(), 0.1, 1e-9) << "on the far side of the rod";
 }
 
 }  // namespace

@@ -48,9 +48,9 @@ struct Economy {
 
 // The pieces of a medial mesh: parts that are joined to each other at vertices only, or not at all.
 struct MedialPieces {
-  Index sheets = 0;  // Sets of triangles joined across edges.
+  Index face_components = 0;  // Sets of triangles that are joined across edges, seams included.
   // Sets of edges without triangles that are joined at vertices. A ball without edges is such a set, too.
-  Index wires = 0;
+  Index curve_components = 0;
   // The pieces of both kinds with a bounding box whose diagonal is below the largest radius in the piece: flakes and
   // spikes. A mesh that is a single piece has none.
   Index small = 0;
