@@ -110,7 +110,8 @@ void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, con
                      const std::vector<Cell>& cells, vtkCellData* data) {
   const std::size_t count = cells.size();
   add_ints(data, "segment", count, [&](std::size_t i) { return as_int(cells[i].segment); });
-  add_ints(data, "sheet", count, [&](std::size_t i) { return segments.segments[cells[i].segment].sheet ? 1 : 0; });
+  add_ints(data, "has_faces", count,
+           [&](std::size_t i) { return segments.segments[cells[i].segment].has_faces ? 1 : 0; });
   add_ints(data, "trunk", count, [&](std::size_t i) { return segments.segments[cells[i].segment].trunk ? 1 : 0; });
   add_ints(data, "wall", count, [&](std::size_t i) { return cells[i].wall ? 1 : 0; });
   add_doubles(data, "contact_angle", count, [&](std::size_t i) { return in_degrees(cells[i].angle); });

@@ -86,7 +86,7 @@ json to_json(const MedialSegments& segments, const StructureGraph& graph, const 
   }
   json rows = json::array();
   for (const MedialSegments::Segment& s : segments.segments) {
-    rows.push_back({{"sheet", s.sheet},
+    rows.push_back({{"has_faces", s.has_faces},
                     {"trunk", s.trunk},
                     {"cells", s.cells},
                     {"min_radius", s.min_radius},

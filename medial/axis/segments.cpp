@@ -107,8 +107,8 @@ class Segmenter {
     }
   }
 
-  Index open(bool sheet) {
-    result_.segments.push_back({.sheet = sheet,
+  Index open(bool has_faces) {
+    result_.segments.push_back({.has_faces = has_faces,
                                 .trunk = false,
                                 .cells = 0,
                                 .min_radius = std::numeric_limits<double>::infinity(),

@@ -44,8 +44,8 @@ TEST(MedialSegments, EndAtJunctionsAndTellSheetsFromCurves) {
   const MedialAxis axis = strip_with_flap_and_tail();
   const MedialSegments found = medial_segments(axis, {.touching = 0.01});
   ASSERT_EQ(found.segments.size(), 4u);  // three sheets at the junction, and the tail
-  EXPECT_TRUE(found.segments[0].sheet && found.segments[1].sheet && found.segments[2].sheet);
-  EXPECT_FALSE(found.segments[3].sheet);
+  EXPECT_TRUE(found.segments[0].has_faces && found.segments[1].has_faces && found.segments[2].has_faces);
+  EXPECT_FALSE(found.segments[3].has_faces);
   EXPECT_EQ(found.segments[3].cells, 2u);
   EXPECT_EQ(found.of_face, (std::vector<Index>{0, 1, 2}));
   EXPECT_EQ(found.of_vertex[0], 0u);

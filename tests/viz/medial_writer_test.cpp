@@ -61,7 +61,7 @@ TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
   ASSERT_EQ(grid->GetNumberOfCells(), 3);
   vtkCellData* cells = grid->GetCellData();
   EXPECT_EQ(values(cells, "wall"), (std::vector<double>{0, 1, 0}));
-  EXPECT_EQ(values(cells, "sheet"), (std::vector<double>{1, 1, 0}));
+  EXPECT_EQ(values(cells, "has_faces"), (std::vector<double>{1, 1, 0}));
   EXPECT_EQ(values(cells, "point_b"), (std::vector<double>{1, 3, -1}));
   EXPECT_EQ(values(cells, "added"), (std::vector<double>{0, 1, 0}));
   EXPECT_NEAR(values(cells, "contact_angle")[0], 178, 6);

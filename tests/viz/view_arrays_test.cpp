@@ -69,7 +69,7 @@ const std::map<std::string, Rule>& rules() {
       {"kind", {.max = 2}},
       {"answer", {.max = 3}},
       {"added", {.max = 1}},
-      {"sheet", {.max = 1}},
+      {"has_faces", {.max = 1}},
       {"trunk", {.max = 1}},
       {"wall", {.max = 1}},
       {"carried", {.max = 1}},

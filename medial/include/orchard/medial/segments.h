@@ -26,7 +26,7 @@ struct SegmentOptions {
 // Source: Goldak, Yu, Knight, Dong 1991, as summarised in dissertation 6.2.1.
 struct MedialSegments {
   struct Segment {
-    bool sheet = false;                     // Whether the segment is a sheet; otherwise it is a curve.
+    bool has_faces = false;                 // Whether the segment is a sheet; otherwise it is a curve.
     bool trunk = false;                     // Whether the segment is a trunk; otherwise it is a branch.
     Index cells = 0;                        // The number of faces and walls of a sheet, or of edges of a curve.
     double min_radius = 0, max_radius = 0;  // Of its vertices, in mesh units.
