@@ -129,8 +129,9 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
                   "where there are too few balls)")
       ->check(CLI::IsMember({"medial", "free"}))
       ->capture_default_str();
-  command.add_flag("--curve", medial.curve,
-                   "Also write the error of the axis simplified to fewer and fewer balls: MODEL-curve.csv and .svg");
+  command.add_flag(
+      "--error-curve", medial.error_curve,
+      "Also write the error of the axis simplified to fewer and fewer balls: MODEL-error-curve.csv and .svg");
   CLI::Option* envelope = command.add_option(
       "--envelope", medial.envelope,
       "Write the envelope of the axis, or of the simplified axis of --vertices or --error, to this .obj file");

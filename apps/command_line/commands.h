@@ -124,7 +124,7 @@ struct SpheresCommand {
          inertia_error = 100 * ParticleOptions{}.inertia_error;  // of particles, percent
   std::vector<double> clip;              // normal and offset of the half-space that is kept; empty: all
   std::filesystem::path vertex_weights;  // a number for each vertex; empty: none
-  std::vector<Index> curve;              // numbers of spheres to try as well
+  std::vector<Index> error_curve;        // numbers of spheres to try as well
   std::vector<std::string> exports;      // json, csv, npz, urdf, yaml; x y z r as text always
   std::string link;                      // the name in robots' files; empty: the mesh's
   bool tree = false;                     // an .orchard file over the spheres; of a file of spheres, too
@@ -196,7 +196,7 @@ struct MedialCommand {
   Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
   double few_error = 0;                // percent of the diagonal that the simplified axis may be off; 0: not asked
   std::string few_kind = "medial";     // what the balls of the simplified axis may be: medial or free
-  bool curve = false;                  // simplify to ever fewer vertices, and write how far off each is
+  bool error_curve = false;            // simplify to ever fewer vertices, and write how far off each is
   std::filesystem::path envelope;      // .obj: the surface of what the axis stands for; empty: none
   double envelope_cell = 0.5;          // % of the diagonal
   std::vector<std::string> sweep;      // NAME=VALUE,VALUE,..

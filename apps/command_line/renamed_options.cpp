@@ -14,7 +14,8 @@ struct Renamed {
   std::string_view command, was, is;
 };
 constexpr std::array kRenamed{Renamed{"verify", "--bbox-centre", "--bbox-center"},
-                              Renamed{"medial", "--best", "--sort-by"}};
+                              Renamed{"medial", "--best", "--sort-by"}, Renamed{"medial", "--curve", "--error-curve"},
+                              Renamed{"spheres", "--curve", "--error-curve"}};
 
 // Options that became measures of another one: --prune-angle 20 is --prune angle=20, and in --sweep 'prune angle=..'.
 struct Merged {
