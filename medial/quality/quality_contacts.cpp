@@ -80,11 +80,11 @@ double second_contact_distance(const Surface& surface, const Point& center, cons
   return std::numeric_limits<double>::infinity();
 }
 
-double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
+double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double min_contact_angle,
                   double diagonal) {
   if (!(ball.radius > kTinyBall * diagonal) || !(first.distance > 0)) return kUndefined;
   const Vector direction = (first.position - ball.center) / first.distance;
-  const double second = second_contact_distance(surface, ball.center, direction, contact_angle,
+  const double second = second_contact_distance(surface, ball.center, direction, min_contact_angle,
                                                 kLikely * std::max(ball.radius, first.distance));
   return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : kUndefined;
 }
@@ -101,7 +101,7 @@ void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std
   std::vector<double> off(chosen, kUndefined);
   tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t k) {
     const std::size_t i = k * balls.size() / chosen;
-    off[k] = off_centre(surface, balls[i], depths[i].nearest, options.contact_angle, quality.diagonal);
+    off[k] = off_centre(surface, balls[i], depths[i].nearest, options.min_contact_angle, quality.diagonal);
   });
   std::erase_if(off, [](double value) { return std::isnan(value); });
   quality.centredness = off.empty() ? Spread{.max = kUndefined, .mean = kUndefined} : spread_of(off);

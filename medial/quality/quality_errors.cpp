@@ -19,7 +19,7 @@ BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, co
     errors.radius_error[i] = std::abs(ball.radius - depth.nearest.distance) / diagonal;
     errors.protrusion[i] = detail::reach_of(surface, ball, depth).beyond / diagonal;
     if (options.contact_cells > 0)
-      errors.centredness[i] = detail::off_centre(surface, ball, depth.nearest, options.contact_angle, diagonal);
+      errors.centredness[i] = detail::off_centre(surface, ball, depth.nearest, options.min_contact_angle, diagonal);
   });
   return errors;
 }

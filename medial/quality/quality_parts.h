@@ -83,7 +83,7 @@ std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, do
 // quality_contacts.cpp
 // |distance to the second contact - radius| over the radius; NaN if the ball has none, or is a point. `first`: the
 // surface's place nearest to the centre.
-double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
+double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double min_contact_angle,
                   double diagonal);
 void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std::span<const BallDepth> depths,
                       const QualityOptions& options, MedialQuality& quality);

@@ -25,7 +25,7 @@ struct QualityOptions {
   Index contact_cells = 10'000;  // The maximum number of vertices for which the second contact is searched.
   // The second contact of a ball is the nearest surface point that is seen from its centre at this angle or more from
   // the nearest one; in radians, 30 degrees by default.
-  double contact_angle = 0.5235987755982988;
+  double min_contact_angle = 0.5235987755982988;
   double economy_error = 0.01;  // The error that the greedy cover of `economy` may have, over D.
   // The maximum number of balls that the greedy cover chooses from, and the number of samples that it covers.
   Index economy_candidates = 20'000, economy_samples = 20'000;
