@@ -206,7 +206,7 @@ bool Certifier::look_in_blocks(Index count, Index block, const Good& good) {
   if (workspace_.points.size() < large_set() / kWorthThreads || first_new_ > 0) {
     for (Index i = 0; i < count; ++i)
       if (!good(*this, i)) return false;
-    return found_.suspects.size() <= kMaxSuspects + kOfDent;
+    return found_.suspects.size() <= kMaxSuspects + kOfReflexEdge;
   }
   std::vector<Findings> found((count + block - 1) / block);
   const std::thread::id caller = std::this_thread::get_id();
@@ -219,7 +219,7 @@ bool Certifier::look_in_blocks(Index count, Index block, const Good& good) {
     looked_at_ += std::size_t{end - begin} * (kBlock / block);
   });
   for (const Findings& each : found) found_.add(each);
-  return found_.good && found_.suspects.size() <= kMaxSuspects + kOfDent;
+  return found_.good && found_.suspects.size() <= kMaxSuspects + kOfReflexEdge;
 }
 
 // Each of all vertices is looked at twice at first, and some again later.
@@ -252,12 +252,12 @@ bool Certifier::look_at_hull() {
 void Certifier::forget_changed_suspects() {
   std::vector<Index>& suspects = found_.suspects;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < suspects.size(); i += kOfDent) {
-    const auto dent = suspects.begin() + static_cast<std::ptrdiff_t>(i);
+  for (std::size_t i = 0; i < suspects.size(); i += kOfReflexEdge) {
+    const auto edge = suspects.begin() + static_cast<std::ptrdiff_t>(i);
     const auto is_gone = [this](Index v) { return workspace_.is_free(v) || has_changed(v); };
-    if (std::any_of(dent, dent + kOfDent, is_gone)) continue;
-    std::copy_n(dent, kOfDent, suspects.begin() + static_cast<std::ptrdiff_t>(count));
-    count += kOfDent;
+    if (std::any_of(edge, edge + kOfReflexEdge, is_gone)) continue;
+    std::copy_n(edge, kOfReflexEdge, suspects.begin() + static_cast<std::ptrdiff_t>(count));
+    count += kOfReflexEdge;
   }
   suspects.resize(count);
 }

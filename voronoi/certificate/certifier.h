@@ -28,7 +28,7 @@ class Certifier {
   // The part of the intrusion that may lie between the sphere that a vertex was given and its own.
   static constexpr double kGiven = 1.0 / 4;
   // Vertices that are held against all points; where there are more, exact signs are cheaper.
-  static constexpr std::size_t kMaxSuspects = 4096, kOfDent = 4;
+  static constexpr std::size_t kMaxSuspects = 4096, kOfReflexEdge = 4;
 
   // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
   struct HullEdge {
@@ -181,7 +181,7 @@ class Certifier {
   double intrusion_added(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
                          double height) const;
   bool is_hull_convex(Index v, unsigned i);
-  bool is_dent_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c);
+  bool is_reflex_edge_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c);
 
   Workspace& workspace_;
   FormingPoints& forming_;
