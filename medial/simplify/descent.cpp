@@ -83,7 +83,7 @@ void Descent::go_down(Stage& stage, Index count) const {
     const Index before = stage.mesh.living();
     contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
     if (stage.mesh.living() == before) {
-      if (!stage.mesh.make_contractible() && !stage.mesh.fold()) break;
+      if (!stage.mesh.make_contractible() && !stage.mesh.merge_edges()) break;
       stage.feet.feet.clear();  // the cells of some may be gone
     }
     refine(stage, kBetween);
