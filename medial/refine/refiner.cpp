@@ -101,7 +101,7 @@ void Refiner::refine(FoundBalls* found) {
   make_complex();
   find_balls(found);
   report_progress(progress_, kRefiningStage, 0.1);
-  drop_folded();
+  drop_single_contact_faces();
   report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);
   report_.small_pieces = drop_small_pieces(complex_, &guard_);
   report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
@@ -210,8 +210,8 @@ std::span<const Index> Refiner::corners_of(Index face) const {
 }
 
 // Whether the two points of a face have, seen from its middle, contacts between which nothing is lost: such a face
-// folds onto its sheet, or stands on the surface.
-bool Refiner::folded(Index face, BallSolver& solver) const {
+// lies on its sheet a second time, or stands on the surface.
+bool Refiner::has_single_contact(Index face, BallSolver& solver) const {
   Point middle = Point::Zero();
   for (const Index v : corners_of(face)) middle += axis_.centers[v];
   middle /= static_cast<double>(corners_of(face).size());
@@ -221,12 +221,14 @@ bool Refiner::folded(Index face, BallSolver& solver) const {
   return BallSolver::loss(std::min(a.distance, b.distance), angle) < level_;
 }
 
-void Refiner::drop_folded() {
-  std::vector<std::uint8_t> folded_faces(axis_.faces.size() + axis_.walls.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(folded_faces.size()), 128), [&](const auto& range) {
-    BallSolver solver = this->solver();
-    for (Index face = range.begin(); face != range.end(); ++face) folded_faces[face] = folded(face, solver) ? 1 : 0;
-  });
+void Refiner::drop_single_contact_faces() {
+  std::vector<std::uint8_t> single_contact(axis_.faces.size() + axis_.walls.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(single_contact.size()), 128),
+                    [&](const auto& range) {
+                      BallSolver solver = this->solver();
+                      for (Index face = range.begin(); face != range.end(); ++face)
+                        single_contact[face] = has_single_contact(face, solver) ? 1 : 0;
+                    });
   // Edges go with all of their triangles, vertices with all of their edges; those without triangles stay.
   std::vector<std::uint8_t> has(complex_.edges.size(), 0);
   Doomed doomed(complex_);
@@ -237,7 +239,7 @@ void Refiner::drop_folded() {
     const auto& [a, b, c] = complex_.triangles[t];
     for (const Index e : {edge(a, b), edge(a, c), edge(b, c)}) {
       has[e] = 1;
-      if (!folded_faces[face_of_triangle_[t]]) doomed.edges[e] = 0;
+      if (!single_contact[face_of_triangle_[t]]) doomed.edges[e] = 0;
     }
   }
   for (Index e = 0; e < complex_.edges.size(); ++e) {
@@ -248,7 +250,7 @@ void Refiner::drop_folded() {
   const std::size_t before = complex_.triangles.size();
   collapse(complex_, doomed, std::vector<double>(complex_.size(), 0));
   complex_.complete();  // triangles came in the order of the axis's faces
-  report_.folded_triangles = static_cast<Index>(before - complex_.triangles.size());
+  report_.single_contact_triangles = static_cast<Index>(before - complex_.triangles.size());
 }
 
 BorderOptions Refiner::border_options() const {
@@ -264,12 +266,12 @@ void Refiner::reach_edges() {
   for (int pass = 0; pass < kBorderPasses; ++pass) {
     const Index seams = extend_to_seams(surface_, complex_, border);
     Index reached = extend_to_edges(surface_, complex_, border);
-    report_.notches += seams + fill_along_edges(surface_, complex_, border);
+    report_.filling_triangles += seams + fill_along_edges(surface_, complex_, border);
     reached += extend_to_corners(surface_, complex_, border);
     if (seams == 0 && reached == 0) break;
   }
   BallSolver solver = this->solver();
-  report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
+  report_.filling_triangles += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
 }
 
 SplitOptions Refiner::split_options() const {
@@ -316,7 +318,7 @@ bool Refiner::reach() {
       reached = reach_for(reconstruction, dents.find(reconstruction, apart), solver);
     if (reached == 0) break;
     report_.reached_places += reached;
-    report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
+    report_.filling_triangles += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
     divide();
   }
   return report_.reached_places > before;
