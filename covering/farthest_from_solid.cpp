@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "half_angle.h"
-#include "inner_walls.h"
+#include "interior_surface.h"
 #include "orchard/covering/inaccuracy.h"
 #include "search_limits.h"
 
@@ -24,7 +24,7 @@ struct Cube {
 class CubeSearch {
  public:
   CubeSearch(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
-      : surface_(surface), walls_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
+      : surface_(surface), interior_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
   Bounds run(double at_least) {
     start();
@@ -92,7 +92,7 @@ class CubeSearch {
                                    farthest(anchor_, center, half), everywhere_}) *
                          (1 + 1e-12);
     if (does_not_matter(upper)) return;
-    if (value <= walls_.depth() && walls_.fill({sample, reach}) && does_not_matter(walls_.depth())) return;
+    if (value <= interior_.depth() && interior_.fill({sample, reach}) && does_not_matter(interior_.depth())) return;
     cells_.push_back({upper, center, half, nearest.position});
     std::push_heap(cells_.begin(), cells_.end(), Cube::less_promising);
   }
@@ -129,7 +129,7 @@ class CubeSearch {
   static constexpr double kRounding = 1e-13;  // of the lengths in a bound: a few hundred times what they are off by
   static constexpr double kHalfDiagonal = 1.7320508075688774;
   const Surface& surface_;
-  const detail::InnerWalls walls_;
+  const detail::InteriorSurface interior_;
   const Sphere ball_;
   const double radius_;  // R
   const DistanceTolerance tolerance_;

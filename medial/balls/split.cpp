@@ -127,21 +127,21 @@ class Splitter {
     return solver.at(straight);
   }
 
-  // Where the surface cuts itself, parts of it lie inside the solid. Distances fall to 0 at such a wall, so an edge
-  // through one has balls that are too large however often it is divided.
+  // Where the surface cuts itself, parts of it lie inside the solid. Distances fall to 0 there, so an edge
+  // through one of them has balls that are too large however often it is divided.
   std::vector<std::uint8_t> find_never_linear(const std::vector<double>& error) const {
     std::vector<std::uint8_t> never(error.size(), 0);
     if (!cuts_itself_) return never;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, error.size(), 128), [&](const auto& range) {
-      std::vector<Index> walls;
+      std::vector<Index> crossed;
       for (std::size_t e = range.begin(); e != range.end(); ++e) {
         if (error[e] <= options_.tolerance) continue;
         const auto& [a, b] = complex_.edges[e];
         if (!(complex_.balls[a].radius > 0) || !(complex_.balls[b].radius > 0)) continue;
         const Point &from = complex_.balls[a].center, &to = complex_.balls[b].center;
-        walls.clear();
-        surface_.triangles_overlapping({from, to, to}, walls);
-        never[e] = walls.empty() ? 0 : 1;
+        crossed.clear();
+        surface_.triangles_overlapping({from, to, to}, crossed);
+        never[e] = crossed.empty() ? 0 : 1;
       }
     });
     return never;

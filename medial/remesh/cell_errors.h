@@ -27,7 +27,7 @@ class CellErrors {
   bool leads_outside(Index a, Index b, double limit) const;
   // Whether an edge goes through a part of the surface that lies inside the solid, as there is where the surface cuts
   // itself: distances fall to 0 there, so the edge is wrong however short it is.
-  bool goes_through_wall(Index a, Index b) const;
+  bool crosses_surface(Index a, Index b) const;
 
  private:
   double at(const SheetMesh::Cell& cell, double u, double v, double w, double fine) const;

@@ -59,7 +59,7 @@ struct MeshRepairReport {
 // - Small holes are filled (CGAL's triangulate_hole_polyline, after Liepa 2003).
 // - Components are oriented outward, and those wholly inside another one, which are cavities, inward.
 // Only the filling of holes adds surface, and only joining moves vertices, by RepairMeshOptions::join_distance at most.
-// Larger holes, strips with one side and walls inside a solid stay as they are, which the report states. A mesh without
+// Larger holes, strips with one side and faces inside a solid stay as they are, which the report states. A mesh without
 // faults keeps every byte. Throws InputError if validate(mesh) does. O(n log n).
 MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& options = {});
 

@@ -1,4 +1,4 @@
-#include "inner_walls.h"
+#include "interior_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,23 +21,23 @@ double way_to_side(double distance, int side, double clear) { return side * std:
 
 }  // namespace
 
-InnerWalls::InnerWalls(const Surface& surface)
+InteriorSurface::InteriorSurface(const Surface& surface)
     : surface_(surface), thickness_(kThickness * surface.bounding_radius()), depth_(kWay * thickness_) {}
 
-bool InnerWalls::fill(const Sphere& ball) const {
+bool InteriorSurface::fill(const Sphere& ball) const {
   const Sphere larger{ball.center, ball.radius + 2 * depth_};
   const auto [planes, count] = planes_near(larger);
   if (count == 0) return false;
   return count == 1 ? is_inside_beyond(planes[0], larger) : is_inside_beyond(planes, larger);
 }
 
-bool InnerWalls::in_slab(const Plane& plane, Index triangle) const {
+bool InteriorSurface::in_slab(const Plane& plane, Index triangle) const {
   const auto corners = surface_.corners(triangle);
   return std::all_of(corners.begin(), corners.end(),
                      [&](const Point& corner) { return std::abs(plane.distance(corner)) <= thickness_; });
 }
 
-InnerWalls::Planes InnerWalls::planes_near(const Sphere& ball) const {
+InteriorSurface::Planes InteriorSurface::planes_near(const Sphere& ball) const {
   Planes found;
   bool too_many = false;
   surface_.visit_nearest(ball.center, [&](Index triangle) {
@@ -59,7 +59,7 @@ InnerWalls::Planes InnerWalls::planes_near(const Sphere& ball) const {
 }
 
 // Whether a place on each side of the slab, if the ball reaches it, lies inside the solid.
-bool InnerWalls::is_inside_beyond(const Plane& plane, const Sphere& ball) const {
+bool InteriorSurface::is_inside_beyond(const Plane& plane, const Sphere& ball) const {
   const double distance = plane.distance(ball.center);
   for (const int side : {-1, 1}) {
     const double way = way_to_side(distance, side, kClear * thickness_);
@@ -70,7 +70,7 @@ bool InnerWalls::is_inside_beyond(const Plane& plane, const Sphere& ball) const 
 
 // The same for the four parts that two slabs leave. In each part the place nearest to the ball's centre is tested: it
 // is reached along one of the normals or along both.
-bool InnerWalls::is_inside_beyond(const std::array<Plane, 2>& planes, const Sphere& ball) const {
+bool InteriorSurface::is_inside_beyond(const std::array<Plane, 2>& planes, const Sphere& ball) const {
   const double clear = kClear * thickness_;
   const double cosine = planes[0].normal.dot(planes[1].normal), squared_sine = (1 - cosine) * (1 + cosine);
   const std::array<double, 2> distance{planes[0].distance(ball.center), planes[1].distance(ball.center)};

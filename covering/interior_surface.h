@@ -5,13 +5,13 @@
 
 namespace orchard::detail {
 
-// Inner walls: where a surface cuts itself, or parts of it share faces, some of it lies inside the solid. The signed
-// distance is 0 there, as on the border, and a branch and bound that looks for places outside would follow all of a
-// wall down to its finest cells. Near most of its places a wall is a piece of one plane, or of two that cross: there
-// this class proves that nothing is outside.
-class InnerWalls {
+// The parts of a surface that lie inside the solid, because the surface cuts itself or parts of it share faces. The
+// signed distance is 0 there, as on the boundary of the solid, so a branch and bound that looks for places outside
+// would divide its cells along all of such a part down to the finest ones. Near most of its places, such a part is a
+// piece of one plane, or of two that cross. There, this class proves that nothing is outside.
+class InteriorSurface {
  public:
-  explicit InnerWalls(const Surface& surface);
+  explicit InteriorSurface(const Surface& surface);
 
   // True: no point of the closed ball is farther from the solid than depth(). False: not known. As fast as a query of
   // the distance where neither one plane nor two hold what is near. Throws InputError unless surface.solid().
