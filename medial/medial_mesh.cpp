@@ -32,7 +32,8 @@ class Triangulator {
 
   detail::AxisTriangles run() {
     for (; face_ < axis_.faces.size(); ++face_) cut(axis_.faces[face_], axis_.face_points[face_]);
-    for (Index wall = 0; wall < axis_.walls.size(); ++wall, ++face_) cut(axis_.walls[wall], axis_.wall_points[wall]);
+    for (Index i = 0; i < axis_.topology_faces.size(); ++i, ++face_)
+      cut(axis_.topology_faces[i], axis_.topology_face_points[i]);
     std::sort(pieces_.begin(), pieces_.end());
     detail::AxisTriangles result;
     for (const auto& [triangle, face] : pieces_) {

@@ -23,10 +23,10 @@ namespace orchard::detail {
 namespace {
 
 constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
-const std::set<std::string> kCategories{"answer",         "body",    "branch", "carried",     "cluster", "component",
-                                        "kind",           "measure", "node",   "origin",      "parent",  "segment",
-                                        "part",           "region",  "curve",  "thin_region", "sheet",   "structure",
-                                        "structure_kind", "trunk",   "wall",   "has_faces"};
+const std::set<std::string> kCategories{
+    "answer", "body",      "branch",         "carried", "cluster",       "component", "kind",  "measure",
+    "node",   "origin",    "parent",         "segment", "part",          "region",    "curve", "thin_region",
+    "sheet",  "structure", "structure_kind", "trunk",   "topology_face", "has_faces"};
 
 std::vector<vtkPolyData*> all_of(const ViewParts& parts) {
   std::vector<vtkPolyData*> all;

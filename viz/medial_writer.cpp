@@ -21,12 +21,12 @@ namespace {
 struct Cell {
   std::vector<Index> corners;
   Index segment = kNone, part = kNone, point_a = kNone, point_b = kNone;
-  bool wall = false;
+  bool for_topology = false;
   double angle = kNoValue;
 };
 
 void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& points, const std::vector<Index>& segments,
-               std::span<const Index> parts, bool wall, const MedialAxis& axis, std::vector<Cell>& cells) {
+               std::span<const Index> parts, bool for_topology, const MedialAxis& axis, std::vector<Cell>& cells) {
   for (Index face = 0; face < faces.size(); ++face) {
     const auto corners = faces[face];
     cells.push_back({.corners = {corners.begin(), corners.end()},
@@ -34,7 +34,7 @@ void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& point
                      .part = parts[face],
                      .point_a = points[face][0],
                      .point_b = points[face][1],
-                     .wall = wall,
+                     .for_topology = for_topology,
                      .angle = separation_angle(axis, corners, points[face])});
   }
 }
@@ -43,7 +43,8 @@ std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segment
   std::vector<Cell> cells;
   const std::span<const Index> sheets = structure.of_face;
   add_faces(axis.faces, axis.face_points, segments.of_face, sheets, false, axis, cells);
-  add_faces(axis.walls, axis.wall_points, segments.of_wall, sheets.subspan(axis.faces.size()), true, axis, cells);
+  add_faces(axis.topology_faces, axis.topology_face_points, segments.of_topology_face,
+            sheets.subspan(axis.faces.size()), true, axis, cells);
   std::size_t edge = 0;
   for (Index i = 0; i < axis.size(); ++i) {
     for (const Index next : axis.neighbors[i]) {
@@ -113,7 +114,7 @@ void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, con
   add_ints(data, "has_faces", count,
            [&](std::size_t i) { return segments.segments[cells[i].segment].has_faces ? 1 : 0; });
   add_ints(data, "trunk", count, [&](std::size_t i) { return segments.segments[cells[i].segment].trunk ? 1 : 0; });
-  add_ints(data, "wall", count, [&](std::size_t i) { return cells[i].wall ? 1 : 0; });
+  add_ints(data, "topology_face", count, [&](std::size_t i) { return cells[i].for_topology ? 1 : 0; });
   add_doubles(data, "contact_angle", count, [&](std::size_t i) { return in_degrees(cells[i].angle); });
   add_ints(data, "point_a", count, [&](std::size_t i) { return as_int(cells[i].point_a); });
   add_ints(data, "point_b", count, [&](std::size_t i) { return as_int(cells[i].point_b); });

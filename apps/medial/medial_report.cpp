@@ -75,7 +75,7 @@ json to_json(const MedialBuild& build) {
           {"vertices_left_out", build.axis.left_out},
           {"vertices", build.axis.size()},
           {"faces", build.axis.faces.size()},
-          {"walls", build.axis.walls.size()},
+          {"topology_faces", build.axis.topology_faces.size()},
           {"seconds", seconds}};
 }
 

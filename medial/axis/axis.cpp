@@ -163,7 +163,7 @@ void validate(const MedialAxis& axis, const Surface& surface) {
   const Index points = static_cast<Index>(axis.points.size());
   if (axis.normals.size() != points || axis.turns.size() != points || axis.radii.size() != size ||
       axis.angles.size() != size || axis.forming_points.size() != size || axis.neighbors.size() != size ||
-      axis.face_points.size() != axis.faces.size() || axis.wall_points.size() != axis.walls.size() ||
+      axis.face_points.size() != axis.faces.size() || axis.topology_face_points.size() != axis.topology_faces.size() ||
       axis.origins.size() != points) {
     throw Error("medial axis: arrays of different lengths");
   }
@@ -179,7 +179,7 @@ void validate(const MedialAxis& axis, const Surface& surface) {
     if (!surface.inside(axis.centers[i])) fail("centre outside the surface", i);
   }
   validate_faces(axis.faces, axis.face_points, size, points);
-  validate_faces(axis.walls, axis.wall_points, size, points);
+  validate_faces(axis.topology_faces, axis.topology_face_points, size, points);
 }
 
 }  // namespace orchard

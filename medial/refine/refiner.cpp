@@ -202,11 +202,11 @@ void Refiner::find_balls(FoundBalls* found) {
 }
 
 const std::array<Index, 2>& Refiner::points_of(Index face) const {
-  return face < axis_.faces.size() ? axis_.face_points[face] : axis_.wall_points[face - axis_.faces.size()];
+  return face < axis_.faces.size() ? axis_.face_points[face] : axis_.topology_face_points[face - axis_.faces.size()];
 }
 
 std::span<const Index> Refiner::corners_of(Index face) const {
-  return face < axis_.faces.size() ? axis_.faces[face] : axis_.walls[face - axis_.faces.size()];
+  return face < axis_.faces.size() ? axis_.faces[face] : axis_.topology_faces[face - axis_.faces.size()];
 }
 
 // Whether the two points of a face have, seen from its middle, contacts between which nothing is lost: such a face
@@ -222,7 +222,7 @@ bool Refiner::has_single_contact(Index face, BallSolver& solver) const {
 }
 
 void Refiner::drop_single_contact_faces() {
-  std::vector<std::uint8_t> single_contact(axis_.faces.size() + axis_.walls.size(), 0);
+  std::vector<std::uint8_t> single_contact(axis_.faces.size() + axis_.topology_faces.size(), 0);
   tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(single_contact.size()), 128),
                     [&](const auto& range) {
                       BallSolver solver = this->solver();

@@ -106,7 +106,7 @@ TEST(MedialSegments, OfABoxAreItsThirteenSheets) {
   const MedialAxis axis = build_medial_axis(surface, {.sampling = {.face_points = 3200, .edge_points = 800}}).axis;
   const double spacing = std::sqrt(surface.report().area / 4000);
   const MedialSegments found = medial_segments(axis, {.touching = 2 * spacing});
-  const Index cells = axis.faces.size() + axis.walls.size();
+  const Index cells = axis.faces.size() + axis.topology_faces.size();
   Index large = 0, trunks = 0;
   for (const auto& segment : found.segments) {
     if (100 * segment.cells < cells) continue;

@@ -71,7 +71,7 @@ const std::map<std::string, Rule>& rules() {
       {"added", {.max = 1}},
       {"has_faces", {.max = 1}},
       {"trunk", {.max = 1}},
-      {"wall", {.max = 1}},
+      {"topology_face", {.max = 1}},
       {"carried", {.max = 1}},
       {"at_box", {.max = 1}},
       {"forming_points", {.none = true, .counts_in = "-medial-contacts.vtp"}},

@@ -58,7 +58,7 @@ struct MedialPieces {
 // Counts the pieces of a medial mesh. O(n log n).
 MedialPieces medial_pieces(const MedialMesh& mesh);
 // Returns the total length, in mesh units, of the edges with exactly one triangle. These are the borders of sheets,
-// walls included. O(n log n).
+// topology faces included. O(n log n).
 double border_length(const MedialMesh& mesh);
 
 // The measure that a worst place belongs to.

@@ -61,9 +61,9 @@ struct RefineReport {
 
 // The result of refine_axis().
 struct RefinedAxis {
-  // The refined axis. Its faces are triangles, and it has no walls. Its points are the contacts of its vertices, one to
-  // four for each vertex. The two points of a face are the two contacts of its corners that are seen farthest apart.
-  // Vertices of radius 0 lie on sharp edges, so validate(axis, surface) does not hold.
+  // The refined axis. Its faces are triangles, and it has no topology faces. Its points are the contacts of its
+  // vertices, one to four for each vertex. The two points of a face are the two contacts of its corners that are seen
+  // farthest apart. Vertices of radius 0 lie on sharp edges, so validate(axis, surface) does not hold.
   MedialAxis axis;
   // The edges of the mesh that sheets reach, each as two vertices of the mesh, in ascending order.
   std::vector<std::array<Index, 2>> features;
