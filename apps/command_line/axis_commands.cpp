@@ -262,7 +262,7 @@ void add_voronoi(CLI::App& app, Request& request) {
   });
 }
 
-// Either a word or a level.
+// Either the word auto or a percentage.
 CLI::Validator noise_validator() {
   const NumberValidator level(CLI::Range(1e-4, 100 * kMaxNoise));
   return {[level](std::string& text) { return text == "auto" ? std::string() : level(text); }, "auto or a percentage"};

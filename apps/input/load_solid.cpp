@@ -99,35 +99,35 @@ void unite(SolidMesh& solid, BoundingBall ball, const Progress& progress) {
 void smooth(SolidMesh& solid, const MeshOptions& options, const Progress& progress) {
   NoiseResult noise{.estimated = options.noise == "auto"};
   const TriangleMesh& mesh = solid.surface.mesh();
-  noise.level = noise.estimated ? noise_level(mesh) : *finite_number(options.noise) / 100;
-  if (noise.level > kMaxNoise)
+  noise.deviation = noise.estimated ? noise_deviation(mesh) : *finite_number(options.noise) / 100;
+  if (noise.deviation > kMaxNoise)
     throw InputError(
         fmt::format("the noise was estimated as {:.2g} % of the diagonal, more than the {:.2g} % that can "
-                    "be smoothed away; give a lower level to --noise, or take --wrap",
-                    100 * noise.level, 100 * kMaxNoise));
-  if (!noise.estimated || noise.level > kNegligibleNoise) {
-    DenoisedMesh smoothed = denoise(mesh, {.level = noise.level}, progress);
+                    "be smoothed away; give a smaller percentage to --noise, or take --wrap",
+                    100 * noise.deviation, 100 * kMaxNoise));
+  if (!noise.estimated || noise.deviation > kNegligibleNoise) {
+    DenoisedMesh smoothed = denoise(mesh, {.deviation = noise.deviation}, progress);
     noise.rounds = smoothed.rounds;
     noise.moved_rms = smoothed.moved_rms;
     noise.moved_max = smoothed.moved_max;
     solid.surface = Surface(std::move(smoothed.mesh), options.ball);
     if (!solid.surface.solid())
-      throw InputError("without its noise the mesh is no solid any more; give a lower level to --noise");
+      throw InputError("without its noise the mesh is no solid any more; give a smaller percentage to --noise");
   }
   solid.noise = noise;
 }
 
 json noise_json(const NoiseResult& noise) {
   return {{"estimated", noise.estimated},
-          {"level_over_diagonal", noise.level},
+          {"deviation_over_diagonal", noise.deviation},
           {"rounds", noise.rounds},
           {"moved_rms_over_diagonal", noise.moved_rms},
           {"moved_max_over_diagonal", noise.moved_max}};
 }
 
 std::string in_words(const NoiseResult& noise) {
-  std::string text =
-      fmt::format("noise of {:.2g} % of the diagonal{}", 100 * noise.level, noise.estimated ? ", as estimated," : "");
+  std::string text = fmt::format("noise of {:.2g} % of the diagonal{}", 100 * noise.deviation,
+                                 noise.estimated ? ", as estimated," : "");
   if (noise.rounds == 0) return text + " was left: it is too low to matter";
   return text + fmt::format(" was smoothed away; no vertex moved by more than {:.2g} % of the diagonal",
                             100 * noise.moved_max);

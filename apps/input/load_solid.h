@@ -23,8 +23,8 @@ struct MeshOptions {
   double wrap_alpha = WrapOptions{}.alpha;
   std::optional<double> join;        // corners up to this far apart, in bounding radii; else as repair.h says
   std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
-  std::string noise;                 // not empty: what to smooth away, "auto" or a level in percent of the diagonal
-  bool unite = false;                // parts that cut each other become one
+  std::string noise;   // not empty: what to smooth away, "auto" or its standard deviation in percent of the diagonal
+  bool unite = false;  // parts that cut each other become one
   BoundingBall ball = BoundingBall::minimal;
 
   bool operator==(const MeshOptions&) const = default;
@@ -47,11 +47,11 @@ struct UnionResult {
 // The noise that was smoothed away. Lengths are fractions of the diagonal, as in noise.h.
 struct NoiseResult {
   bool estimated = false;
-  double level = 0;
-  int rounds = 0;  // 0: the level is too low to matter, and the mesh is as it was
+  double deviation = 0;  // standard deviation along the normals, over the diagonal
+  int rounds = 0;        // 0: the noise is too low to matter, and the mesh is as it was
   double moved_rms = 0, moved_max = 0;
 };
-// An estimated level up to this is left alone: the borders of axes lose twice as much anyway.
+// An estimated deviation up to this is left alone: the borders of axes lose twice as much anyway.
 inline constexpr double kNegligibleNoise = 0.0005;
 
 struct SolidMesh {

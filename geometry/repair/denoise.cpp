@@ -11,9 +11,9 @@ namespace orchard {
 namespace {
 
 constexpr int kMovesPerRound = 3;
-constexpr double kFarthestMove = 3;  // levels: of normal noise, 0.3 % lies beyond
-// Of the level: where rounds end. A smooth surface through noisy vertices keeps a part of their displacements, as a fit
-// with a tenth as many parameters as vertices keeps sqrt(1 - 1 / 10).
+constexpr double kFarthestMove = 3;  // deviations: of normal noise, 0.3 % lies beyond
+// Of the deviation: where rounds end. A smooth surface through noisy vertices keeps a part of their displacements, as a
+// fit with a tenth as many parameters as vertices keeps sqrt(1 - 1 / 10).
 constexpr double kWholeMove = 0.95;
 
 struct Facet {
@@ -24,8 +24,12 @@ struct Facet {
 
 class Denoiser {
  public:
-  Denoiser(const TriangleMesh& mesh, double level)
-      : given_(mesh), mesh_(mesh), rings_(mesh), level_(level * diagonal_of(mesh)), facets_(mesh.triangles.size()) {
+  Denoiser(const TriangleMesh& mesh, double deviation)
+      : given_(mesh),
+        mesh_(mesh),
+        rings_(mesh),
+        deviation_(deviation * diagonal_of(mesh)),
+        facets_(mesh.triangles.size()) {
     measure_facets();
     find_neighbors();
     set_widths();
@@ -34,8 +38,8 @@ class Denoiser {
   DenoisedMesh run(int max_rounds, const Progress& progress) {
     DenoisedMesh result;
     double moved = 0;
-    while (result.rounds < max_rounds && moved < kWholeMove * level_) {
-      report_progress(progress, "noise", std::min(1.0, moved / level_));
+    while (result.rounds < max_rounds && moved < kWholeMove * deviation_) {
+      report_progress(progress, "noise", std::min(1.0, moved / deviation_));
       filter_normals();
       for (int move = 0; move < kMovesPerRound; ++move) {
         move_vertices();
@@ -135,7 +139,7 @@ class Denoiser {
 
   // No farther from the given places than noise goes.
   void stay_near() {
-    const double farthest = kFarthestMove * level_;
+    const double farthest = kFarthestMove * deviation_;
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
       const Vector way = mesh_.vertices[v] - given_.vertices[v];
       if (const double length = way.norm(); length > farthest)
@@ -159,7 +163,7 @@ class Denoiser {
   const TriangleMesh& given_;
   TriangleMesh mesh_;
   const VertexRings rings_;
-  const double level_;  // in mesh units
+  const double deviation_;  // in mesh units
   std::vector<Facet> facets_;
   std::vector<std::vector<Index>> neighbors_;
   double per_distance_ = 0, per_difference_ = 0;
@@ -168,11 +172,11 @@ class Denoiser {
 }  // namespace
 
 DenoisedMesh denoise(const TriangleMesh& mesh, const DenoiseOptions& options, const Progress& progress) {
-  if (!(options.level >= 0 && options.level <= kMaxNoise))
-    throw InputError("the level of noise must lie between 0 and 0.05 of the diagonal");
+  if (!(options.deviation >= 0 && options.deviation <= kMaxNoise))
+    throw InputError("the deviation of the noise must lie between 0 and 0.05 of the diagonal");
   if (options.max_rounds < 0) throw InputError("the number of rounds must be at least 0");
-  if (options.level == 0) return {.mesh = mesh};
-  return Denoiser(mesh, options.level).run(options.max_rounds, progress);
+  if (options.deviation == 0) return {.mesh = mesh};
+  return Denoiser(mesh, options.deviation).run(options.max_rounds, progress);
 }
 
 }  // namespace orchard

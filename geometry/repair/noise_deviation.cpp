@@ -78,7 +78,7 @@ double deviation(const TriangleMesh& mesh, const VertexRings& rings, Index verte
 
 }  // namespace
 
-double noise_level(const TriangleMesh& mesh) {
+double noise_deviation(const TriangleMesh& mesh) {
   if (is_designed(mesh)) return 0;
   const VertexRings rings(mesh);
   const std::size_t count = mesh.vertices.size();
