@@ -6,7 +6,7 @@
 namespace orchard::detail {
 
 // A place of the surface that the envelope of a medial mesh is to end at, or one inside the solid that is to be as deep
-// in the envelope.
+// in the reconstruction.
 struct FitSample {
   Point position;
   Vector normal;      // outward
