@@ -11,8 +11,8 @@ namespace {
 template <std::size_t kCorners>
 using Cells = std::vector<std::array<Index, kCorners>>;
 
-// Sorts cells, and of those that are repeated keeps the first that is not deleted, or else the first. Returns the new
-// number of each.
+// Sorts cells and removes repeated ones. Of these, the first that is not deleted stays, or else the first. Returns the
+// new number of each cell.
 template <std::size_t kCorners>
 std::vector<Index> sort_and_deduplicate(Cells<kCorners>& cells, std::vector<CellFlags>& flags) {
   std::vector<Index> order(cells.size());
@@ -68,7 +68,7 @@ class MaReader {
   }
 
  private:
-  // MATTopo counts tetrahedra as well.
+  // Reads the fourth number of the header, which MATTopo uses for its tetrahedra.
   Index fourth_count() {
     std::array<std::int64_t, 1> number{};
     if (lines_.whole_numbers_to_the_end(number) == 0) return 0;
@@ -99,8 +99,8 @@ class MaReader {
     std::sort(result.begin(), result.end());
     return result;
   }
-  // "type", "type deleted", of MATTopo "type deleted copies", or none; anything else at the end of a line is not meant
-  // for us.
+  // Reads the flags at the end of a line: "type", "type deleted", MATTopo's "type deleted copies", or none. Other text
+  // at the end of a line is ignored.
   CellFlags flags_with_type() {
     std::array<std::int64_t, 3> numbers{};
     const std::size_t count = lines_.whole_numbers_to_the_end(numbers);
@@ -108,7 +108,8 @@ class MaReader {
     if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("a type that is beyond 32-bit numbers");
     return {static_cast<int>(numbers[0]), deleted(numbers[1])};
   }
-  // "deleted" or none; of MATTopo "importance deleted [copies]", of its tetrahedra "deleted [copies]".
+  // Reads the flags of a line without a type: "deleted" or none; from MATTopo "importance deleted [copies]", and for
+  // its tetrahedra "deleted [copies]".
   CellFlags flag_without_type() {
     std::array<std::int64_t, 2> numbers{};
     std::size_t count = lines_.whole_numbers_to_the_end(numbers);
@@ -127,7 +128,7 @@ class MaReader {
     return flag == 1;
   }
 
-  // MATStruct's section, if what follows is a number of parts alone; other text is not meant for us.
+  // Reads MATStruct's section if the next line is just the number of parts. Other text is ignored.
   void read_structure() {
     std::array<std::int64_t, 1> parts{};
     if (!lines_.next() || lines_.whole_numbers_to_the_end(parts) == 0) return;
@@ -149,7 +150,7 @@ class MaReader {
     }
   }
 
-  // Parts by the new numbers of cells, ascending, each once.
+  // Renumbers the cells of the parts, sorts them and removes repeated ones.
   void renumber(const std::vector<Index>& edges, const std::vector<Index>& triangles) {
     for (StructurePart& part : flagged_.structure) {
       if (part.kind != 3) {
@@ -164,7 +165,7 @@ class MaReader {
     MedialMesh& mesh = flagged_.mesh;
     std::vector<Index> edges = sort_and_deduplicate(mesh.edges, flagged_.edges);
     const std::vector<Index> triangles = sort_and_deduplicate(mesh.triangles, flagged_.triangles);
-    // What is missing is there for the sake of its triangles: deleted if all of these are.
+    // Adds the missing edges of triangles. Such an edge counts as deleted if all of its triangles are deleted.
     const std::size_t listed = mesh.edges.size();
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       const auto& [a, b, c] = mesh.triangles[i];
@@ -183,11 +184,11 @@ class MaReader {
   TextLines lines_;
   Index vertices_ = 0;
   bool any_flags_ = false, in_tetrahedra_ = false;
-  bool has_copies_ = false;  // a file of MATTopo, with its columns
+  bool has_copies_ = false;  // whether it is a file of MATTopo with its extra columns
   FlaggedMedialMesh flagged_;
 };
 
-// Whether a cell counts as far as its own flag goes.
+// Whether a cell is not deleted, as far as its own flag says.
 bool kept(const std::vector<CellFlags>& flags, std::size_t i) { return flags.empty() || !flags[i].deleted; }
 
 bool any_deleted(const std::vector<CellFlags>& flags) {

@@ -14,7 +14,8 @@ namespace orchard {
 namespace {
 
 constexpr std::size_t kTask = 64, kReport = 16'384;  // places of one task, and between two calls of Progress
-// Of the squared longest edge: a triangle's area after edges were halved, on average over meshes of few long edges.
+// The average area of a triangle after its edges have been halved until they are short enough, over the squared longest
+// edge. Measured on meshes with few long edges.
 constexpr double kAreaOfEdge = 0.21;
 
 void require_in_range(const ThicknessOptions& options) {

@@ -81,7 +81,7 @@ class Pruner {
     const double angle = edge_angle(edge);
     if (angle < options_.angle || covered_[end]) queue_.emplace(-angle, Cell{false, edge});
   }
-  // The widest angle at which two of the points that form the edge are seen from its middle.
+  // Returns the largest angle at which two of the points that form the edge are seen from its middle.
   double edge_angle(Index edge) const {
     const auto [a, b] = complex_.edges()[edge];
     std::vector<Index> common;

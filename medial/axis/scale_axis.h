@@ -7,9 +7,9 @@
 
 namespace orchard::detail {
 
-// For each ball whether, when all are enlarged `scale` times about their centres, it lies in another one: 1 if so. A
-// ball counts only against larger ones, so that of equal balls all stay. With scale 1 nothing is covered. Parallel;
-// O(n log n) in practice.
+// Returns 1 for each ball that lies in another one after all balls have been enlarged `scale` times about their
+// centres. Only larger balls count as covering ones, so that equal balls all stay. With scale 1 no ball is covered.
+// Parallel; O(n log n) in practice.
 std::vector<std::uint8_t> covered_when_scaled(std::span<const Point> centers, std::span<const double> radii,
                                               double scale);
 

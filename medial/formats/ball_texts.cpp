@@ -1,4 +1,4 @@
-// Kinds of text that hold balls, one a line.
+// Reads text formats that have a ball on each line.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -21,7 +21,7 @@ Point read_point(TextLines& lines) {
   return {x, y, lines.real()};
 }
 
-// The numbers of one line, at most five of them; a sixth counts as well, but is not read.
+// The numbers at the beginning of a line. No format has more than five; a sixth is read to detect that there are more.
 struct Numbers {
   std::array<double, 6> values{};
   std::size_t count = 0;
@@ -103,7 +103,7 @@ ForeignAxis parse_swc_axis(TextLines lines) {
   std::vector<std::int64_t> parents;
   while (lines.next()) {
     const std::int64_t own = lines.whole();
-    lines.whole();  // the kind of neurite
+    lines.whole();  // the kind of neurite, which is not used
     const Point center = read_point(lines);
     add_ball(axis, lines, center, lines.real("a radius"));
     const std::int64_t parent = lines.whole();

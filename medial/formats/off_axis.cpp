@@ -5,7 +5,7 @@
 namespace orchard::detail {
 namespace {
 
-// Numbers of an OFF file, which may break its lines anywhere.
+// Reads the numbers of an OFF file, whose lines may be broken anywhere.
 class OffReader {
  public:
   explicit OffReader(TextLines lines) : lines_(std::move(lines)) {}
@@ -41,7 +41,7 @@ class OffReader {
         lines_.fail("a vertex number twice");
       if (corners.size() > 64) lines_.fail("a face of more than 64 corners");
     }
-    lines_.skip_line();  // a colour
+    lines_.skip_line();  // skips the colour of a face
     if (size == 2) axis_.mesh.edges.push_back({corners[0], corners[1]});
     for (Index k = 1; k + 1 < size; ++k) axis_.mesh.triangles.push_back({corners[0], corners[k], corners[k + 1]});
   }

@@ -84,7 +84,7 @@ class PlyAxisReader {
     }
   }
 
-  // A face of two corners is an edge, a polygon a fan.
+  // Adds a face: one of two corners is an edge, and a polygon becomes a fan of triangles.
   void add_face(const Table& table, std::size_t row, const std::vector<Index>& corners) {
     if (corners.size() < 2) tables_.fail(table, row, "a face of fewer than two corners");
     std::vector<Index> sorted = corners;

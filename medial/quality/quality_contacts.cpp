@@ -11,21 +11,22 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPrecision = 1e-3;  // of the distance to the second contact
-constexpr double kLikely = 1.02;     // times the radius: where the second contact of a medial ball is, and room
-constexpr double kTinyBall = 1e-6;   // of the diagonal: its contacts are rounding
+// Times the radius: the second contact of a medial ball is expected within this distance.
+constexpr double kLikely = 1.02;
+constexpr double kTinyBall = 1e-6;  // of the diagonal: the contacts of smaller balls are dominated by rounding
 
-// The nearest point, outside a cone around the first contact, of triangles given one after the other.
+// Finds the nearest point, outside a cone around the first contact, of triangles that are given one after the other.
 class ContactSearch {
  public:
-  // Looks for what is nearer than `limit`.
+  // Looks only for points that are nearer than `limit`.
   ContactSearch(const Point& center, const Vector& direction, double angle, double limit)
       : center_(center), direction_(direction), cosine_(std::cos(angle)), nearest_(limit) {}
 
   double nearest() const { return nearest_; }
-  double limit() const { return (1 - kPrecision) * nearest_; }  // what is farther is not looked for
+  double limit() const { return (1 - kPrecision) * nearest_; }  // points farther than this are not searched for
 
-  // The cone is convex: a piece whose corners are inside it is inside. Of a piece across its border the nearest point
-  // counts if that is outside, else halves are looked at.
+  // The cone is convex, so a piece whose corners are inside it lies inside and is skipped. If a piece crosses the cone,
+  // its nearest point counts if that is outside the cone; otherwise both halves are examined.
   void look_at(const Point& a, const Point& b, const Point& c) {
     if (in_cone(a) && in_cone(b) && in_cone(c)) return;
     const ClosestPoint closest = closest_point_of_triangle(center_, a, b, c);

@@ -11,7 +11,7 @@
 namespace orchard::detail {
 namespace {
 
-// A loss as a number from 0 to 1, 1/2 at the level.
+// Maps a loss to a number from 0 to 1, which is 1/2 at the level.
 double scaled(const ExactBall& ball, double level) {
   if (ball.radius > 0 && ball.count < 2) return 0;
   if (!std::isfinite(ball.loss)) return 1;
@@ -31,11 +31,11 @@ class LevelCut {
   }
 
  private:
-  static constexpr int kLevelSteps = 5;       // of bisection for the place where an edge crosses the level
-  static constexpr double kNearLevel = 0.04;  // of the loss: near enough to end that
+  static constexpr int kLevelSteps = 5;       // steps of bisection towards the place where an edge crosses the level
+  static constexpr double kNearLevel = 0.04;  // of the loss: bisection ends when it is this near to the level
 
-  // Where an edge from a vertex above the level to one below crosses it: the last exact ball above; nothing if there is
-  // none.
+  // Finds where an edge from a vertex above the level to one below crosses it. Returns the last exact ball above the
+  // level, and false if there is none.
   bool crossing(BallSolver& solver, const ExactBall& above, const ExactBall& below, ExactBall& found) const {
     const double high = scaled(above, level_), low = scaled(below, level_);
     double from = 0, to = 1;

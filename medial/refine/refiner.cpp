@@ -26,27 +26,29 @@ namespace orchard::detail {
 namespace {
 
 constexpr const char* kRefiningStage = "refining the axis";
-// Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
-// which side of the level a vertex is.
+// Contacts are merged if the ball between them loses less than this share of what a border may lose. The share is so
+// small that each vertex is clearly on one side of the level.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;       // of reaching edges and corners: the last ones find next to nothing
-constexpr double kMinLength = 1e-3;    // diagonals: shorter edges are not divided
-constexpr std::size_t kMaxSeeds = 24;  // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpenLoss = 1.65;     // of the border loss: places left open by more are reached for
-constexpr double kResolution = 0.1;    // spacings, of looking for these
-constexpr double kDetail = 0.15;       // of what is left open: places open by this more are not missed
-constexpr double kDentWidth = 0.5;     // of what is left open: narrower dents are missed
-constexpr int kReachPasses = 3;        // of reaching for what is left open and evening that out
-constexpr int kDentRounds = 3;         // of looking for these, once nothing is open: some stay where no ball fits
-constexpr double kApart = 0.5;         // spacings, between two that are reached for at once
-constexpr double kMinAim = 0.125;      // of the edge length asked for: no shorter ones are aimed at
+constexpr int kBorderPasses = 3;  // rounds of extending sheets to edges and corners; the last ones add hardly anything
+constexpr double kMinLength = 1e-3;    // in diagonals: shorter edges are not divided
+constexpr std::size_t kMaxSeeds = 24;  // starting points of a vertex; merged vertices have hundreds of them
+constexpr double kOpenLoss = 1.65;     // of the border loss: sheets are extended to places that are open by more
+constexpr double kResolution = 0.1;    // in spacings: the resolution of the search for such places
+constexpr double kDetail = 0.15;       // of the open distance: places that are open by this much more are never missed
+constexpr double kDentWidth = 0.5;     // of the open distance: narrower dents are missed
+constexpr int kReachPasses = 3;        // rounds of reaching open places and remeshing
+// Rounds for dents after all places have been reached; some dents stay because no ball fits into them.
+constexpr int kDentRounds = 3;
+constexpr double kApart = 0.5;     // in spacings: the smallest distance of two places that are reached in one round
+constexpr double kMinAim = 0.125;  // of the edge length asked for: the shortest edge length that remeshing aims at
 constexpr int kEvenRounds = 6;
-constexpr std::size_t kFineMesh = 2;  // vertices for each surface point: with more, the points stand for them
+// Vertices of the mesh for each surface point: in finer meshes, surface points replace the vertices.
+constexpr std::size_t kFineMesh = 2;
 constexpr double kDegree = std::numbers::pi / 180;
-// Of borders as the diagram leaves them, and as they grow.
+// Limits for notches, both in the borders that the diagram leaves and while sheets are extended.
 constexpr NotchLimits kNotches{
     .max_angle = 150 * kDegree, .max_bend = 180 * kDegree, .max_length = 4, .min_loss = 0.5, .on_trial = false};
-constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
+constexpr double kCoincident = 1e-6;  // in diagonals: vertices nearer than this are merged
 
 void check(const RefineOptions& options) {
   if (!(options.border_loss >= 0 && std::isfinite(options.border_loss)))
@@ -65,7 +67,7 @@ void check(const RefineOptions& options) {
   if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
 }
 
-// In diagonals.
+// Returns how far places may be open because of the border loss, in diagonals.
 double left_open_by_borders(const RefineOptions& options) {
   return kOpenLoss * std::max(options.border_loss, options.tolerance);
 }
@@ -124,7 +126,7 @@ RefinedAxis Refiner::finish() {
   return result();
 }
 
-// What is new since it was last done, and what is near that.
+// Remeshes what has changed since the last time, and its surroundings.
 void Refiner::even_out() {
   const auto key = [](const ExactBall& ball) { return std::array{ball.center.x(), ball.center.y(), ball.center.z()}; };
   std::vector<std::uint8_t> where(complex_.size());
@@ -139,7 +141,7 @@ void Refiner::even_out() {
                               .features = &features_,
                               .rounds = kEvenRounds};
   report_.vertices_moved += remesh(surface_, places_, complex_, where, options, progress_);
-  split_errors_ = {};  // vertices have other numbers
+  split_errors_ = {};  // the vertices have been renumbered
   evened_.clear();
   for (const ExactBall& ball : complex_.balls) evened_.push_back(key(ball));
   std::sort(evened_.begin(), evened_.end());
@@ -163,7 +165,8 @@ void Refiner::make_complex() {
   complex_.triangles = std::move(triangles.mesh.triangles);
 }
 
-// Where the ball of a vertex is looked for: its forming points; for the middle of a face, its two points.
+// Collects the places where the ball of a vertex is searched: its forming points, or for the middle of a face, its two
+// points.
 void Refiner::seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const {
   seeds.clear();
   const auto add = [&](Index point) { seeds.push_back(place(point)); };
@@ -229,7 +232,8 @@ void Refiner::drop_single_contact_faces() {
                       for (Index face = range.begin(); face != range.end(); ++face)
                         single_contact[face] = has_single_contact(face, solver) ? 1 : 0;
                     });
-  // Edges go with all of their triangles, vertices with all of their edges; those without triangles stay.
+  // An edge is removed if all of its triangles are removed, and a vertex if all of its edges are. Edges and vertices
+  // that had none stay.
   std::vector<std::uint8_t> has(complex_.edges.size(), 0);
   Doomed doomed(complex_);
   std::fill(doomed.edges.begin(), doomed.edges.end(), std::uint8_t{1});
@@ -249,7 +253,7 @@ void Refiner::drop_single_contact_faces() {
   }
   const std::size_t before = complex_.triangles.size();
   collapse(complex_, doomed, std::vector<double>(complex_.size(), 0));
-  complex_.complete();  // triangles came in the order of the axis's faces
+  complex_.complete();  // the triangles are in the order of the faces of the axis
   report_.single_contact_triangles = static_cast<Index>(before - complex_.triangles.size());
 }
 
@@ -295,8 +299,8 @@ Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector
                            border_options(), split_options());
 }
 
-// Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added
-// is divided, too. Returns whether anything was.
+// Extends sheets to places that the balls leave open by more than borders may, then to deep dents between balls. Added
+// cells are divided, too. Returns whether any were added.
 bool Refiner::reach() {
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
   report_.small_pieces += drop_small_pieces(complex_, &guard_);

@@ -67,7 +67,7 @@ std::string to_ply(const MedialMesh& mesh, const AxisContacts* contacts) {
     std::string line;
     append_place(line, mesh.centers[v]);
     append_number(line, mesh.radii[v]);
-    text.append(line, 1);  // without the first blank
+    text.append(line, 1);  // skips the first blank
     text += '\n';
   }
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
