@@ -64,7 +64,7 @@ VoronoiDiagram read_vor(const std::filesystem::path& file) {
   TextLines lines(file);
   lines.expect("voronoi");
   const Index points = lines.index(), vertices = lines.index();
-  VoronoiDiagram diagram;  // grows as the file does, whatever its first line promises
+  VoronoiDiagram diagram;  // it grows with the lines that are read, not with the count in the first line
   for (Index i = 0; i < points; ++i) {
     lines.expect("p");
     diagram.points.push_back(read_point(lines));
