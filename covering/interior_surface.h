@@ -13,20 +13,21 @@ class InteriorSurface {
  public:
   explicit InteriorSurface(const Surface& surface);
 
-  // True: no point of the closed ball is farther from the solid than depth(). False: not known. As fast as a query of
-  // the distance where neither one plane nor two hold what is near. Throws InputError unless surface.solid().
+  // True means that no point of the closed ball is farther from the solid than depth(); false means that this is not
+  // known. It costs as much as a query of the distance if the surface near the ball is not in one or two planes. Throws
+  // InputError unless surface.solid().
   bool fill(const Sphere& ball) const;
   double depth() const { return depth_; }  // mesh units
 
  private:
   struct Plane {
     Vector normal;
-    double offset;  // of the plane along the normal
+    double offset;  // the offset of the plane along the normal
     double distance(const Point& at) const { return normal.dot(at) - offset; }
   };
   struct Planes {
     std::array<Plane, 2> planes;
-    std::size_t count = 0;  // 0: there are none near, or not all lies in one or two
+    std::size_t count = 0;  // 0 if there are none near, or if the surface near the ball is not in one or two planes
   };
   Planes planes_near(const Sphere& ball) const;
   bool in_slab(const Plane& plane, Index triangle) const;
