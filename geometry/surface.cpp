@@ -16,12 +16,12 @@
 namespace orchard {
 namespace {
 
-// Twice the area vector, from the two shortest edges: that is where rounding harms it least. Zero if it is all
-// rounding, by the same measure as check_mesh.
+// Returns twice the area vector, computed from the two shortest edges, where rounding errors are smallest. It is zero
+// if it consists of rounding errors only, by the criterion of check_mesh().
 Vector area_vector(const std::array<Point, 3>& p) {
-  std::array<Vector, 3> edges;  // opposite the corners
+  std::array<Vector, 3> edges;  // opposite to the corners
   std::array<double, 3> lengths{};
-  std::size_t apex = 0;  // opposite the longest edge
+  std::size_t apex = 0;  // opposite to the longest edge
   for (std::size_t i = 0; i < 3; ++i) {
     edges[i] = p[(i + 2) % 3] - p[(i + 1) % 3];
     lengths[i] = edges[i].norm();
@@ -75,7 +75,7 @@ struct Surface::Data {
   }
   Data(const Data&) = delete;
 
-  // Many surfaces are never asked for either.
+  // These are computed on demand, because many applications need neither.
   const std::vector<std::array<Index, 2>>& self_intersections() const {
     std::call_once(cuts_found_, [&] { cuts_ = detail::self_intersections(mesh, tree); });
     return cuts_;

@@ -10,7 +10,8 @@ namespace orchard {
 namespace {
 
 constexpr std::uint64_t kDescentStage = 300;  // the stream of random numbers
-// Sizes of steps over the looseness of the ball: the first one, and the one at which a ball is finished.
+// Sizes of steps over the looseness of the ball: the first one, and the one below which a ball is finished; then the
+// factors by which a step is changed.
 constexpr double kFirstDescentStep = 0.2, kMinDescentStep = 2e-4;
 constexpr double kLongerDescent = 1.6, kShorterDescent = 0.85;
 

@@ -116,7 +116,7 @@ std::vector<CellMesh::Face> CellMesh::outer_faces() {
   return result;
 }
 
-// Of its corners, those of several faces as often as they are in one.
+// Returns the mean of the corners. A corner of several faces counts once for each.
 Point CellMesh::middle_of_cell(Index cell, std::span<const std::size_t> first_face) const {
   Point sum = Point::Zero();
   double count = 0;

@@ -31,7 +31,7 @@ std::vector<Point> vertices_of(const Soup& soup, const std::string& name) {
   return vertices;
 }
 
-// face_at: byte of each polygon in the file; empty if they are triangles.
+// `face_at` has the byte of each polygon in the file; it is empty if all are triangles.
 FaceCollector faces_of(const Soup& soup, std::span<const std::size_t> face_at) {
   FaceCollector faces;
   std::vector<Index> corners;

@@ -17,7 +17,7 @@ struct GmshType {
   CellKind kind;
 };
 
-// The element types of Gmsh's manual, section "Node ordering": corners come first.
+// The element types of Gmsh's manual, section "Node ordering". Corners come before other nodes.
 constexpr CellKind kGmshTriangle{CellShape::polygon, 3}, kGmshQuad{CellShape::polygon, 4},
     kGmshTetrahedron{CellShape::tetrahedron, 4}, kGmshHexahedron{CellShape::prism, 8}, kGmshPrism{CellShape::prism, 6},
     kGmshPyramid{CellShape::pyramid, 5};
@@ -89,7 +89,7 @@ class GmshReader {
   }
 
  private:
-  // Past the line that ends a section, whatever is left of the section.
+  // Skips the rest of a section and the line that ends it.
   void end_section(std::string_view section, std::size_t start) {
     const std::string end = "$End" + std::string(section.substr(1));
     const std::size_t found = bytes_.find(end, in_.position());
@@ -117,12 +117,12 @@ class GmshReader {
     if (size != 8) in_.fail(at, "numbers of " + std::to_string(size) + " bytes; 8 can be read");
   }
 
-  // As text, or with as many bytes.
+  // Reads a number as text, or as so many bytes.
   std::int64_t number32() { return in_.binary() ? in_.raw<std::int32_t>() : in_.integer(); }
   std::int64_t number64() { return in_.binary() ? in_.raw<std::int64_t>() : in_.integer(); }
   std::int64_t tag() { return one_ ? number64() : number32(); }
   double real() { return in_.binary() ? in_.raw<double>() : in_.number(); }
-  // A number of items in a head of version 2, which is text in binary files too.
+  // Reads a number of items in a header of version 2, which is text even in binary files.
   std::int64_t text_count() {
     const std::int64_t count = in_.integer();
     if (in_.binary()) in_.line();
@@ -229,7 +229,7 @@ class GmshReader {
   std::string_view bytes_;
   const std::string& name_;
   MixedScanner in_;
-  bool four_ = false, one_ = false;  // version 4 or later, 4.1 or later
+  bool four_ = false, one_ = false;  // whether it is version 4 or later, and 4.1 or later
   CellMesh mesh_;
   std::unordered_map<std::int64_t, Index> nodes_;
   std::vector<Index> corners_;

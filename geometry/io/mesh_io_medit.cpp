@@ -9,8 +9,8 @@
 namespace orchard {
 namespace {
 
-// Elements of the format: their name in .mesh and number in .meshb. Their corners are in VTK's order but for what the
-// shape does not depend on.
+// Elements of the format: the name in .mesh files and the number in .meshb files. Their corners are in the order of
+// VTK, except for differences that do not change the shape.
 struct MeditElement {
   std::string_view name;
   std::int32_t code;
@@ -26,7 +26,7 @@ constexpr std::array kMeditElements{MeditElement{"Edges", 5, 2, {}},
                                     MeditElement{"Pyramids", 49, 5, {CellShape::pyramid, 5}}};
 constexpr std::int32_t kMeditDimension = 3, kMeditVertices = 4, kMeditEnd = 54;
 
-// Comments of .mesh files as blanks, so that places stay what they are.
+// Replaces comments of .mesh files by blanks, so that all bytes keep their positions.
 std::string without_medit_comments(std::string_view bytes) {
   std::string text(bytes);
   bool comment = false;
@@ -103,7 +103,7 @@ class MeditReader {
     if (dimension != 3) in_.fail(at, std::to_string(dimension) + " dimensions; a surface needs 3");
   }
 
-  // Of a keyword that is not used.
+  // Skips the numbers of a keyword that is not used.
   void skip_numbers(std::string_view keyword, std::size_t start) {
     const auto begins_number = [](std::string_view word) {
       return !word.empty() && (is_digit(word[0]) || word[0] == '-' || word[0] == '+' || word[0] == '.');
@@ -133,7 +133,7 @@ class MeditReader {
       const std::size_t at = in_.position();
       Point point;
       for (double& coordinate : point) coordinate = real();
-      integer();  // what the vertex belongs to
+      integer();  // skips the number of the region that the vertex belongs to
       if (!point.allFinite()) mesh_.vertex_faults.add(static_cast<Index>(i), at);
       mesh_.vertices.push_back(point);
     }

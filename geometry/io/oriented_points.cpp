@@ -37,7 +37,7 @@ OrientedPoints of_ply(const PlyTables& tables, const PlyTables::Table& vertices,
   return result;
 }
 
-// The numbers that a line begins with, six at most.
+// Reads the numbers at the beginning of a line, at most six. Returns how many there are.
 std::size_t numbers_of(std::string_view line, std::array<double, 6>& numbers) {
   const char *at = line.data(), *end = line.data() + line.size();
   std::size_t count = 0;
@@ -77,7 +77,7 @@ std::optional<OrientedPoints> read_oriented_points(const std::filesystem::path& 
   std::string bytes = read_bytes(file);
   MeshReadReport unused;
   if (kind == ".xyz") {
-    read_xyz(bytes, file.string(), unused);  // refuses what is no text of points
+    read_xyz(bytes, file.string(), unused);  // refuses everything that is not a text of points
     return of_xyz(bytes, file.string());
   }
   const PlyTables tables(file.string(), std::move(bytes));

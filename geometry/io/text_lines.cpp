@@ -57,7 +57,7 @@ void TextLines::expect(std::string_view word) {
   at_ += word.size();
 }
 
-// Reads what is next on the line with one of the functions of text_scan.h.
+// Reads the next item on the line with one of the functions of text_scan.h.
 template <class Scan, class Number>
 bool TextLines::scan(Scan&& number, Number& value) {
   const std::string_view rest = line();
@@ -142,7 +142,7 @@ std::string_view TextLines::word() {
 void append_number(std::string& text, double value) {
   char digits[32];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
-  (void)error;  // 32 characters hold every double
+  (void)error;  // 32 characters are enough for every double
   text += ' ';
   text.append(digits, end);
 }

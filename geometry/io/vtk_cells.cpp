@@ -20,7 +20,7 @@ const std::array kVtkTypes{
     VtkType{10, kVtkTetrahedron}, VtkType{11, {CellShape::voxel, 8}}, VtkType{12, kVtkHexahedron},
     VtkType{13, kVtkWedge}, VtkType{14, kVtkPyramid}, VtkType{15, {CellShape::prism, 10}},
     VtkType{16, {CellShape::prism, 12}},
-    // Curved ones: quadratic, and Lagrange's and Bezier's of any degree.
+    // Curved cells: quadratic ones, and those of Lagrange and Bezier of any degree.
     VtkType{22, vtk_curved(kVtkTriangle)}, VtkType{34, vtk_curved(kVtkTriangle)}, VtkType{69, vtk_curved(kVtkTriangle)},
     VtkType{76, vtk_curved(kVtkTriangle)}, VtkType{23, vtk_curved(kVtkQuad)}, VtkType{28, vtk_curved(kVtkQuad)},
     VtkType{30, vtk_curved(kVtkQuad)}, VtkType{70, vtk_curved(kVtkQuad)}, VtkType{77, vtk_curved(kVtkQuad)},

@@ -19,7 +19,7 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-// A number of a file as wide as the name of its type says.
+// The width of a number in the file, by the name of its type.
 struct LegacyNumber {
   std::string_view name;
   std::size_t bytes;
@@ -81,7 +81,7 @@ class LegacyVtkReader {
     if (encoding == "binary") in_.set_binary(std::endian::big);
   }
 
-  // False where the geometry ends.
+  // Returns false at the end of the geometry.
   bool read_section() {
     const std::size_t at = in_.position();
     const std::string keyword = lower_case(in_.word());
@@ -137,7 +137,7 @@ class LegacyVtkReader {
     for (std::int64_t& number : numbers) number = integer(type);
     return numbers;
   }
-  // "OFFSETS vtktypeint64" and the numbers, of version 5.
+  // Reads "OFFSETS vtktypeint64" and the numbers, in the form of version 5.
   std::vector<std::int64_t> named_integers(const char* name, std::int64_t promised) {
     in_.more();
     const std::size_t at = in_.position();
@@ -147,7 +147,7 @@ class LegacyVtkReader {
     return integers(promised, type);
   }
 
-  // Cells as version 5 has them, or each as its number of points and these.
+  // Reads cells in the form of version 5, or each as its number of points followed by the points.
   VtkCells read_cell_arrays(std::size_t at) {
     const std::int64_t first = in_.integer(), second = in_.integer();
     in_.line();
@@ -183,7 +183,7 @@ class LegacyVtkReader {
     types_ = integers(promised, type_named("int", in_.position()));
   }
 
-  // Polyhedra have the numbers of their faces in place of their points.
+  // Polyhedra have the numbers of their faces where other cells have their points.
   void add_cells() {
     if (!cells_) in_.fail(bytes_.size(), "no CELLS");
     cells_->check();
@@ -206,7 +206,7 @@ class LegacyVtkReader {
     }
   }
 
-  // "FIELD name arrays", then "name components tuples type" and the numbers of each.
+  // Skips "FIELD name arrays", and then "name components tuples type" with the numbers of each array.
   void skip_field() {
     in_.word();
     const std::uint64_t arrays = in_.checked_count(in_.integer(), 8, "arrays");
@@ -228,7 +228,7 @@ class LegacyVtkReader {
         for (std::uint64_t column = 0; column < columns; ++column) real(type);
     }
   }
-  // To the next empty line.
+  // Skips everything up to the next empty line.
   void skip_metadata() {
     in_.line();
     while (in_.remaining() > 0 && !in_.line().empty()) {

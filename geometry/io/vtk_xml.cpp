@@ -13,7 +13,7 @@
 namespace orchard {
 namespace {
 
-// A <Piece>: its arrays by the section that they are in and their name, such as "Polys/connectivity".
+// A <Piece> with its arrays, by the name of their section and their own name, such as "Polys/connectivity".
 struct VtkPiece {
   std::size_t at = 0;
   std::uint64_t points = 0;
@@ -54,7 +54,7 @@ class VtkXmlReader {
       fail(tag.at, "compressed by " + in_quotes(compressor) + "; save it with zlib or without compression");
   }
 
-  // False where appended data begin, which end the text.
+  // Returns false where appended data begin, because the text ends there.
   bool take_tag() {
     const XmlTags::Tag& tag = tags_.tag();
     if (tag.name == "VTKFile") return closed_ = tag.closes, !closed_;
@@ -70,7 +70,7 @@ class VtkXmlReader {
     return true;
   }
 
-  // Other tags, such as the <InformationKey> of an array, belong to what they are in.
+  // Other tags, such as the <InformationKey> of an array, belong to the array or section that contains them.
   static bool is_section(std::string_view name) {
     for (const std::string_view section :
          {"Points", "Polys", "Strips", "Lines", "Verts", "Cells", "PointData", "CellData", "FieldData"})
@@ -85,7 +85,7 @@ class VtkXmlReader {
     if (mark == std::string_view::npos || bytes_[mark] != '_')
       fail(tag.at, "appended data that do not begin with an underscore");
     encoding_.appended = mark + 1;
-    closed_ = true;  // arrays say where their data end
+    closed_ = true;  // the end of the data of an array is where this tag begins
   }
 
   std::uint64_t number_of(const XmlTags::Tag& tag, std::string_view attribute) const {

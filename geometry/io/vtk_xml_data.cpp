@@ -11,9 +11,9 @@
 namespace orchard {
 namespace {
 
-constexpr std::uint64_t kZlibRatio = 1032;  // more than zlib can make of a byte
+constexpr std::uint64_t kZlibRatio = 1032;  // the largest factor by which zlib can compress
 
-// Bytes in a file, as they are or in base64; streams in base64 may follow each other, each with its own padding.
+// Bytes in a file, either plain or in base64. Several base64 streams may follow each other, each with its own padding.
 class ByteSource {
  public:
   ByteSource(std::string_view bytes, std::size_t begin, std::size_t end, bool base64, const std::string& name)
@@ -68,7 +68,7 @@ class ByteSource {
   std::size_t at_;
   bool base64_;
   const std::string& name_;
-  std::string kept_;  // decoded, but not yet taken
+  std::string kept_;  // decoded bytes that have not been read yet
 };
 
 class BlockReader {
@@ -113,7 +113,7 @@ class BlockReader {
   const VtkEncoding& encoding_;
 };
 
-// A type of numbers, with how one is read.
+// A type of numbers, and the function that reads one.
 template <typename Result>
 struct VtkNumber {
   std::string_view name;

@@ -29,7 +29,7 @@ constexpr int kUnknown = std::numeric_limits<int>::min();
 
 Sheets::Sheets(const TriangleMesh& mesh, const TriangleTree& tree, std::span<const std::array<Index, 2>> cuts)
     : mesh_(mesh), tree_(tree) {
-  // Vertices at the same place are one here: a surface may touch itself along edges and in triangles.
+  // Vertices at the same place count as one here, because a surface may touch itself along edges and in triangles.
   const std::vector<Index> first = first_at_place(mesh);
   TriangleMesh welded{{}, mesh.triangles};
   for (auto& corners : welded.triangles)

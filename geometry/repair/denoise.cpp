@@ -11,13 +11,13 @@ namespace orchard {
 namespace {
 
 constexpr int kMovesPerRound = 3;
-constexpr double kFarthestMove = 3;  // deviations: of normal noise, 0.3 % lies beyond
-// Of the deviation: where rounds end. A smooth surface through noisy vertices keeps a part of their displacements, as a
+constexpr double kFarthestMove = 3;  // in deviations; 0.3 % of normally distributed noise is farther
+// Over the deviation: where rounds end. A smooth surface through noisy vertices keeps a part of their displacements: a
 // fit with a tenth as many parameters as vertices keeps sqrt(1 - 1 / 10).
 constexpr double kWholeMove = 0.95;
 
 struct Facet {
-  Vector normal = Vector::Zero();  // of length 1, or 0 of a triangle without area
+  Vector normal = Vector::Zero();  // of length 1, or 0 for a triangle without area
   Point center = Point::Zero();
   double area = 0;
 };
@@ -77,7 +77,7 @@ class Denoiser {
     });
   }
 
-  // Of each triangle those that share a corner with it, in ascending order.
+  // Finds the triangles that share a corner with each triangle, in ascending order.
   void find_neighbors() {
     neighbors_.resize(facets_.size());
     tbb::parallel_for(std::size_t{0}, facets_.size(), [&](std::size_t t) {
@@ -92,8 +92,8 @@ class Denoiser {
     });
   }
 
-  // The widths of the two Gaussians: the mean distance of neighbours, and the root mean square of the differences of
-  // their normals, which noise makes all over the mesh and sharp edges in few places.
+  // Sets the widths of the two Gaussians: the mean distance of neighbours, and the root mean square difference of their
+  // normals, which is due to noise everywhere and to sharp edges in few places.
   void set_widths() {
     double distances = 0, differences = 0, count = 0;
     for (std::size_t t = 0; t < facets_.size(); ++t)
@@ -102,7 +102,7 @@ class Denoiser {
         differences += (facets_[t].normal - facets_[other].normal).squaredNorm();
         ++count;
       }
-    // Without a width, neighbours differ in nothing: a flat mesh has one normal.
+    // A width of 0 means that all neighbours are equal; a flat mesh has a single normal.
     if (distances > 0) per_distance_ = 1 / (2 * (distances / count) * (distances / count));
     if (differences > 0) per_difference_ = 1 / (2 * differences / count);
   }
@@ -124,7 +124,7 @@ class Denoiser {
     for (std::size_t t = 0; t < facets_.size(); ++t) facets_[t].normal = filtered[t];
   }
 
-  // Each vertex by the mean of its distances from the planes of its triangles.
+  // Moves each vertex by the mean of its distances from the planes of its triangles.
   void move_vertices() {
     std::vector<Point> moved(mesh_.vertices.size());
     tbb::parallel_for(std::size_t{0}, moved.size(), [&](std::size_t v) {
@@ -137,7 +137,7 @@ class Denoiser {
     mesh_.vertices = std::move(moved);
   }
 
-  // No farther from the given places than noise goes.
+  // Limits the distance of vertices from their given places to what noise explains.
   void stay_near() {
     const double farthest = kFarthestMove * deviation_;
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {

@@ -115,7 +115,7 @@ bool UnionBoundary::is_free(const Point& point, Index ball, Index other) const {
 
 double UnionBoundary::depth(const Point& point) const {
   double best = kInfinity;
-  // Balls that contain the point's surroundings limit the search, so that few samples need to be compared.
+  // The distance from the nearest point of a single sphere bounds the result, so that few samples have to be compared.
   for (Index b = 0; b < balls_.size(); ++b) {
     const Vector away = point - balls_[b].center;
     const double length = away.norm(), distance = std::abs(balls_[b].radius - length);

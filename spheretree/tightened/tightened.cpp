@@ -92,7 +92,8 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, compared, surface);
   if (allowed.size() != usual.report.levels.size() + 1) return usual;
   own.effort = Effort::high;
-  // Spheres may have been removed above while levels below were built. Then the levels above stay as they are.
+  // With better lower levels, more spheres may become redundant above them. Then the levels above stay as they are in
+  // the usual tree.
   for (Index same = 0; same < usual.report.levels.size();) {
     Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), weights, rest);
     TightenBuild best = thorough.run_beside(standard, same, allowed, compared);
