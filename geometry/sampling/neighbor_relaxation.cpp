@@ -16,7 +16,7 @@ namespace {
 // triangles is well above this.
 constexpr double kFacesAway = -0.3;
 // An edge pushes only the points whose normals agree with its own, even where several parts of the surface end at it.
-constexpr double kOwnSheet = 0.5;
+constexpr double kSameSide = 0.5;
 constexpr std::size_t kCellGrain = 64;  // cells of one task
 
 class NeighborRelaxation {
@@ -187,7 +187,7 @@ class NeighborRelaxation {
   }
   Vector push(const Edge& edge, const Point& p, const Vector& normal) const {
     const double on = (p - edge.start).dot(edge.along);
-    if (on < 0 || on > edge.length || normal.dot(edge.normal) < kOwnSheet) return Vector::Zero();
+    if (on < 0 || on > edge.length || normal.dot(edge.normal) < kSameSide) return Vector::Zero();
     const Vector away = p - edge.start - on * edge.along;
     const double h = away.norm() / radius_;
     const Vector flat = away - away.dot(normal) * normal;
