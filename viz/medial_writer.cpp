@@ -57,7 +57,7 @@ std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segment
   return cells;
 }
 
-// Of which part of the structure each is, and what kind of part that is.
+// Adds the part of the structure that each point or cell belongs to, and the kind of that part.
 template <class PartOf>
 void add_structure(const MedialStructure& structure, std::size_t count, const PartOf& part_of, vtkFieldData* data) {
   add_ints(data, "structure", count, [&](std::size_t i) { return as_int(part_of(i)); });
@@ -169,7 +169,7 @@ void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh,
   set_points(data, mesh.centers.size(), [&](std::size_t i) { return mesh.centers[i]; });
   const MedialStructure structure = medial_structure(mesh);
   vtkNew<vtkCellArray> triangles, lines;
-  std::vector<Index> parts;  // of each cell: lines come first
+  std::vector<Index> parts;  // of each cell, where lines come first
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     if (!structure.on_curve(e)) continue;
     add_cell(lines, mesh.edges[e]);

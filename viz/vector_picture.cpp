@@ -42,7 +42,7 @@ std::vector<VectorLine> lines_of(const ViewParts& parts, int level, const Reques
   return art.lines();
 }
 
-// From the lower left corner of a panel to the upper left one of the picture.
+// Moves lines from the lower left corner of a panel to the upper left corner of the picture.
 void add_lines(std::vector<VectorLine> lines, double left, double bottom, VectorPicture& picture) {
   for (VectorLine& line : lines) {
     for (std::size_t i = 0; i + 1 < line.places.size(); i += 2) {
@@ -89,7 +89,7 @@ void draw_vector_picture(const Request& request) {
     add_lines(lines_of(seen, level, request, projection, layout), left, bottom, picture);
     if (!request.captions) continue;
     const double middle = left + span / 2, below = picture.height - bottom;
-    // Baselines are a third of the print below the middle of a line.
+    // The baseline is a third of the print size below the middle of a line.
     picture.texts.push_back(
         {caption_of(seen, level), middle, below - 0.70 * line + caption_print / 3, caption_print, true});
     picture.texts.push_back({detail_of(seen, level), middle, below - 0.28 * line + detail_print / 3, detail_print});

@@ -52,7 +52,8 @@ class CellGrid {
   void add(const CellPolyhedron& cell, Index point, double inaccuracy) {
     const vtkIdType first = points_->GetNumberOfPoints();
     for (const Point& corner : cell.corners) points_->InsertNextPoint(corner.data());
-    vtkNew<vtkIdList> stream;  // number of faces, then for each the number of its corners and these
+    // The number of faces, then for each face the number of its corners followed by the corners.
+    vtkNew<vtkIdList> stream;
     stream->InsertNextId(cell.faces.size());
     for (Index face = 0; face < cell.faces.size(); ++face) {
       stream->InsertNextId(static_cast<vtkIdType>(cell.faces[face].size()));
