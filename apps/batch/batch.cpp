@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kMostNames = 10;  // in a message
+constexpr std::size_t kMostNames = 10;  // the number of names in one message
 
 bool is_given(const BatchCommand& command, const std::string& option) {
   return std::find(command.given.begin(), command.given.end(), option) != command.given.end();

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr const char* kSummary = "batch-summary.json";
 
-// Of the files of a merge: what the results were made with, not how or where they were merged.
+// The provenance of merged files: how the results were made, not how or where they were merged.
 Provenance provenance_of(const json& description) {
   const std::string command_line = description.value("command_line", "");
   return {.run = {.typed = command_line,

@@ -58,7 +58,7 @@ std::vector<BatchMesh> found_in(const fs::path& folder, const fs::path& skipped)
 std::string fault_of(const fs::path& file) {
   if (access(file.c_str(), R_OK) != 0) return std::generic_category().message(errno);
   std::error_code error;
-  // A device or a pipe may never end.
+  // Reading a device or a pipe might never end.
   if (!fs::is_regular_file(file, error)) return "it is no plain file";
   return is_mesh_name(file) ? "" : "its name is not that of a mesh " + input_formats_in_words();
 }

@@ -7,14 +7,14 @@
 namespace orchard::apps {
 
 struct BatchMesh {
-  std::string name;            // as the manifest says it, or relative to the folder: the same on every machine
+  std::string name;            // as in the manifest, or relative to the folder, so that it is the same on every machine
   std::filesystem::path file;  // where it is
 };
 
 // The meshes of a batch in their order, which is that of its rows.
 struct Manifest {
   std::vector<BatchMesh> meshes;
-  std::string checksum;  // of the names: two manifests with the same one have the same rows
+  std::string checksum;  // of the names: manifests with the same checksum have the same rows
 };
 
 // Reads a text file of a path a line (relative to the file's folder; empty lines and lines that begin with # do not

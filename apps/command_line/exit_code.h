@@ -3,7 +3,7 @@
 
 namespace orchard::apps {
 
-// What the program's exit code says. Scripts rely on the numbers: a meaning keeps its number for ever.
+// The exit codes of the program. Scripts rely on the numbers, so a meaning never changes its number.
 enum ExitCode : int {
   kSucceeded = 0,
   kFailed = 1,          // any other failure; `verify` did not prove everything

@@ -12,7 +12,7 @@
 namespace orchard::apps {
 namespace {
 
-// What options of tree_options.cpp are for, where that is not every method.
+// The methods that options of tree_options.cpp belong to, for options that do not belong to all.
 struct OwnOption {
   const char* option;
   std::vector<TreeMethod> methods;
@@ -41,7 +41,7 @@ std::string method_names(const std::vector<TreeMethod>& methods) {
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-// The steps to an axis that a file stands in for. An axis of one's own still gets points on the surface, and is pruned.
+// Returns the steps that a file replaces. An axis of the user's still gets surface points, and is pruned.
 std::vector<TuningStep> steps_replaced(const std::string& source) {
   if (source == "points") return {TuningStep::points, TuningStep::open_places};
   if (source == "diagram") return {TuningStep::points, TuningStep::diagram, TuningStep::open_places};
@@ -50,7 +50,7 @@ std::vector<TuningStep> steps_replaced(const std::string& source) {
 
 using FlagNames = std::vector<std::string>;
 
-// Refuses flags for a step that a file is in place of.
+// Refuses flags for a step that a file replaces.
 void refuse_replaced(const TuningFlag& flag, const FlagNames& sources) {
   for (const std::string& source : sources) {
     const std::vector<TuningStep> replaced = steps_replaced(source);
@@ -60,7 +60,7 @@ void refuse_replaced(const TuningFlag& flag, const FlagNames& sources) {
   }
 }
 
-// Refuses a flag that other flags' values leave without effect, whichever of the tunings is run.
+// Refuses a flag that has no effect because of the values of other flags, in all of the tunings that are run.
 void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tunings) {
   if (!flag.unused) return;
   std::string why;
@@ -71,7 +71,7 @@ void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tu
   throw InputError(fmt::format("--{} has no effect with {}", flag.name, why));
 }
 
-// Refuses what a sweep overrides, and what it varies without any column that would tell.
+// Refuses options that a sweep overrides, and options that it varies without a column that shows the effect.
 void refuse_unused_in_sweep(const MedialCommand& command, const FlagNames& swept) {
   for (const std::string& name : swept) {
     if (among(name, command.given))

@@ -14,7 +14,7 @@ struct PlacedPoints {
   double max_moved = 0;
 };
 
-// Where points lie on the surface; moves them there.
+// Moves points onto the surface.
 PlacedPoints on_surface(std::vector<Point> points, const Surface& surface) {
   PlacedPoints own;
   own.sampling.points = std::move(points);

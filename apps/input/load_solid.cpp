@@ -54,7 +54,7 @@ SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, BoundingBall ba
   return solid;
 }
 
-// Without a number there is nothing to say how they are counted.
+// Without a number in the message, no note on how triangles are counted is needed.
 std::string with_note_on_numbers(const std::string& faults) {
   return faults.find_first_of("0123456789") == std::string::npos ? faults : faults + " (numbers count from 0)";
 }
@@ -95,7 +95,7 @@ void unite(SolidMesh& solid, BoundingBall ball, const Progress& progress) {
   solid.surface = Surface(std::move(united->mesh), ball);
 }
 
-// Replaces the surface by one without its noise, if that is more than nothing.
+// Replaces the surface by one without its noise, unless the noise is negligible.
 void smooth(SolidMesh& solid, const MeshOptions& options, const Progress& progress) {
   NoiseResult noise{.estimated = options.noise == "auto"};
   const TriangleMesh& mesh = solid.surface.mesh();
@@ -145,7 +145,7 @@ RepairMeshOptions repair_options(std::optional<double> join) {
 
 std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits) {
   if (repair.holes_left == 0) return {};
-  // The width that would do, rounded up so that what is written here can be copied.
+  // The width that suffices, rounded up so that the printed value can be given as it is.
   const double enough = std::ceil(repair.max_hole_left * 100) / 100;
   const std::string of_edges = limits.max_hole_edges == std::numeric_limits<Index>::max()
                                    ? ""

@@ -4,8 +4,8 @@
 
 namespace orchard::apps {
 
-// What arrived at standard input, as a file that lives as long as this object, so that it can be read like any other:
-// more than once, and from any place.
+// The data from standard input, as a file that exists as long as this object, so that it can be read like any other:
+// several times, and from any position.
 class StandardInput {
  public:
   // Reads all of standard input. `format`: the ending of the file's name. Throws InputError if nothing arrives, and

@@ -38,7 +38,7 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-// The name without what programs add to the files of one axis.
+// Returns the name without the endings that programs add to the files of one axis.
 std::string stem_of(const fs::path& file) {
   std::string stem = file.stem().string();
   for (const std::string ending : {"_center", "_skel_face", "_skel_edge", "_sphere"}) {
@@ -167,7 +167,8 @@ class Finder {
       return;
     }
     entry.mesh = meshes_.at(entry.model);
-    // Files of one axis count once: the points of Point2Skeleton before its faces, an .off before its .obj.
+    // The files of one axis count once: Point2Skeleton's points before its faces, and an .off file before its .obj
+    // file.
     const std::string family = file.parent_path().string() + '/' + stem_of(file);
     const bool pair = one_of(lower_extension(file), {".obj", ".off"});
     if (pair && !families_.insert(family).second) {

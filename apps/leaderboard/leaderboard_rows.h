@@ -41,7 +41,7 @@ struct LeaderboardRow {
 };
 nlohmann::json to_json(const LeaderboardRow& row);
 
-// What there is to see of a measured row, below the folder of the leaderboard.
+// The files that show a measured row, below the folder of the leaderboard.
 struct WorstFiles {
   std::filesystem::path mesh = {}, axis = {}, places = {};  // .vtp
   std::filesystem::path ball = {};                          // JSON: x, y, z and radius of the mesh's bounding ball

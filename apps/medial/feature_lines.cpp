@@ -13,7 +13,7 @@
 namespace orchard::apps {
 namespace {
 
-constexpr double kSamePlace = 1e-5;  // bounding radii: texts with six digits round by less
+constexpr double kSamePlace = 1e-5;  // in bounding radii: coordinates written with six digits are off by less
 
 class FeatureLineReader {
  public:

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders that do not exist, the outermost first; makes them. Sets `error` if that cannot be.
+// Makes the folders that do not exist, and returns them, the outermost first. Sets `error` if that fails.
 std::vector<fs::path> make_folders(const fs::path& folder, std::error_code& error) {
   std::vector<fs::path> made;
   fs::path whole;
@@ -62,7 +62,7 @@ void check_file(const fs::path& file, std::span<const fs::path> inputs) {
     throw InputError(file.string() + ": cannot be written: " + reason(errno) + "; remove it or choose another place");
 }
 
-// What the report that is there says, if the files may be replaced.
+// Returns the report of the run whose files are there, if these may be replaced.
 std::optional<RecordedRun> check_owner(const Destination& destination) {
   const fs::path report = destination.folder / destination.report;
   std::optional<RecordedRun> recorded = read_recorded(report);

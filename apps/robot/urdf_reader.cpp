@@ -45,7 +45,7 @@ class Reader {
                                  file_.string(), fs::path(file_.stem()).replace_extension(".urdf").string()));
   }
 
-  // Counted, so that what is there often is one line.
+  // Equal messages are counted, so that each is printed once.
   void note_unknown(const XMLElement& parent, const std::set<std::string>& known) {
     for (const XMLElement* child = parent.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
       const std::string name = child->Name();

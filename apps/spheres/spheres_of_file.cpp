@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// All that spheres which are there already leave without effect is refused.
+// Refuses all options that have no effect on spheres that exist already.
 void refuse_idle(const SpheresCommand& command) {
   constexpr std::array kOf{"output", "export", "link", "tree", "force", "quiet", "json", "threads", "no-views"};
   for (const std::string& option : command.given)
