@@ -169,9 +169,11 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
                               MedialBuildInput input) {
   if (!surface.solid())
     throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
-  if (options.open_rounds < 0) throw InputError("rounds of adding points at open places: not negative");
+  if (options.open_rounds < 0)
+    throw InputError("the number of rounds that add points at open places must be at least 0");
   if (input.sampling.has_value() + input.diagram.has_value() + input.mesh.has_value() > 1)
-    throw InputError("a medial axis is built from own points, an own diagram or an own axis, not from several");
+    throw InputError(
+        "a medial axis is built from given points, a given diagram or a given axis, but not from several of these");
   return MedialBuilder(surface, options, progress).run(std::move(input));
 }
 

@@ -40,10 +40,11 @@ class MaReader {
   explicit MaReader(TextLines lines) : lines_(std::move(lines)) {}
 
   FlaggedMedialMesh run() {
-    if (!lines_.next()) lines_.fail("is empty; a .ma file starts with its numbers of vertices, edges and faces");
+    if (!lines_.next())
+      lines_.fail("the file is empty; a .ma file starts with its numbers of vertices, edges and faces");
     vertices_ = lines_.index();
     const Index edges = lines_.index(), faces = lines_.index(), tetrahedra = fourth_count();
-    if (vertices_ == 0) lines_.fail("promises no vertices");
+    if (vertices_ == 0) lines_.fail("the file promises no vertices");
     for (Index i = 0; i < vertices_; ++i) read_vertex();
     if (std::all_of(flagged_.vertices.begin(), flagged_.vertices.end(),
                     [](const CellFlags& own) { return own.deleted; }))
@@ -74,13 +75,13 @@ class MaReader {
     if (lines_.whole_numbers_to_the_end(number) == 0) return 0;
     has_copies_ = true;
     if (number[0] < 0 || number[0] > std::numeric_limits<Index>::max())
-      lines_.fail("a number of tetrahedra that is none");
+      lines_.fail("the number of tetrahedra is not a whole number of 0 or more");
     return static_cast<Index>(number[0]);
   }
   void read_vertex() {
     lines_.expect("v");
     const double x = lines_.real(), y = lines_.real(), z = lines_.real(), radius = lines_.real();
-    if (radius < 0) lines_.fail("a negative radius");
+    if (radius < 0) lines_.fail("the radius is negative; it must be 0 or more");
     flagged_.mesh.centers.emplace_back(x, y, z);
     flagged_.mesh.radii.push_back(radius);
     flagged_.vertices.push_back(flags_with_type());
@@ -91,9 +92,9 @@ class MaReader {
     std::array<Index, kCorners> result;
     for (std::size_t k = 0; k < kCorners; ++k) {
       result[k] = lines_.index();
-      if (result[k] >= vertices_) lines_.fail("a vertex number beyond the last vertex (they count from 0)");
+      if (result[k] >= vertices_) lines_.fail("a vertex number is beyond the last vertex (they count from 0)");
       for (std::size_t before = 0; before < k; ++before) {
-        if (result[before] == result[k]) lines_.fail("a vertex number twice");
+        if (result[before] == result[k]) lines_.fail("the cell names a vertex twice");
       }
     }
     std::sort(result.begin(), result.end());
@@ -105,7 +106,7 @@ class MaReader {
     std::array<std::int64_t, 3> numbers{};
     const std::size_t count = lines_.whole_numbers_to_the_end(numbers);
     if (count == 0 || (count == 3 && !has_copies_)) return {};
-    if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("a type that is beyond 32-bit numbers");
+    if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("the type does not fit into 32 bits");
     return {static_cast<int>(numbers[0]), deleted(numbers[1])};
   }
   // Reads the flags of a line without a type: "deleted" or none; from MATTopo "importance deleted [copies]", and for
@@ -123,7 +124,7 @@ class MaReader {
     return count == 0 ? CellFlags() : CellFlags{0, deleted(numbers[0])};
   }
   bool deleted(std::int64_t flag) {
-    if (flag != 0 && flag != 1) lines_.fail("a flag \"deleted\" that is neither 0 nor 1");
+    if (flag != 0 && flag != 1) lines_.fail("the flag \"deleted\" is neither 0 nor 1");
     any_flags_ = true;
     return flag == 1;
   }
@@ -132,12 +133,12 @@ class MaReader {
   void read_structure() {
     std::array<std::int64_t, 1> parts{};
     if (!lines_.next() || lines_.whole_numbers_to_the_end(parts) == 0) return;
-    if (parts[0] < 0) lines_.fail("a number of parts of the structure below 0");
+    if (parts[0] < 0) lines_.fail("the number of parts of the structure is negative");
     for (std::int64_t i = 0; i < parts[0]; ++i) {
       StructurePart part;
       part.number = lines_.index_on_any_line("the number of a part of the structure");
       part.kind = lines_.index_on_any_line("the kind of a part of the structure");
-      if (part.kind > 4) lines_.fail("a kind of part that is none of 0 sheet, 1 seam, 2 border, 3 junction, 4 curve");
+      if (part.kind > 4) lines_.fail("the kind of the part is none of 0 sheet, 1 seam, 2 border, 3 junction, 4 curve");
       const std::size_t cells = part.kind == 0   ? flagged_.mesh.triangles.size()
                                 : part.kind == 3 ? flagged_.mesh.centers.size()
                                                  : flagged_.mesh.edges.size();

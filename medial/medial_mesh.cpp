@@ -114,11 +114,12 @@ MedialMesh medial_mesh(const MedialAxis& axis) { return detail::axis_triangles(a
 void complete(MedialMesh& mesh) { detail::complete_cells(mesh.edges, mesh.triangles); }
 
 void validate(const MedialMesh& mesh) {
-  if (mesh.centers.empty()) throw InputError("medial mesh: no vertices");
-  if (mesh.radii.size() != mesh.centers.size()) throw InputError("medial mesh: as many radii as vertices are needed");
+  if (mesh.centers.empty()) throw InputError("a medial mesh needs at least one vertex");
+  if (mesh.radii.size() != mesh.centers.size()) throw InputError("a medial mesh needs as many radii as vertices");
   for (std::size_t i = 0; i < mesh.centers.size(); ++i) {
-    if (!mesh.centers[i].allFinite()) fail("vertex", i, "is not at a finite place");
-    if (!(mesh.radii[i] >= 0) || !std::isfinite(mesh.radii[i])) fail("vertex", i, "has no radius of zero or more");
+    if (!mesh.centers[i].allFinite()) fail("vertex", i, "has a coordinate that is not finite");
+    if (!(mesh.radii[i] >= 0) || !std::isfinite(mesh.radii[i]))
+      fail("vertex", i, "has a radius that is negative or not a number");
   }
   validate_cells(mesh.edges, mesh.size(), "edge");
   validate_cells(mesh.triangles, mesh.size(), "triangle");

@@ -78,7 +78,7 @@ class Attempts {
 
 SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options,
                                          const Progress& progress, const MedialBuildInput& input) {
-  if (!(seconds >= 0)) throw InputError("the time for a tree: a number of seconds, at least 0");
+  if (!(seconds >= 0)) throw InputError("the time for a tree must be a finite number of seconds, at least 0");
   if (method_of(options.tree) != TreeMethod::tightened)
     throw InputError("a tree within a time limit is a tightened one: give the options of that method");
   return Attempts(seconds, surface, options, progress, input).run();

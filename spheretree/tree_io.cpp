@@ -38,7 +38,7 @@ void append_node(std::string& text, const SphereNode* node) {
 // Reads the number of levels, which includes the root, and the branching.
 std::array<Index, 2> read_header(TextLines& lines) {
   constexpr const char* kExpected = "\"levels branching\", two whole numbers,";
-  if (!lines.next()) lines.fail("is empty; a .sph file starts with \"levels branching\"");
+  if (!lines.next()) lines.fail("the file is empty; a .sph file starts with \"levels branching\"");
   const double levels = lines.real(kExpected), branching = lines.real(kExpected);
   const auto whole = [](double value, double max) { return value >= 1 && value <= max && value == std::floor(value); };
   if (!whole(levels, 64) || !whole(branching, 4096))
@@ -95,7 +95,7 @@ SphereTree read_sph(const std::filesystem::path& file) {
   TextLines lines(file);
   const auto [levels, branching] = read_header(lines);
   const std::uint64_t size = complete_size(levels, branching);
-  if (size > kMaxNodes) lines.fail("promises more than " + std::to_string(kMaxNodes) + " nodes");
+  if (size > kMaxNodes) lines.fail("the file promises more than " + std::to_string(kMaxNodes) + " nodes");
   // Nodes missing at the end count as unused, so the memory depends on the length of the file and not on its header.
   std::vector<Sphere> places;
   while (places.size() < size && lines.next()) places.push_back(read_place(lines));

@@ -44,7 +44,7 @@ View make_view(const Direction& request, const std::vector<Extent>& extents) {
     box.extend(seen - Vector3d::Constant(extent.radius));
     box.extend(seen + Vector3d::Constant(extent.radius));
   }
-  if (box.isEmpty() || !(box.sizes().norm() > 0)) throw std::runtime_error("nothing to draw");
+  if (box.isEmpty() || !(box.sizes().norm() > 0)) throw std::runtime_error("the files contain nothing to draw");
   const Vector3d middle = box.center();
   view.center = middle.x() * view.right + middle.y() * view.up + middle.z() * view.backward;
   view.width = std::max(box.sizes().x(), 0.01 * box.sizes().norm());

@@ -157,7 +157,8 @@ void Canvas::save() {
   writer->SetFileName(request_.png.c_str());
   writer->SetInputData(picture_);
   writer->Write();
-  if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + request_.png);
+  if (writer->GetErrorCode() != 0)
+    throw std::runtime_error(request_.png + ": cannot be written; check that its folder exists and is writable");
 }
 
 void Canvas::put(vtkRenderer* renderer, int width, int height, int left, int bottom) {

@@ -57,7 +57,7 @@ void write_text(const std::string& file, const std::string& bytes) {
   std::ofstream out(file, std::ios::binary);
   out << bytes;
   out.close();
-  if (!out) throw std::runtime_error("cannot write " + file);
+  if (!out) throw std::runtime_error(file + ": cannot be written; check that its folder exists and is writable");
 }
 
 }  // namespace
@@ -68,8 +68,10 @@ bool is_vector_file(const std::filesystem::path& picture) {
 
 void draw_vector_picture(const Request& request) {
   const ViewParts parts = view_parts(Blocks(request.vtm));
-  if (!parts.any()) throw std::runtime_error("pictures of lines are made of the scenes of orchard view only");
-  if (!parts.cells.empty()) throw std::runtime_error("Voronoi cells cannot be drawn as lines");
+  if (!parts.any())
+    throw std::runtime_error("only orchard view can write .svg and .pdf; give the picture a name that ends in .png");
+  if (!parts.cells.empty())
+    throw std::runtime_error("Voronoi cells cannot be drawn as lines; give the picture a name that ends in .png");
   const std::vector<PanelParts> panels = panel_parts(parts, request.figure);
   const int count = static_cast<int>(panels.size());
   const Views views = views_of(request, extents_of(parts, request.figure), false);

@@ -110,7 +110,7 @@ Index write_voronoi_cells(const std::filesystem::path& vtu, const VoronoiDiagram
     if (!cell.corners.empty()) grid.add(cell, point, inaccuracy[point]);
   }
   const std::string xml = grid.xml();
-  if (xml.empty()) throw Error("cannot encode " + vtu.string());
+  if (xml.empty()) throw Error(vtu.string() + ": VTK cannot encode the data; the memory may be full");
   write_file(vtu, xml);
   return grid.size();
 }

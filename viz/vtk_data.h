@@ -112,7 +112,7 @@ void write_with(const std::filesystem::path& file, Data* data) {
   writer->SetInputData(data);
   set_encoding(writer);
   writer->WriteToOutputStringOn();
-  if (writer->Write() != 1) throw Error("cannot encode " + file.string());
+  if (writer->Write() != 1) throw Error(file.string() + ": VTK cannot encode the data; the memory may be full");
   write_file(file, writer->GetOutputString());
 }
 

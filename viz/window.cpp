@@ -43,7 +43,7 @@ struct Picked {
 class Scene {
  public:
   explicit Scene(const WindowRequest& request) : request_(request), parts_(view_parts(Blocks(request.vtm))) {
-    if (!parts_.any()) throw std::runtime_error(request.vtm.string() + " is no scene");
+    if (!parts_.any()) throw std::runtime_error(request.vtm.string() + ": this is no scene of orchard view");
     const View view = make_view(request.direction, extents_of(parts_));
     renderer_ = make_renderer(size_of(parts_));
     glass_ = add_still_parts(renderer_, parts_,

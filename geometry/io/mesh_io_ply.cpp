@@ -25,16 +25,14 @@ class PlyReader {
       if (element.name == "vertex") vertex_count_ = element.rows;
     }
     for (const PlyElement& element : header_.elements) read_element(element);
-    if (needs_faces && faces_.empty()) throw InputError(name_ + ": no faces in this PLY file");
-    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices in this PLY file");
+    if (needs_faces && faces_.empty()) throw InputError(name_ + ": the PLY file has no faces");
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": the PLY file has no vertices");
     const auto place = [&](std::size_t at) { return body_.place(at); };
     vertex_faults_.settle(
         mesh_.vertices, faces_,
-        [&](std::size_t at) {
-          body_.fail(at, "a vertex coordinate that is not a finite number, and a face uses the vertex");
-        },
+        [&](std::size_t at) { body_.fail(at, "a coordinate of a vertex that a face uses is not a finite number"); },
         place, report_);
-    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices with finite coordinates in this PLY file");
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": the PLY file has no vertices with finite coordinates");
     mesh_.triangles = split_faces(std::move(faces_), mesh_.vertices, place, report_);
     return std::move(mesh_);
   }

@@ -106,7 +106,7 @@ class MixedScanner {
   // Returns a number of items that follow. It is refused if the file is too short for them, at `bytes_each` or more for
   // each.
   std::uint64_t checked_count(std::int64_t count, std::size_t bytes_each, const char* items) const {
-    if (count < 0) fail(at_, "a negative number of " + std::string(items));
+    if (count < 0) fail(at_, "there is a negative number of " + std::string(items));
     if (static_cast<std::uint64_t>(count) > (remaining() + 1) / bytes_each)
       fail(at_, std::to_string(count) + " " + items + " are promised, but only " + std::to_string(remaining()) +
                     " bytes follow; the file is cut short or not of this format");

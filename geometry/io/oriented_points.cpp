@@ -30,7 +30,8 @@ OrientedPoints of_ply(const PlyTables& tables, const PlyTables::Table& vertices,
       return Vector(columns[from]->numbers[row], columns[from + 1]->numbers[row], columns[from + 2]->numbers[row]);
     };
     if (!vector(0).allFinite()) continue;
-    if (!is_normal(vector(3))) tables.fail(vertices, row, "the normal is zero or not finite");
+    if (!is_normal(vector(3)))
+      tables.fail(vertices, row, "the normal is zero or not finite; remove the point or compute the normals again");
     result.points.push_back(vector(0));
     result.normals.push_back(vector(3).normalized());
   }
@@ -59,7 +60,9 @@ OrientedPoints of_xyz(std::string_view bytes, const std::string& name) {
     const Vector normal(numbers[3], numbers[4], numbers[5]);
     if (count >= 3 && count < 6) fail_at_line(name, bytes, at, kNoNormals);
     if (count == 6 && point.allFinite()) {
-      if (!is_normal(normal)) fail_at_line(name, bytes, at, "the normal is zero or not finite");
+      if (!is_normal(normal))
+        fail_at_line(name, bytes, at,
+                     "the normal is zero or not finite; remove the point or compute the normals again");
       result.points.push_back(point);
       result.normals.push_back(normal.normalized());
     }

@@ -35,7 +35,7 @@ class HeaderReader {
 
   PlyHeader read() {
     if (next_line() != "ply") {
-      throw InputError(name_ + ": does not begin with \"ply\"; this is not a PLY file");
+      throw InputError(name_ + ": the file does not begin with \"ply\"; this is not a PLY file");
     }
     bool format_seen = false;
     while (true) {
@@ -66,7 +66,7 @@ class HeaderReader {
     line_at_ = at_;
     const std::size_t stop = bytes_.find_first_of("\r\n", at_);
     if (stop == std::string_view::npos) {
-      fail(at_ == 0 ? "not a PLY file" : "the PLY header ends without \"end_header\"");
+      fail(at_ == 0 ? "this is not a PLY file" : "the PLY header ends without \"end_header\"");
     }
     at_ = stop + 1;
     // If lines end with a single \r, a \n after the header is the first byte of the body.
@@ -119,7 +119,7 @@ class HeaderReader {
   }
 
   void read_property(const std::vector<std::string_view>& words) {
-    if (header_.elements.empty()) fail("a property before the first element");
+    if (header_.elements.empty()) fail("a property comes before the first element");
     PlyProperty property;
     if (words.size() == 5 && words[1] == "list") {
       property.length_type = read_type(words[2]);

@@ -29,7 +29,7 @@ class XyzReader {
     // what looked like a header is all that the file contains
     if (header_) fail(*header_);
     if (mesh_.vertices.empty())
-      throw InputError(name_ + ": no points in " + std::to_string(bytes_.size()) + " bytes of XYZ");
+      throw InputError(name_ + ": there are no points in the " + std::to_string(bytes_.size()) + " bytes of XYZ");
     return std::move(mesh_);
   }
 

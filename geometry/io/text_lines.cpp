@@ -14,11 +14,11 @@ namespace orchard {
 namespace {
 
 std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": is a directory, not a file");
+  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": this is a folder; give a file");
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
+  if (!in) throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   std::string text(std::istreambuf_iterator<char>(in), {});
-  if (in.bad()) throw InputError(file.string() + ": cannot be read");
+  if (in.bad()) throw InputError(file.string() + ": the file cannot be read; check the disk");
   return text;
 }
 
@@ -107,7 +107,7 @@ double TextLines::real(std::string_view what) {
   skip_space();
   double value = 0;
   if (!scan(scan_double, value)) fail_to_find(what);
-  if (!std::isfinite(value)) fail("a number that is not finite");
+  if (!std::isfinite(value)) fail("the number is not finite");
   return value;
 }
 

@@ -69,7 +69,9 @@ void add_vtk_polygons(const VtkCells& cells, CellShape shape, CellMesh& mesh) {
 }
 
 void add_vtk_polyhedron(const VtkCells& cells, std::size_t cell, std::span<const std::int64_t> stream, CellMesh& mesh) {
-  const auto cut_short = [&] { cells.fail(cells.at, "the faces of a polyhedron are cut short"); };
+  const auto cut_short = [&] {
+    cells.fail(cells.at, "the numbers of a polyhedron end within its faces; the file is damaged");
+  };
   if (stream.empty()) cut_short();
   std::int64_t faces = stream.front();
   std::vector<Index> corners;
@@ -102,7 +104,8 @@ void add_vtk_cells(const VtkCells& cells, std::span<const std::int64_t> types, s
     }
     const CellKind* kind = vtk_cell_kind(types[cell]);
     if (kind == nullptr)
-      cells.fail(cells.at, "cells of type " + std::to_string(types[cell]) + " of VTK cannot be read");
+      cells.fail(cells.at,
+                 "cells of type " + std::to_string(types[cell]) + " of VTK cannot be read; save the surface as .vtp");
     cells.corners_of(cell, corners);
     mesh.add(*kind, corners, cells.at);
   }

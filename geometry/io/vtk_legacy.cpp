@@ -56,7 +56,7 @@ class LegacyVtkReader {
     }
     if (!types_.empty() || grid_) add_cells();
     return std::move(mesh_).finish(
-        name_, [&](std::size_t at) { in_.fail(at, "point needs three finite numbers, since a cell uses it"); },
+        name_, [&](std::size_t at) { in_.fail(at, "the point needs three finite numbers, since a cell uses it"); },
         [&](std::size_t at) { return in_.place(at); }, report);
   }
 
@@ -69,14 +69,15 @@ class LegacyVtkReader {
     in_.line();
     const std::size_t at = in_.position();
     const std::string encoding = lower_case(in_.word());
-    if (encoding != "ascii" && encoding != "binary") in_.fail(at, in_quotes(encoding) + " in place of ASCII or BINARY");
+    if (encoding != "ascii" && encoding != "binary")
+      in_.fail(at, in_quotes(encoding) + " stands in place of ASCII or BINARY");
     const std::size_t dataset = in_.position();
-    if (lower_case(in_.word()) != "dataset") in_.fail(dataset, "no DATASET");
+    if (lower_case(in_.word()) != "dataset") in_.fail(dataset, "the line DATASET is missing");
     const std::string kind = lower_case(in_.word());
     grid_ = kind == "unstructured_grid";
     if (!grid_ && kind != "polydata")
-      in_.fail(dataset, "a dataset of the kind " + in_quotes(kind) +
-                            "; POLYDATA and UNSTRUCTURED_GRID can be read: save its surface as .vtp or .stl");
+      in_.fail(dataset, "the dataset is of the kind " + in_quotes(kind) +
+                            ", but only POLYDATA and UNSTRUCTURED_GRID can be read; save its surface as .vtp or .stl");
     in_.line();
     if (encoding == "binary") in_.set_binary(std::endian::big);
   }
@@ -94,7 +95,7 @@ class LegacyVtkReader {
     if (keyword == "cell_types") return read_types(), true;
     if (keyword == "field") return skip_field(), true;
     if (keyword == "metadata") return skip_metadata(), true;
-    in_.fail(at, in_quotes(keyword) + " where a section such as POINTS begins");
+    in_.fail(at, in_quotes(keyword) + " stands where a section such as POINTS has to begin");
   }
 
   const LegacyNumber& type_named(std::string_view name, std::size_t at) const {
@@ -113,7 +114,8 @@ class LegacyVtkReader {
     const LegacyNumber& type = type_named(in_.word(), at);
     in_.line();
     const std::uint64_t count = in_.checked_count(promised, bytes_each(type.bytes) * 3, "points");
-    if (!mesh_.vertices.empty() || count >= kNone) in_.fail(at, "points come twice, or too many");
+    if (!mesh_.vertices.empty() || count >= kNone)
+      in_.fail(at, "the points are defined twice, or are too many for 32-bit indices");
     for (std::uint64_t i = 0; i < count; ++i) {
       in_.more_of_text();
       const std::size_t place = in_.position();
@@ -185,7 +187,7 @@ class LegacyVtkReader {
 
   // Polyhedra have the numbers of their faces where other cells have their points.
   void add_cells() {
-    if (!cells_) in_.fail(bytes_.size(), "no CELLS");
+    if (!cells_) in_.fail(bytes_.size(), "the section CELLS is missing");
     cells_->check();
     if (types_.size() != cells_->size())
       in_.fail(cells_->at,
@@ -200,7 +202,8 @@ class LegacyVtkReader {
       }
       const CellKind* kind = vtk_cell_kind(types_[cell]);
       if (kind == nullptr)
-        in_.fail(cells_->at, "cells of type " + std::to_string(types_[cell]) + " of VTK cannot be read");
+        in_.fail(cells_->at,
+                 "cells of type " + std::to_string(types_[cell]) + " of VTK cannot be read; save the surface as .vtp");
       cells_->corners_of(cell, corners);
       mesh_.add(*kind, corners, cells_->at);
     }

@@ -54,9 +54,9 @@ class ByteSource {
     int digits = 0, padding = 0;
     while (digits + padding < 4) {
       while (at_ < bytes_.size() && (is_blank(bytes_[at_]) || is_line_end(bytes_[at_]))) ++at_;
-      if (at_ >= bytes_.size()) fail("the data end early");
+      if (at_ >= bytes_.size()) fail("the data end early; the file may be cut off");
       const int value = digit(bytes_[at_]);
-      if (value < 0 || (value == 64 && digits < 2) || (value < 64 && padding > 0)) fail("no base64");
+      if (value < 0 || (value == 64 && digits < 2) || (value < 64 && padding > 0)) fail("the data are not base64");
       bits = bits << 6 | static_cast<std::uint32_t>(value & 63);
       value == 64 ? ++padding : ++digits;
       ++at_;
@@ -81,7 +81,7 @@ class BlockReader {
     if (first == 0) return {};
     const std::uint64_t size = head(), last = head();
     if (first > source_.room() / 4)
-      source_.fail(std::to_string(first) + " blocks are more than the data have room for");
+      source_.fail(std::to_string(first) + " blocks do not fit into the data; the file is damaged");
     std::vector<std::uint64_t> packed(first);
     for (std::uint64_t& bytes : packed) bytes = head();
     std::string result;
@@ -106,7 +106,7 @@ class BlockReader {
     uLongf length = size;
     const int result = uncompress(reinterpret_cast<Bytef*>(out.data() + before), &length,
                                   reinterpret_cast<const Bytef*>(bytes.data()), packed);
-    if (result != Z_OK || length != size) source_.fail("a block that zlib cannot decompress");
+    if (result != Z_OK || length != size) source_.fail("zlib cannot decompress a block; the file is damaged");
   }
 
   ByteSource source_;

@@ -69,10 +69,10 @@ void measure(const std::vector<Point>& points, ReconstructedMesh& result, const 
 ReconstructedMesh reconstruct_surface(const OrientedPoints& points, const ReconstructOptions& options,
                                       const Progress& progress) {
   if (points.points.size() < kFewestPoints)
-    throw InputError(std::to_string(points.points.size()) + " points with normals; a surface needs " +
+    throw InputError(std::to_string(points.points.size()) + " points with normals are too few; a surface needs " +
                      std::to_string(kFewestPoints));
   if (!(options.distance > 0) || !(options.radius > 0))
-    throw InputError("the distance and the radius of a reconstruction are above 0");
+    throw InputError("the distance and the radius of a surface reconstruction must be above 0");
   report_progress(progress, "reconstruction", 0);
   std::vector<PointWithNormal> input;
   for (std::size_t i = 0; i < points.points.size(); ++i) {
@@ -84,7 +84,7 @@ ReconstructedMesh reconstruct_surface(const OrientedPoints& points, const Recons
   ReconstructedMesh result;
   result.spacing =
       CGAL::compute_average_spacing<CGAL::Sequential_tag>(input, kNeighbors, CGAL::parameters::point_map(place));
-  if (!(result.spacing > 0)) throw InputError("all points lie in one place");
+  if (!(result.spacing > 0)) throw InputError("all points lie in one place; a surface needs points around a solid");
   make_unlike(input, result.spacing);
   const QuietCgal quiet;
   detail::CgalMesh mesh;

@@ -66,7 +66,8 @@ std::vector<ThicknessAt> thickness_at(const Surface& surface, std::span<const Su
 LocalThickness local_thickness(const Surface& surface, const ThicknessOptions& options, const Progress& progress) {
   require_in_range(options);
   if (!surface.solid())
-    throw InputError("thickness: not a closed, consistently oriented manifold: " + surface.report().faults());
+    throw InputError("thickness needs a closed, consistently oriented manifold: " + surface.report().faults() +
+                     "; repair the mesh first");
   report_progress(progress, "thickness", 0);
   detail::DividedMesh divided =
       detail::divided_mesh(surface, std::sqrt(surface.report().area / (kAreaOfEdge * options.samples)));

@@ -108,10 +108,13 @@ void validate_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& 
   for (Index face = 0; face < faces.size(); ++face) {
     if (faces[face].size() < 3) throw Error("medial axis: face " + std::to_string(face) + " has no area");
     for (const Index corner : faces[face]) {
-      if (corner >= vertices) throw Error("medial axis: face " + std::to_string(face) + " has a bad corner");
+      if (corner >= vertices)
+        throw Error("medial axis: face " + std::to_string(face) + " names a vertex that does not exist, or one twice");
     }
     for (const Index point : face_points[face]) {
-      if (point >= points) throw Error("medial axis: face " + std::to_string(face) + " has a bad point");
+      if (point >= points)
+        throw Error("medial axis: face " + std::to_string(face) +
+                    " names a point that does not exist, or the same one twice");
     }
   }
 }

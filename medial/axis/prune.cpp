@@ -169,8 +169,10 @@ class Pruner {
 }  // namespace
 
 MedialAxis prune(const MedialAxis& axis, const PruneOptions& options) {
-  if (!(options.angle >= 0 && options.angle <= std::numbers::pi)) throw InputError("prune angle: between 0 and pi");
-  if (!(options.scale >= 1 && std::isfinite(options.scale))) throw InputError("prune scale: at least 1");
+  if (!(options.angle >= 0 && options.angle <= std::numbers::pi))
+    throw InputError("the angle of pruning must be between 0 and pi radians");
+  if (!(options.scale >= 1 && std::isfinite(options.scale)))
+    throw InputError("the scale of pruning must be at least 1");
   if (options.angle == 0 && options.scale == 1) return axis;
   return Pruner(axis, options).run();
 }

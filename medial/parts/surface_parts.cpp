@@ -153,7 +153,8 @@ SurfaceParts surface_parts(const Surface& surface, const MedialMesh& axis, const
                            const Progress& progress) {
   require_part_options(options);
   if (!surface.solid())
-    throw InputError("parts: not a closed, consistently oriented manifold: " + surface.report().faults());
+    throw InputError("parts: a closed, consistently oriented manifold is needed: " + surface.report().faults() +
+                     "; repair the mesh first");
   validate(axis);
   report_progress(progress, "parts", 0);
   const double wanted = options.edge_length * surface.bounding_box().diagonal().norm();

@@ -115,7 +115,8 @@ void measure_structure(const Surface& surface, const MedialMesh& mesh, double di
 }  // namespace
 
 PaperMeasures paper_measures(const Surface& surface, const MedialMesh& mesh, const PaperOptions& options) {
-  if (!surface.solid()) throw InputError("measuring an axis needs a solid: " + surface.report().faults());
+  if (!surface.solid())
+    throw InputError("measuring an axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
   validate(mesh);
   PaperMeasures result;
   const double diagonal = surface.bounding_box().diagonal().norm();

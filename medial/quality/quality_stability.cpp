@@ -137,7 +137,8 @@ MedialStability summary(std::vector<double> distances, double noise) {
 std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
                                                 const MedialBuildOptions& options, const StabilityOptions& stability,
                                                 const Progress& progress) {
-  if (!(stability.correlation > 0)) throw InputError("stability: the noise's correlation is a length above 0");
+  if (!(stability.correlation > 0))
+    throw InputError("the correlation length of the noise for stability must be above 0");
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double noise = stability.noise * diagonal, correlation = stability.correlation * diagonal;
   TriangleMesh mesh = detail::with_short_edges(surface.mesh(), kMaxEdge * correlation);

@@ -52,19 +52,19 @@ constexpr double kCoincident = 1e-6;  // in diagonals: vertices nearer than this
 
 void check(const RefineOptions& options) {
   if (!(options.border_loss >= 0 && std::isfinite(options.border_loss)))
-    throw InputError("border loss: a finite number of diagonals, not negative");
+    throw InputError("the border loss must be a finite number of diagonals, at least 0");
   if (!(options.tolerance > 0 && std::isfinite(options.tolerance)))
-    throw InputError("refining tolerance: a finite number of diagonals above 0");
+    throw InputError("the tolerance of refining must be a finite number of diagonals above 0");
   if (!(options.feature_loss > 0 && std::isfinite(options.feature_loss)))
-    throw InputError("loss of features: a finite number of diagonals above 0");
+    throw InputError("the loss of features must be a finite number of diagonals above 0");
   if (!(options.feature_length >= 0 && std::isfinite(options.feature_length)))
-    throw InputError("length of features: a finite number of diagonals, not negative");
+    throw InputError("the length of features must be a finite number of diagonals, at least 0");
   if (!(options.edge_length > 0 && std::isfinite(options.edge_length)))
-    throw InputError("length of edges: a finite number of diagonals above 0");
-  if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
+    throw InputError("the length of edges must be a finite number of diagonals above 0");
+  if (options.max_rounds < 0) throw InputError("the number of rounds of refining must be at least 0");
   if (!(options.reach_detail >= 0 && std::isfinite(options.reach_detail)))
-    throw InputError("detail that is reached for: a finite number, not negative");
-  if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
+    throw InputError("the detail that is reached for must be a finite number, at least 0");
+  if (options.reach_rounds < 0) throw InputError("the number of rounds of reaching for open places must be at least 0");
 }
 
 // Returns how far places may be open because of the border loss, in diagonals.

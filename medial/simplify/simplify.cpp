@@ -26,8 +26,9 @@ void check(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions
                      "; repair the mesh first");
   }
   validate(mesh);
-  if (options.samples == 0 || options.check == 0) throw InputError("samples of simplifying: at least 1");
-  if (options.rounds < 0) throw InputError("rounds of simplifying: not negative");
+  if (options.samples == 0 || options.check == 0)
+    throw InputError("the number of samples for simplifying must be at least 1");
+  if (options.rounds < 0) throw InputError("the number of rounds of simplifying must be at least 0");
 }
 
 // Whether a component consists of a single ball.
@@ -107,9 +108,10 @@ class FewestWithin {
       next = best ? middle(low, high) : std::max(low, std::min<Index>(high, next * 2));
     }
     if (!best) {
-      throw InputError("error " + percent(options_.error) +
-                       " of the diagonal: no number of vertices of this axis is proved to come nearer than " +
-                       percent(min) + "; allow more, or refine the axis further");
+      throw InputError(
+          "error " + percent(options_.error) +
+          " of the diagonal cannot be kept: no number of vertices of this axis is proved to come nearer than " +
+          percent(min) + "; allow more, or refine the axis further");
     }
     return std::move(*best);
   }
@@ -149,7 +151,7 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
                                           const SimplifyOptions& options, const Progress& progress) {
   check(surface, mesh, options);
   if (options.vertices == 0) {
-    if (!(options.error > 0)) throw InputError("simplifying: a number of vertices, or an error above 0");
+    if (!(options.error > 0)) throw InputError("simplifying needs a number of vertices, or an error above 0");
     return FewestWithin(surface, mesh, options, progress).run();
   }
   report_progress(progress, kSimplifyingStage, 0);

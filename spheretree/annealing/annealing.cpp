@@ -139,12 +139,12 @@ class Annealer {
 void check(const AnnealingOptions& o) {
   if (o.branching < 2 || o.branching > 64) throw InputError("branching must lie between 2 and 64");
   if (!(o.min_scale > 0) || !(o.min_scale <= o.max_scale) || !(o.move >= 0))
-    throw InputError("annealing: moves and scales must be positive, the least scale first");
+    throw InputError("annealing: moves and scales must be above 0, with the smallest scale first");
   if (!(o.cooling > 0) || !(o.cooling < 1) || !(o.first_acceptance > 0) || !(o.first_acceptance < 1))
     throw InputError("annealing: the cooling and the first acceptance must lie between 0 and 1");
   if (o.max_accepted < 1 || o.max_rejected < 1 || o.max_uncovering < 1)
-    throw InputError("annealing: at least one change at each temperature");
-  if (o.first_trials < 1) throw InputError("annealing: at least one trial for the first temperature");
+    throw InputError("annealing: there must be at least one change at each temperature");
+  if (o.first_trials < 1) throw InputError("annealing: there must be at least one trial for the first temperature");
 }
 
 }  // namespace

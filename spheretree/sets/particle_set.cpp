@@ -64,7 +64,7 @@ class ParticleSearch {
     }
     for (const bool with_moments : {false, true})
       if (!is_enough() || (with_moments && options_.spheres <= kThorough)) try_equal(with_moments);
-    if (!best_) throw InputError("no ball finds room in the solid; is it thinner than its coordinates tell?");
+    if (!best_) throw InputError("no ball has room in the solid; it may be as thin as the rounding of its coordinates");
     return std::move(*best_);
   }
 

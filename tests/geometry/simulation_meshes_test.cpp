@@ -120,7 +120,7 @@ TEST(SimulationMeshes, AreRefusedWithPlaceFaultAndRemedy) {
                                                        {"meshb/loop.meshb", "byte 8"},
                                                        {"vtp/wild-offsets.vtp", "do not ascend"},
                                                        {"vtp/wild-points.vtp", "names point 77"},
-                                                       {"vtp/fewer-points.vtp", "12 coordinates of 99999999999 points"},
+                                                       {"vtp/fewer-points.vtp", "12 coordinates do not fit 99999999999 points"},
                                                        {"vtp/nan-used.vtp", "finite"},
                                                        {"vtp/appended-lz4.vtp", "save it with zlib"}};
   for (const auto& [file, words] : cases) test::expect_input_error([&] { read_mesh(corpus(file)); }, {file, words});
