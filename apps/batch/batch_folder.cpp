@@ -82,7 +82,7 @@ std::string result_key(const fs::path& mesh, const WorkerCommand& worker) {
     hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
     throw_if_interrupted();
   }
-  if (in.bad() || !in.eof()) throw InputError(mesh.string() + ": cannot be read");
+  if (in.bad() || !in.eof()) throw InputError(mesh.string() + ": the file cannot be read; check its permissions");
   return hash.hexadecimal();
 }
 
@@ -94,7 +94,7 @@ BatchFolder::BatchFolder(fs::path folder, const Shard& shard, const WorkerComman
     : folder_(std::move(folder)), work_(folder_ / ".work" / stem_of(shard)), stem_(stem_of(shard)) {
   std::error_code ignored;
   if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored))
-    throw InputError(folder_.string() + ": is no folder; choose another place with -o");
+    throw InputError(folder_.string() + ": this is no folder; choose another place with -o");
   fs::create_directories(folder_ / "results", ignored);
   if (access((folder_ / "results").c_str(), W_OK | X_OK) != 0)
     throw InputError(folder_.string() + ": cannot be written to: " + std::generic_category().message(errno) +
@@ -116,8 +116,8 @@ BatchFolder::~BatchFolder() {
 void BatchFolder::claim(bool resume) {
   const fs::path file = folder_ / "shards" / (stem_ + ".lock");
   if (!resume && fs::exists(file))
-    throw InputError(fmt::format("{}: shard {} was begun here before; --resume does what is missing of it",
-                                 folder_.string(), stem_));
+    throw InputError(
+        fmt::format("{}: shard {} was begun here before; give --resume to finish it", folder_.string(), stem_));
   lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) throw Error(file.string() + ": cannot be written: " + std::generic_category().message(errno));
   for (bool told = false; flock(lock_, LOCK_EX | LOCK_NB) != 0; told = true) {

@@ -47,7 +47,8 @@ void merge_batches(const BatchCommand& command) {
   if (command.sources.size() < 2)
     throw InputError("batch merge: name the folders of the batch, such as \"orchard batch merge out -o out/table\"");
   if (command.folder.empty()) throw InputError("batch merge: --output is required: the folder for the table");
-  if (!command.worker.empty()) throw InputError("batch merge: takes no command behind --: the results are there");
+  if (!command.worker.empty())
+    throw InputError("batch merge: leave out the command after --, because the results exist already");
   const MergedRows rows = read_merged_rows({command.sources.begin() + 1, command.sources.end()});
   const Destination destination{
       .folder = command.folder, .report = kSummary, .provenance = provenance_of(rows.description), .force = true};

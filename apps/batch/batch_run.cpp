@@ -55,7 +55,8 @@ void BatchRun::start_next() {
   } catch (const InputError& fault) {  // the file was removed after the batch began
     key = fmt::format("unread {}", place);
     waiting_[key].push_back(place);
-    MeshResult result = refused_result("the file cannot be read any more", options_.limits);
+    MeshResult result =
+        refused_result("the file cannot be read any more; it was removed or its permissions changed", options_.limits);
     result.row["why"] = "error";
     result.lasting = false;
     return finish(key, result, false);

@@ -35,7 +35,7 @@ const CLI::App& parsed(CLI::App& app, const std::vector<std::string>& words) {
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // in reverse order, as the parser expects
   } catch (const CLI::Success&) {
-    throw InputError("batch: --help behind -- belongs to no mesh; see \"orchard " + words.front() + " --help\"");
+    throw InputError("batch: --help after -- has no effect on a mesh; see \"orchard " + words.front() + " --help\"");
   } catch (const CLI::ParseError& error) {
     throw InputError(in_one_line(app, error));
   }
@@ -71,7 +71,7 @@ std::vector<std::string> WorkerCommand::words(const std::filesystem::path& mesh,
 WorkerCommand parse_worker_command(const std::vector<std::string>& words) {
   if (words.empty() || !is_in(kCommands, words.front()))
     throw InputError(
-        "batch: say what to do with every mesh behind --: build, medial or spheres and its options, such as "
+        "batch: give the command for every mesh after --: build, medial or spheres and its options, such as "
         "-- build --depth 2");
   WorkerCommand worker{.name = words.front(),
                        .options = {words.begin() + 1, words.end()},

@@ -50,7 +50,7 @@ SweptOption swept_option(const CLI::App& command, const std::string& text) {
   if (!values) throw InputError(fmt::format("--sweep {}: {}", text, kEmptyItem));
   for (const std::string& value : *values)
     if (std::count(values->begin(), values->end(), value) > 1)
-      throw InputError(fmt::format("--sweep {}: {} is there twice", text, value));
+      throw InputError(fmt::format("--sweep {}: the value {} is given twice", text, value));
   return {name, std::move(*values)};
 }
 
@@ -119,7 +119,7 @@ void expand_sweep(const CLI::App& command, MedialCommand& medial) {
   for (const SweptOption& one : medial.swept)
     if (std::count_if(medial.swept.begin(), medial.swept.end(),
                       [&](const SweptOption& o) { return o.name == one.name; }) > 1)
-      throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", one.name));
+      throw InputError(fmt::format("--sweep: {} is given twice; give all its values in one --sweep", one.name));
   const std::vector<std::string> typed = words_of_runs(command, medial.swept);
   std::vector<std::size_t> choice(medial.swept.size(), 0);
   do {

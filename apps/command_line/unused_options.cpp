@@ -55,8 +55,7 @@ void refuse_replaced(const TuningFlag& flag, const FlagNames& sources) {
   for (const std::string& source : sources) {
     const std::vector<TuningStep> replaced = steps_replaced(source);
     if (std::find(replaced.begin(), replaced.end(), flag.step) != replaced.end())
-      throw InputError(
-          fmt::format("--{} has no effect with --{}, whose file is in place of that step", flag.name, source));
+      throw InputError(fmt::format("--{} has no effect with --{}, whose file replaces that step", flag.name, source));
   }
 }
 
@@ -113,12 +112,13 @@ void refuse_unused_options(const BuildCommand& command) {
 void refuse_unused_options(const MedialCommand& command) {
   const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
   if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
-    throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+    throw InputError(
+        "--quality-samples has no effect without --report, --axis or --sweep, because nothing is measured");
   if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
-    throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
+    throw InputError("--beside needs --report or --axis, whose table shows the other axes");
   if (!command.exports.empty() && sweeps && !command.keep)
     throw InputError("--export has no effect with --sweep, which writes no axis without --keep");
-  if (command.keep && !sweeps) throw InputError("--keep has no effect without --sweep: all files are kept");
+  if (command.keep && !sweeps) throw InputError("--keep has no effect without --sweep, because all files are kept");
   if (among("sort-by", command.given) && !sweeps) throw InputError("--sort-by has no effect without --sweep");
   if (among("light", command.given) && (sweeps || judges || !command.views))
     throw InputError(
@@ -126,7 +126,7 @@ void refuse_unused_options(const MedialCommand& command) {
                                                                                         : judges ? "--axis"
                                                                                                  : "--no-views"));
   if (command.picture && (sweeps || (!command.report && !judges)))
-    throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
+    throw InputError("--picture needs --report or --axis, because it shows where their measures are worst");
   const FlagNames swept = swept_flags(command);
   refuse_unused_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
@@ -147,7 +147,7 @@ void refuse_unused_options(const MedialCommand& command) {
     if ((!among(flag.name, command.given) && !among(flag.name, swept)) || flag.name == "seed") continue;
     if (judges) throw InputError(fmt::format("--{} has no effect with --axis, which builds nothing", flag.name));
     if (sweeps && flag.step == TuningStep::report)
-      throw InputError(fmt::format("--{} has no effect with --sweep, whose table tells nothing of it", flag.name));
+      throw InputError(fmt::format("--{} has no effect with --sweep, whose table does not depend on it", flag.name));
     refuse_replaced(flag, sources);
     refuse_disabled(flag, tunings);
   }

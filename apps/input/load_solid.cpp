@@ -29,7 +29,7 @@ double parse_offset(const std::string& text) {
 SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) {
   Surface surface(std::move(mesh), ball);
   if (!surface.solid())
-    throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
+    throw InputError(name + ": the mesh is not a closed, consistently oriented manifold: " + surface.report().faults() +
                      "; without --strict, orchard repairs what is safe to repair");
   return {.surface = std::move(surface),
           .reading = {},
@@ -74,7 +74,8 @@ SolidMesh repaired(const std::string& name, TriangleMesh mesh, const MeshOptions
   const RepairMeshOptions limits = repair_options(options);
   MeshRepairReport repair = repair_mesh(mesh, limits);
   if (!repair.solid)
-    throw InputError(name + ": no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
+    throw InputError(name +
+                     ": the mesh is no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
                      holes_left(repair, limits) + "; --wrap builds on a closed skin around it instead");
   SolidMesh solid{.surface = Surface(std::move(mesh), ball),
                   .reading = {},

@@ -135,7 +135,7 @@ void check_options(const SpheresCommand& command) {
   require_usable(options);
   for (const char* option : {"overlap", "equal", "density", "density-of", "masses", "center-error", "inertia-error"})
     if (options.fit != SphereFit::particles && among(option, command.given))
-      throw InputError(fmt::format("--{} belongs to --fit particles", option));
+      throw InputError(fmt::format("--{} has no effect without --fit particles", option));
   if (!command.vertex_weights.empty() && !command.clip.empty())
     throw InputError("--vertex-weights has no effect with --clip, which changes the vertices: give --weight");
   const bool by_error = options.error > 0 || options.volume_error > 0;

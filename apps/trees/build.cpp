@@ -229,13 +229,13 @@ void check_options(const BuildCommand& command) {
   if (command.export_level) {
     const auto& exports = command.exports;
     if (std::find(exports.begin(), exports.end(), "urdf") == exports.end())
-      throw InputError("--export-level: only a urdf has one level's spheres; add --export urdf");
+      throw InputError("--export-level needs --export urdf, the only format with the spheres of one level");
     if (const Index depth = levels_of(command.tree); *command.export_level > depth)
       throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
                                    *command.export_level, depth, depth));
   }
   if (is_given(command, "up") && !command.views && !command.picture && !command.page)
-    throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
+    throw InputError("--up has no effect with --no-views and without --picture or --report, because nothing is drawn");
   if (command.source.files().size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
   refuse_unused_options(command);
   require_sizes(builder_of(command.tree));

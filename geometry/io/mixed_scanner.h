@@ -29,7 +29,7 @@ class MixedScanner {
     if (binary_) fail_at_byte(name_, position, fault);
     fail_at_line(name_, bytes_, position, fault);
   }
-  [[noreturn]] void fail_at_end() const { fail(bytes_.size(), "the file ends early"); }
+  [[noreturn]] void fail_at_end() const { fail(bytes_.size(), "the file ends early; it may be cut off"); }
   std::string place(std::size_t position) const {
     return binary_ ? "byte " + std::to_string(position) : line_place(bytes_, position);
   }

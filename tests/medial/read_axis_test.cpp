@@ -213,9 +213,9 @@ TEST_F(ReadAxis, TakesStructureGraphs) {
 TEST_F(ReadAxis, NamesFileAndLineOfWhatIsWrong) {
   refuses("a.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 -1\ne 0 1\n", "line 3: the radius is negative");
   refuses("b.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 nan\ne 0 1\n", "line 3");
-  refuses("c.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 1\ne 0 2\n", "line 4: a vertex number beyond");
+  refuses("c.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 1\ne 0 2\n", "line 4: a vertex number is beyond");
   refuses("d.ma", "2 1 0\nv 0 0 0 1\nv 1 0", "line 3");
-  refuses("a.obj", "v 0 0 0\nf 1 2 3\n", "line 2: a vertex number beyond");
+  refuses("a.obj", "v 0 0 0\nf 1 2 3\n", "line 2: the vertex number is beyond");
   refuses("b.obj", "v 0 0 nan\n", "line 1: the number is not finite");
   refuses("c.obj", "v 0 0 0 1\nv 0 0 1 -2\n", "line 2: the radius is negative");
   refuses("d.obj", "v 0 0 0 1\nv 0 0 1\n", "line 2: the vertex has no radius, but others have one");
@@ -233,8 +233,8 @@ TEST_F(ReadAxis, NamesFileAndLineOfWhatIsWrong) {
   refuses("a.off", "OFF\n2 1 0\n0 0 0\n1 0 0\n3 0 1 2\n", "beyond the last vertex");
   refuses("b.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n", "may be cut off");
   refuses("c.off", "COFF\n1 0 0\n0 0 0\n", "begins with \"OFF\"");
-  refuses("a.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 3\n", "line 2: a parent");
-  refuses("c.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 -3\n", "line 2: a parent that is no node");
+  refuses("a.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 3\n", "line 2: the parent");
+  refuses("c.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 -3\n", "line 2: the parent is no node");
   refuses("b.swc", "1 1 0 0 0 -1 -1\n", "line 1: the radius is negative");
   refuses("a.polylines.txt", "3 0 0 0 1 0 0\n", "line 1");
   refuses("a.stl", "solid\n", "is no format of medial axes that can be read");
@@ -245,7 +245,7 @@ TEST_F(ReadAxis, NamesFileAndLineOfWhatIsWrong) {
   refuses("a.ply", head + "0 0 0 -1\n0 0\n", "line 12: the radius is negative");
   refuses("b.ply", head + "0 0 nan 1\n0 0\n", "line 12: a coordinate is not finite");
   refuses("c.ply", head + "0 0 0 1\n0 1\n", "line 13: a vertex number is not from 0 to 0");
-  refuses("d.ply", head + "0 0 0 1\n", "ends early");
+  refuses("d.ply", head + "0 0 0 1\n", "ends before the rows");
   refuses("e.ply", "OFF\n", "e.ply");
   expect_input_error([&] { read_axis(folder_ / "none.ma"); }, {"none.ma"});
   expect_input_error([&] { read_axis(folder_); }, {folder_.string()});
