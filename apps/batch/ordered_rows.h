@@ -12,7 +12,7 @@ namespace orchard::apps {
 // line. Rows that are too early wait in memory.
 class OrderedRows {
  public:
-  // Throws Error if the file cannot be written; so does everything else here.
+  // Throws Error if the file cannot be written, as do the other functions.
   explicit OrderedRows(std::filesystem::path file);
   void add(std::size_t place, const nlohmann::ordered_json& row);
   void close();  // precondition: all rows up to the last one were added
