@@ -20,10 +20,10 @@ namespace {
 
 constexpr double kSharpDegrees = 40;
 
-// Segments between points of their own.
+// Segments, each with two points of its own.
 struct OutlineSegments {
   std::vector<Point> points;
-  std::vector<int> kinds;  // of each two points
+  std::vector<int> kinds;  // of each segment
 
   void add(const Point& a, const Point& b, int kind) {
     points.push_back(a);

@@ -89,7 +89,7 @@ class Sampler {
     return false;
   }
 
-  // "Maybe" counts as touching.
+  // The answer "maybe" counts as touching.
   bool solids_meet(runtime::Workspace& workspace, std::size_t a, std::size_t b,
                    const std::vector<runtime::Pose>& poses) const {
     const Body &one = bodies_[a], &other = bodies_[b];
