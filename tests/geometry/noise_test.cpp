@@ -39,11 +39,11 @@ std::vector<Vector> vertex_normals(const TriangleMesh& mesh) {
 // Normal noise along the normals, by Box and Muller.
 TriangleMesh with_noise(TriangleMesh mesh, double deviation, std::uint64_t seed) {
   const std::vector<Vector> normals = vertex_normals(mesh);
-  const double deviation = deviation * diagonal_length(mesh);
+  const double length = deviation * diagonal_length(mesh);
   Random random(seed, 7);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
-    mesh.vertices[v] += deviation * radius * std::cos(random.uniform(0, 2 * std::numbers::pi)) * normals[v];
+    mesh.vertices[v] += length * radius * std::cos(random.uniform(0, 2 * std::numbers::pi)) * normals[v];
   }
   return mesh;
 }
