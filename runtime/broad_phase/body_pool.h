@@ -153,9 +153,7 @@ inline bool successive(std::span<const BodyIndex> bodies) noexcept {
 // Which bodies there are, and where to ask for their motions.
 class BodyPool {
  public:
-  // Motions come from the source, or from arrays unless these are null.
-  BodyPool(MotionSource source, const MotionArrays* arrays, const Clock& steps)
-      : clock(steps), source_(std::move(source)), arrays_(arrays) {}
+  BodyPool(MotionSource source, const Clock& steps) : clock(steps), source_(std::move(source)) {}
 
   const Clock clock;
 
@@ -205,10 +203,6 @@ class BodyPool {
     std::vector<Motion> motions;
   };
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
-  // Starts loading what ask() will need soon, where it is known to be too much for the cache.
-  ORCHARD_INLINE void load_ahead(std::span<const BodyIndex> bodies) const noexcept {
-    if (arrays_ != nullptr && slots() > kMaxInCache) load(bodies);
-  }
   void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
   bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
   void check_motion_bounds(MotionBoundViolationListener listener, double position_slack) {
@@ -222,20 +216,14 @@ class BodyPool {
   // Bodies whose motions were not valid when they were asked for, in the course of a call of advance().
   void refuse(BodyIndex body) { refused_.push_back(body); }
   std::vector<BodyIndex>& refused() noexcept { return refused_; }
-  bool has_source() const noexcept { return source_ || arrays_ != nullptr; }
+  bool has_source() const noexcept { return static_cast<bool>(source_); }
   std::uint64_t asked() const noexcept { return asked_; }
   std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
-  static constexpr std::size_t kMaxInCache = 16384;  // bodies, of 44 bytes each
-
-  void ask_moving(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) const;
-  void read(std::span<const BodyIndex> bodies, std::span<Motion> motions) const noexcept;
-  void load(std::span<const BodyIndex> bodies) const noexcept;
 
   MotionSource source_;
-  const MotionArrays* arrays_;
   std::unique_ptr<MotionBoundCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
@@ -285,14 +273,6 @@ void give_back(std::vector<T, Allocator>& v) noexcept {
 ORCHARD_INLINE void prefetch(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 1);
-#else
-  (void)where;
-#endif
-}
-
-ORCHARD_INLINE void prefetch_to_read(const void* where) noexcept {
-#ifdef __GNUC__
-  __builtin_prefetch(where, 0);
 #else
   (void)where;
 #endif

@@ -180,10 +180,6 @@ void NearPairs::test(Step now, std::span<PairEvent> events) {
       bodies[2 * i] = events[i].pair.a;
       bodies[2 * i + 1] = events[i].pair.b;
     }
-    for (const PairEvent& event : events.subspan(count, std::min(kTestsAtOnce, events.size() - count))) {
-      const std::array<BodyIndex, 2> next = {event.pair.a, event.pair.b};
-      pool_.load_ahead(next);
-    }
     pool_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
     settle_all(now, events.first(count), motions_, Sink{*this});
     events = events.subspan(count);
@@ -259,10 +255,6 @@ void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& ou
     done += some.size();
     for (std::size_t i = 0; i < some.size(); ++i) bodies[2 * i] = some[i].pair.a, bodies[2 * i + 1] = some[i].pair.b;
     const std::size_t count = 2 * some.size();
-    for (std::size_t i = done; i < std::min(tests.size(), done + kTestsAtOnce); ++i) {
-      const std::array<BodyIndex, 2> next = {tests[i].pair.a, tests[i].pair.b};
-      pool_.load_ahead(next);
-    }
     pool_.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count), outcome.answers);
     outcome.asked += count;
     settle_all(now, some, outcome.motions, to);

@@ -195,8 +195,6 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
   std::array<BodyIndex, kBlock> known;
   for (std::size_t done = 0; done < bodies.size();) {
     auto block = bodies.subspan(done, std::min(at_once, bodies.size() - done));
-    const auto next = bodies.subspan(done + block.size());
-    parts_.pool.load_ahead(next.first(std::min(at_once, next.size())));
     parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
     done += block.size();
     if (from > now) {
