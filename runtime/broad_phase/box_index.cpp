@@ -20,14 +20,6 @@ void forget_oversized(All& all, BodyIndex body) noexcept {
 
 }  // namespace
 
-void BoxIndex::make_room_for_boxes(std::size_t slots) {
-  if (few_) {
-    list_.grow(slots);
-  } else {
-    grow(boxes_, slots);
-  }
-}
-
 void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
@@ -35,13 +27,7 @@ void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
   any_oversized_ = false;
   extent_ = kNothing;
   in_order_ = true;
-  few_ = lines > 0 && slots <= BoxList::kMaxBodies;
-  if (few_) {
-    list_.reset(slots);
-  } else {
-    list_.release();
-  }
-  if (few_ || lines == 0) {
+  if (lines == 0) {
     grid_.release();
     give_back(boxes_);
   } else {
@@ -70,8 +56,7 @@ QuantizedGrid BoxIndex::quantized_grid_at(Step now) const noexcept {
 }
 
 void BoxIndex::take_away(BodyIndex body) noexcept {
-  if (places_[body] == Place::inside && few_) list_.remove(body);
-  if (places_[body] == Place::inside && !few_) {
+  if (places_[body] == Place::inside) {
     SweptGrid::Removals removals;
     grid_.prepare_removal(body, boxes_[body].whole(), removals);
     grid_.remove(removals);
@@ -83,10 +68,6 @@ void BoxIndex::take_away(BodyIndex body) noexcept {
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   constexpr std::size_t kAtOnce = SweptGrid::Removals::kBodies;
-  if (few_) {
-    for (const BodyIndex body : bodies) take_away(body);
-    return;
-  }
   std::array<SweptGrid::Removals, 2> removals;  // of those at hand, and of the next ones
   const auto load = [&](std::size_t begin) {
     const std::size_t end = std::min(bodies.size(), begin + kAtOnce);
@@ -108,7 +89,6 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
 
 bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) {
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
-  if (few_) return true;
   boxes.store(bodies, boxes_);
   if (all_fit(boxes)) {
     extent_.include(boxes.around);
@@ -148,7 +128,6 @@ void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& b
 }
 
 void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {
-  if (few_) return list_.insert(bodies, boxes, pairs);
   if (!any_oversized_) return grid_.insert(queue, bodies, boxes, boxes_, pairs);
   const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
   std::array<BodyIndex, kBlock> in_grid;
@@ -162,9 +141,7 @@ void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock&
   meet_oversized(bodies, pairs);
 }
 
-void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) {
-  if (!few_) grid_.finish(queue, boxes_, pairs);
-}
+void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) { grid_.finish(queue, boxes_, pairs); }
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
 void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) {

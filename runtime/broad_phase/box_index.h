@@ -1,22 +1,18 @@
 #pragma once
-#include "broad_phase/box_list.h"
 #include "broad_phase/broad_phase_algorithm.h"
 #include "broad_phase/swept_grid.h"
 
 namespace orchard::runtime::detail {
 
-// The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: a
-// list of few bodies, or the grid of many.
+// The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: in
+// the grid, or by themselves where they are larger than several cells.
 class BoxIndex {
  public:
   // Boxes on their way into the grid: finish() before anything else happens to it.
   using Queue = SweptGrid::Queue;
 
   void make_room(std::size_t slots) { grow(places_, slots); }
-  void make_room_for_boxes(std::size_t slots);
-  bool few() const noexcept { return few_; }
-  std::size_t at_once() const noexcept { return few_ ? BoxList::kAtOnce : kBlock; }  // bodies that insert() takes
-  bool outgrown(std::size_t slots) const noexcept { return few_ && slots > BoxList::kMaxBodies; }
+  void make_room_for_boxes(std::size_t slots) { grow(boxes_, slots); }
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
   // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is rebuilt.
@@ -34,7 +30,7 @@ class BoxIndex {
   void take_away(std::span<const BodyIndex> bodies) noexcept;
   // Takes note of bodies' boxes, which insert() puts where they belong; false if some do not fit into the grid.
   bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes);
-  bool fits(BodyIndex body) const noexcept { return few_ || places_[body] == Place::inside; }
+  bool fits(BodyIndex body) const noexcept { return places_[body] == Place::inside; }
   bool note_again(BodyIndex body, const QuantizedAabb& box);  // of one that does not fit: another box for it
   // `boxes` are those that were noted, or noted again. Appends the pairs whose boxes meet, of each and all before.
   void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
@@ -43,7 +39,7 @@ class BoxIndex {
   // The same for many, in jobs that may run at once. They go into the grid, and none but the first of these is to be
   // used meanwhile:
   // Only while none is oversized: of these the grid knows nothing.
-  bool shares() const noexcept { return !few_ && oversized_.empty(); }
+  bool shares() const noexcept { return oversized_.empty(); }
   static bool all_fit(const BoxBlock& boxes) noexcept;
   static bool fits(const QuantizedAabb& box) noexcept;
   // takes note of boxes that fit, and has `extent` include them;
@@ -71,8 +67,7 @@ class BoxIndex {
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const;
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + bytes_of(noted_) + list_.memory_bytes() +
-           grid_.memory_bytes();
+    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + bytes_of(noted_) + grid_.memory_bytes();
   }
 
  private:
@@ -94,8 +89,7 @@ class BoxIndex {
   };
   std::vector<Oversized> oversized_, noted_;  // the latter are to be inserted
   bool any_oversized_ = false;                // since it was rebuilt
-  bool few_ = true, in_order_ = true;
-  BoxList list_;
+  bool in_order_ = true;
   SweptGrid grid_;
   QuantizedAabb extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was rebuilt
   QuantizedGrid quantized_grid_;

@@ -63,7 +63,7 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bo
   const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
   bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
   const auto durations = std::span(block.durations).first(motions.size());
-  valid = block.quantized_grid.boxes(motions, durations, block.boxes, !parts_.boxes.few()) && valid;
+  valid = block.quantized_grid.boxes(motions, durations, block.boxes) && valid;
   const auto is_one = [](const Motion& motion) { return is_valid(motion); };
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
@@ -118,7 +118,7 @@ void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
   const auto box_for = [&](Step wanted) {
     const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
     BoxBlock box;
-    block.quantized_grid.boxes({&motions_[i], 1}, {&duration, 1}, box, false);
+    block.quantized_grid.boxes({&motions_[i], 1}, {&duration, 1}, box);
     return box.get(0);
   };
   const QuantizedAabb least = box_for(1);
@@ -184,7 +184,7 @@ std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>&
 }
 
 void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
-  const std::size_t at_once = std::min(parts_.boxes.at_once(), bodies.size());
+  const std::size_t at_once = std::min(kBlock, bodies.size());
   make_room_for_motions(at_once);
   near_.clear();
   Block update;
