@@ -120,14 +120,23 @@ void BodyPool::ask_all(Step step) {
 void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
   asked_ += bodies.size();
   ask(step, bodies, motions, answers_);
+}
+
+void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) {
+  assert(bodies.size() == motions.size());
+  if (any_static()) {
+    ask_some(step, bodies, motions, answers);
+  } else {
+    source_(clock.time(step), bodies, motions);
+  }
   for (std::size_t i = 0; check_ && i < bodies.size(); ++i) {
     if (!is_static(bodies[i])) check_->given(id_of(bodies[i]), motions[i], clock.time(step));
   }
 }
 
-void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const {
-  assert(bodies.size() == motions.size());
-  if (static_slot_.empty()) return source_(clock.time(step), bodies, motions);
+// Those of them that move.
+void BodyPool::ask_some(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions,
+                        Answers& answers) const {
   answers.moving.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::uint32_t slot = static_slot_[bodies[i]];
@@ -148,8 +157,7 @@ void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motio
 std::size_t BodyPool::memory_bytes() const noexcept {
   return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
          bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) +
-         bytes_of(answers_.moving) + bytes_of(refused_) + bytes_of(answers_.motions) +
-         (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
+         answers_.memory_bytes() + bytes_of(refused_) + (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
 }
 
 }  // namespace orchard::runtime::detail

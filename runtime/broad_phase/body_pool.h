@@ -197,12 +197,14 @@ class BodyPool {
 
   // motions[i] is that of bodies[i] at the step.
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
-  // The same, as one of some threads that ask at once, each with memory of its own, and neither counted nor checked.
+  // The same, as one of some threads that ask at once, each with memory of its own, and not counted. One thread at a
+  // time if motion bounds are checked.
   struct Answers {
     std::vector<BodyIndex> moving;
     std::vector<Motion> motions;
+    std::size_t memory_bytes() const noexcept;
   };
-  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
+  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers);
   void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
   bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
   void check_motion_bounds(MotionBoundViolationListener listener, double position_slack) {
@@ -222,6 +224,8 @@ class BodyPool {
 
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
+
+  void ask_some(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
 
   MotionSource source_;
   std::unique_ptr<MotionBoundCheck> check_;
@@ -290,5 +294,7 @@ template <typename T, typename Allocator>
 std::size_t bytes_of(const std::vector<T, Allocator>& v) noexcept {
   return v.capacity() * sizeof(T);
 }
+
+inline std::size_t BodyPool::Answers::memory_bytes() const noexcept { return bytes_of(moving) + bytes_of(motions); }
 
 }  // namespace orchard::runtime::detail

@@ -95,11 +95,6 @@ void SweptGrid::empty_parts(const Executor& executor) {
   run_jobs(executor, kParts, empty);
 }
 
-void SweptGrid::reset(std::size_t lines, const Executor& executor) {
-  begin_reset(lines);
-  empty_parts(executor);
-}
-
 void SweptGrid::release() {
   give_back(lines_);
   for (Overflow& more : overflow_) give_back(more.lines);

@@ -24,6 +24,21 @@ void TimingWheel::set_due(std::span<const BodyIndex> bodies, Step step) {
   }
 }
 
+void TimingWheel::set_due(BodyIndex body, Step step) {
+  const std::size_t bucket = bucket_of(step);
+  std::uint32_t& head = buckets_[bucket].bodies;
+  mark(bucket);
+  const std::size_t room =
+      head == kNone ? 3
+                    : static_cast<std::size_t>(std::count_if(lines_[head].ids.begin(), lines_[head].ids.end(),
+                                                             [](BodyIndex id) { return id != kNoIndex; }));
+  if (room < 3) {
+    lines_[head].ids[room] = body;
+  } else {
+    add_line(head, {body, kNoIndex, kNoIndex});
+  }
+}
+
 void TimingWheel::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids) {
   std::uint32_t line = free_line_;
   if (line == kNone) {

@@ -30,6 +30,7 @@ static_assert(sizeof(PairEvent) == 12);
 class TimingWheel {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
+  void set_due(BodyIndex body, Step step);
   void clear_bodies() noexcept;
   void clear_events() noexcept;
   void clear() noexcept;  // of everything, its memory, too

@@ -1,11 +1,16 @@
 #include "broad_phase/window_updates.h"
 
 #include <bit>
+#include <new>
+
+#include "execution/guarded.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kNearAtOnce = 512;  // near pairs that are tested together
+constexpr std::size_t kChunks = 8;        // in a wave
+constexpr std::size_t kMaxWave = 32768;   // bodies; waves are as large as each other, so that none is a rest
 
 // By a quarter at most, along each axis.
 bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept {
@@ -17,6 +22,133 @@ bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept
 }
 
 }  // namespace
+
+struct WindowUpdates::Block {
+  Step now;                              // the motions are of this step,
+  Step from;                             // and count from this one
+  QuantizedGrid quantized_grid;          // at `now`
+  Step common = kUpdateDue;              // what all ends are, and durations until then; kUpdateDue: they are not
+  std::array<Step, kBlock> ends;         // of the bodies' windows
+  std::array<double, kBlock> durations;  // until then, of which the last step is not
+  BoxBlock boxes;
+  Windows::LastEnd last;
+  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch>* batches = nullptr;  // to be inserted at once; null: scattered
+};
+
+struct WindowUpdates::Chunk {
+  struct Run {
+    Step end;
+    std::size_t bodies;
+  };
+  struct Left {
+    BodyIndex body;
+    Motion motion;
+  };
+  SweptGrid::VisitsByPart visits;
+  std::vector<BodyIndex> placed;   // in order
+  std::vector<Run> runs;           // of these, those one after the other whose windows end together
+  std::vector<BodyIndex> unknown;  // what holds from the later step on
+  std::vector<Left> left;          // not valid, or too large: placed one by one
+  std::vector<Motion> sampled;     // for the plan
+  std::vector<Motion> motions;     // of the block under way
+  QuantizedAabb extent;
+  BodyPool::Answers answers;
+  std::uint64_t asked;
+
+  void note_run(Step end, std::size_t bodies) {
+    if (runs.empty() || runs.back().end != end) runs.push_back({end, 0});
+    runs.back().bodies += bodies;
+  }
+  void clear() noexcept {
+    for (auto& part : visits) part.clear();
+    placed.clear(), runs.clear(), unknown.clear(), left.clear(), sampled.clear();
+    extent = BoxIndex::nothing();
+    asked = 0;
+  }
+  std::size_t memory_bytes() const noexcept {
+    std::size_t bytes = bytes_of(placed) + bytes_of(runs) + bytes_of(unknown) + bytes_of(left) + bytes_of(sampled) +
+                        bytes_of(motions) + answers.memory_bytes();
+    for (const auto& part : visits) bytes += part.memory_bytes();
+    return bytes;
+  }
+};
+
+struct WindowUpdates::GridPart {
+  std::vector<BodyPair> near;
+  GridCounts counts;
+  NearPairs::Outcome outcome;
+};
+
+struct WindowUpdates::Shared {
+  std::array<Chunk, kChunks> chunks;
+  std::array<GridPart, SweptGrid::kParts> parts;
+};
+
+WindowUpdates::WindowUpdates(const Parts& parts, const BroadPhaseOptions& options)
+    : parts_(parts), options_(options), chunk_(std::make_unique<Chunk>()) {}
+WindowUpdates::~WindowUpdates() = default;
+
+std::size_t WindowUpdates::memory_bytes() const noexcept {
+  std::size_t bytes = bytes_of(motions_) + bytes_of(near_) + sizeof(Chunk) + chunk_->memory_bytes();
+  if (!shared_) return bytes;
+  bytes += sizeof(Shared);
+  for (const Chunk& chunk : shared_->chunks) bytes += chunk.memory_bytes();
+  for (const GridPart& part : shared_->parts) bytes += bytes_of(part.near) + part.outcome.memory_bytes();
+  return bytes;
+}
+
+std::span<Motion> WindowUpdates::ask(Step now, std::span<const BodyIndex> bodies) {
+  if (motions_.size() < bodies.size()) motions_.resize(bodies.size());
+  const auto motions = std::span(motions_).first(bodies.size());
+  parts_.pool.ask(now, bodies, motions);
+  return motions;
+}
+
+// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
+std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept {
+  std::size_t front = 0;
+  double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double expiry = motions[i].expiry;
+    if (expiry != known && !parts_.pool.is_static(bodies[i])) {
+      if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
+      known = expiry;
+    }
+    if (front < i) {
+      std::swap(bodies[front], bodies[i]);
+      motions[front] = motions[i];
+    }
+    ++front;
+  }
+  return front;
+}
+
+bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
+  return 2 * known_at(from, bodies, ask(now, bodies)) >= bodies.size();
+}
+
+std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>& bodies) {
+  const std::span<Motion> motions = ask(now, bodies);
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_valid(motions[i])) {
+      parts_.refusals.refuse(bodies[i]);
+      continue;
+    }
+    if (front < i) bodies[front] = bodies[i], motions[front] = motions[i];
+    ++front;
+  }
+  bodies = bodies.first(front);
+  return motions.first(front);
+}
+
+WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept {
+  Block block;
+  block.now = now;
+  block.from = from;
+  block.quantized_grid = parts_.boxes.quantized_grid_at(now);
+  return block;
+}
 
 // True if all windows end at the same step.
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
@@ -68,155 +200,162 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bo
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
 
-// Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
-// not valid.
-bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
-  const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
-  bool same = set_ends(block, bodies, motions);
-  if (!make_boxes(block, motions, same)) return false;
-
-  if (same && block.ends[0] != kNeverStep) {
+// Those of a block that can be placed now; the others are left.
+void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const {
+  std::size_t count = bodies.size();
+  const auto leave_unless = [&](const auto& good) {
+    std::size_t front = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!good(i)) {
+        chunk.left.push_back({bodies[i], motions[i]});
+        continue;
+      }
+      bodies[front] = bodies[i];
+      motions[front++] = motions[i];
+    }
+    count = front;
+  };
+  bool same = true;
+  for (bool fit = false; !fit && count > 0;) {
+    same = set_ends(block, bodies.first(count), motions.first(count));
+    const bool valid = make_boxes(block, motions.first(count), same);
+    fit = valid && BoxIndex::all_fit(block.boxes);
+    if (!valid) {
+      leave_unless([&](std::size_t i) { return is_valid(motions[i]); });
+    } else if (!fit) {
+      leave_unless([&](std::size_t i) { return BoxIndex::fits(block.boxes.get(i)); });
+    }
+  }
+  if (count == 0) return;
+  bodies = bodies.first(count);
+  parts_.boxes.note(bodies, block.boxes, chunk.extent);
+  for (std::size_t i = 0, first = 0; block.batches != nullptr && first < count; ++i, first += BoxIndex::kBatch) {
+    const std::size_t some = std::min(BoxIndex::kBatch, count - first);
+    parts_.boxes.encode((*block.batches)[i], bodies.subspan(first, some), block.boxes, first);
+  }
+  if (block.batches == nullptr) parts_.boxes.scatter(bodies, block.boxes, chunk.visits);
+  const bool alike = same && block.ends[0] != kNeverStep;
+  if (alike) {
     parts_.windows.set_alike(bodies, block.from, block.ends[0]);
   } else {
-    parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
+    parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
   }
-  parts_.overlaps.mark_updated(bodies);
-  const bool notes_spheres = parts_.pairs.notes_spheres();
-  for (std::size_t i = 0; notes_spheres && i < bodies.size(); ++i) {
+  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
     parts_.pairs.note_sphere(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
   }
-  parts_.planner.note(motions);
-  same = note_boxes(block, bodies) && same;
-  if (same) {
-    if (block.ends[0] != kNeverStep) parts_.wheel.set_due(bodies, block.ends[0]);
-    parts_.windows.vote(block.ends[0], bodies.size());
-    return true;
+  for (std::size_t i = 0; i < count;) {
+    const std::size_t more = alike ? count : 1;
+    chunk.note_run(block.ends[i], more);
+    i += more;
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Step end = parts_.windows[bodies[i]].end;
-    if (end != kNeverStep) parts_.wheel.set_due(bodies.subspan(i, 1), end);
-    parts_.windows.vote(end, 1);
-  }
-  return true;
+  const std::size_t stride = block.batches != nullptr ? MotionMeans::kStride : kBlock;  // of so many more few will do
+  for (std::size_t i = 0; i < count; i += stride) chunk.sampled.push_back(motions[i]);
+  chunk.placed.insert(chunk.placed.end(), bodies.begin(), bodies.end());
 }
 
-// False if a window had to be cut short.
-bool WindowUpdates::note_boxes(Block& block, std::span<const BodyIndex> bodies) {
-  if (parts_.boxes.note(bodies, block.boxes)) return true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!parts_.boxes.fits(bodies[i])) shrink(block, bodies[i], i);
+void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const BodyIndex> bodies) const {
+  chunk.clear();
+  std::array<BodyIndex, kBlock> ids;
+  const std::size_t at_once = std::min(kBlock, bodies.size());
+  if (chunk.motions.size() < at_once) chunk.motions.resize(at_once);
+  for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
+    const auto some = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
+    auto known = std::span(ids).first(some.size());
+    const auto motions = std::span(chunk.motions).first(some.size());
+    std::copy(some.begin(), some.end(), known.begin());
+    parts_.pool.ask(block.now, known, motions, chunk.answers);
+    chunk.asked += some.size();
+    if (block.from > block.now) {
+      const std::size_t front = known_at(block.from, known, motions);
+      chunk.unknown.insert(chunk.unknown.end(), known.begin() + static_cast<std::ptrdiff_t>(front), known.end());
+      known = known.first(front);
+    }
+    place(chunk, block, known, motions.first(known.size()));
   }
-  return false;
 }
 
-// Faster than the others: update it again sooner, until its box takes few enough cells. One that is too large for that
-// is not updated sooner than its motion is worth.
-void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
-  Window& window = parts_.windows[body];
+// What one thread has to do for all.
+void WindowUpdates::fold(Chunk& chunk) {
+  std::span<const BodyIndex> placed = chunk.placed;
+  parts_.overlaps.mark_updated(placed);
+  parts_.boxes.meet_oversized(placed, near_);
+  for (const Chunk::Run& run : chunk.runs) {
+    if (run.end != kNeverStep && run.bodies == 1) parts_.wheel.set_due(placed[0], run.end);
+    if (run.end != kNeverStep && run.bodies > 1) parts_.wheel.set_due(placed.first(run.bodies), run.end);
+    parts_.windows.vote(run.end, run.bodies);
+    placed = placed.subspan(run.bodies);
+  }
+  for (const BodyIndex body : chunk.unknown) parts_.changes.note(body);
+  parts_.planner.note_sample(chunk.sampled);
+  parts_.boxes.include(chunk.extent);
+  parts_.boxes.count({.bodies = chunk.placed.size()});
+  parts_.pool.count_asked(chunk.asked);
+}
+
+// What is faster than the others is updated again sooner, so that its box takes few enough cells. One that is too large
+// for that is not updated sooner than its motion is worth.
+QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& motion) const noexcept {
   Step steps = window.end == kNeverStep ? 1 : window.end - block.from;
-  if (steps <= 1) return;
+  QuantizedAabb box = block.boxes.get(0);
+  if (steps <= 1) return box;
   const auto box_for = [&](Step wanted) {
     const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
-    BoxBlock box;
-    block.quantized_grid.boxes({&motions_[i], 1}, {&duration, 1}, box);
-    return box.get(0);
+    BoxBlock made;
+    block.quantized_grid.boxes({&motion, 1}, {&duration, 1}, made);
+    return made.get(0);
   };
   const QuantizedAabb least = box_for(1);
   const bool large = !BoxIndex::fits(least);
-  QuantizedAabb box = block.boxes.get(i);
   while (steps > 1 && !(large ? hardly_longer(box, least) : BoxIndex::fits(box))) {
     steps = (steps + 1) / 2;
     box = box_for(steps);
   }
   window.end = block.from + steps;
   window.length = static_cast<std::uint8_t>(steps);
-  parts_.boxes.note_again(body, box);
-  block.boxes.set(i, box);
+  return box;
 }
 
-// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
-std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept {
-  std::size_t front = 0;
-  double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double expiry = motions[i].expiry;
-    if (expiry != known && !parts_.pool.is_static(bodies[i])) {
-      if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
-      known = expiry;
-    }
-    if (front < i) {
-      std::swap(bodies[front], bodies[i]);
-      motions[front] = motions[i];
-    }
-    ++front;
-  }
-  return front;
-}
-
-bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
-  make_room_for_motions(bodies.size());
-  parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
-  return 2 * known_at(from, bodies, motions_) >= bodies.size();
-}
-
-// Moves those whose motions are valid, with these, to the front; returns how many.
-std::size_t WindowUpdates::refuse_invalid(std::span<BodyIndex> bodies) {
-  std::size_t front = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!is_valid(motions_[i])) {
-      parts_.refusals.refuse(bodies[i]);
+// One by one what a chunk has left, once what it has placed is in the grid.
+void WindowUpdates::place_left(Chunk& chunk, Block& block) {
+  for (const Chunk::Left& left : chunk.left) {
+    const std::span<const BodyIndex> body(&left.body, 1);
+    if (!is_valid(left.motion)) {
+      parts_.refusals.refuse(left.body);
       continue;
     }
-    if (front < i) {
-      bodies[front] = bodies[i];
-      motions_[front] = motions_[i];
+    const bool same = set_ends(block, body, {&left.motion, 1});
+    make_boxes(block, {&left.motion, 1}, same);
+    parts_.windows.set(left.body, block.from, block.ends[0]);
+    parts_.overlaps.mark_updated(body);
+    if (parts_.pairs.notes_spheres()) {
+      parts_.pairs.note_sphere(left.body, left.motion, block.quantized_grid, block.durations[0]);
     }
-    ++front;
+    parts_.planner.note_sample({&left.motion, 1});
+    const QuantizedAabb box = shrink(block, parts_.windows[left.body], left.motion);
+    parts_.boxes.insert_one(left.body, box, near_);
+    const Step end = parts_.windows[left.body].end;
+    if (end != kNeverStep) parts_.wheel.set_due(left.body, end);
+    parts_.windows.vote(end, 1);
   }
-  return front;
-}
-
-std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>& bodies) {
-  make_room_for_motions(bodies.size());
-  parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
-  bodies = bodies.first(refuse_invalid(bodies));
-  return std::span(motions_).first(bodies.size());
 }
 
 void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
-  const std::size_t at_once = std::min(kBlock, bodies.size());
-  make_room_for_motions(at_once);
   near_.clear();
-  Block update;
-  update.now = now;
-  update.from = from;
-  update.quantized_grid = parts_.boxes.quantized_grid_at(now);
-  BoxIndex::Queue queue;
-  std::array<BodyIndex, kBlock> known;
-  for (std::size_t done = 0; done < bodies.size();) {
-    auto block = bodies.subspan(done, std::min(at_once, bodies.size() - done));
-    parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
-    done += block.size();
-    if (from > now) {
-      std::copy(block.begin(), block.end(), known.begin());
-      const std::size_t front = known_at(from, std::span(known).first(block.size()), motions_);
-      for (std::size_t i = front; i < block.size(); ++i) parts_.changes.note(known[i]);
-      block = std::span(known).first(front);
-      if (block.empty()) continue;
+  Block block = block_at(now, from);
+  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch> batches;
+  block.batches = &batches;
+  Chunk& chunk = *chunk_;
+  for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
+    place_chunk(chunk, block, bodies.subspan(done, std::min(kBlock, bodies.size() - done)));
+    fold(chunk);
+    GridCounts counts;
+    for (std::size_t i = 0; i * BoxIndex::kBatch < chunk.placed.size(); ++i) {
+      parts_.boxes.insert(batches[i], near_, counts);
     }
-    if (!place(update, block)) {
-      if (block.data() != known.data()) std::copy(block.begin(), block.end(), known.begin());
-      block = std::span(known).first(refuse_invalid(std::span(known).first(block.size())));
-      if (block.empty()) continue;
-      place(update, block);
-    }
-    parts_.boxes.insert(queue, block, update.boxes, near_);
-    if (tested && near_.size() >= kNearAtOnce) {
-      parts_.boxes.finish(queue, near_);
-      test_near(now);
-    }
+    parts_.boxes.count(counts);
+    if (!chunk.left.empty()) place_left(chunk, block);
+    if (tested && near_.size() >= kNearAtOnce) test_near(now);
   }
-  parts_.boxes.finish(queue, near_);
 }
 
 void WindowUpdates::test_near(Step now) {
@@ -240,6 +379,87 @@ std::span<const BodyPair> WindowUpdates::find_near(Step now, std::span<const Bod
 void WindowUpdates::drop_what_is_none() {
   const BodyPool& pool = parts_.pool;
   parts_.boxes.discount_pairs(std::erase_if(near_, [&](const BodyPair& pair) { return !pool.may_pair(pair); }));
+}
+
+// Nothing may be thrown through an executor: lack of memory is told when all jobs have ended.
+template <typename Job>
+void WindowUpdates::run_all(std::size_t count, const Job& job) {
+  if (options_.executor.run == nullptr) {
+    for (std::size_t i = 0; i < count; ++i) job(i);
+    return;
+  }
+  std::array<bool, std::max(kChunks, 1 + SweptGrid::kParts)> done{};
+  auto guarded_job = [&](std::size_t i) { done[i] = guarded([&] { return job(i), true; }, [] { return false; }); };
+  run_jobs(options_.executor, count, guarded_job);
+  if (std::all_of(done.begin(), done.begin() + static_cast<std::ptrdiff_t>(count), [](bool d) { return d; })) return;
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+  throw std::bad_alloc();
+#endif
+}
+
+void WindowUpdates::find_in_part(Step now, std::size_t index) {
+  GridPart& part = shared_->parts[index];
+  part.near.clear();
+  part.counts = {};
+  if (!parts_.boxes.in_order()) parts_.boxes.empty_part(index);  // in the cache where it is used at once
+  for (const Chunk& chunk : shared_->chunks) parts_.boxes.insert(chunk.visits[index].visits(), part.near, part.counts);
+  const BodyPool& pool = parts_.pool;
+  if (pool.asks_user_filter()) return;
+  if (pool.filters_pairs()) {
+    part.counts.pairs -= std::erase_if(part.near, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
+  }
+  parts_.pairs.test_near(now, part.near, part.outcome);
+}
+
+void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> bodies) {
+  const std::size_t share = (bodies.size() + kChunks - 1) / kChunks;
+  const std::size_t size = (share + kBlock - 1) / kBlock * kBlock;
+  Block update = block_at(now, from);
+  run_all(kChunks, [&](std::size_t i) {
+    const std::size_t begin = std::min(bodies.size(), i * size), end = std::min(bodies.size(), begin + size);
+    Block block = update;
+    place_chunk(shared_->chunks[i], block, bodies.subspan(begin, end - begin));
+  });
+  run_all(1 + SweptGrid::kParts, [&](std::size_t i) {  // what a part's job uses is none of what folding changes
+    if (i > 0) return find_in_part(now, i - 1);
+    for (Chunk& chunk : shared_->chunks) fold(chunk);
+  });
+  parts_.boxes.all_parts_emptied();
+  for (GridPart& part : shared_->parts) {
+    parts_.boxes.count(part.counts);
+    if (parts_.pool.asks_user_filter()) {  // it is asked by one thread
+      near_.insert(near_.end(), part.near.begin(), part.near.end());
+    } else {
+      parts_.pairs.take(part.outcome);
+    }
+  }
+  for (Chunk& chunk : shared_->chunks) place_left(chunk, update);
+  test_near(now);
+}
+
+// Whether jobs are worth it: what they have to do is told by the bodies, and by the pairs that are near, of which so
+// many make up for a body. A thread that is alone takes a little longer with jobs unless there are many of either.
+bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
+  constexpr std::size_t kFewer = 4;
+  constexpr double kPairsOfBody = 48;
+  const std::size_t least = options_.min_bodies_for_jobs;
+  const double pairs = parts_.planner.plan().pairs_per_body;
+  const double work = static_cast<double>(bodies) * (1 + pairs / kPairsOfBody);
+  return bodies > 0 && bodies >= least / kFewer && work >= static_cast<double>(least);
+}
+
+void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
+  if (!are_many(bodies.size()) || parts_.pool.motion_bound_check() != nullptr) {
+    parts_.boxes.empty(options_.executor);
+    return update(now, from, bodies);
+  }
+  if (!shared_) shared_ = std::make_unique<Shared>();
+  near_.clear();
+  const std::size_t waves = (bodies.size() + kMaxWave - 1) / kMaxWave;
+  const std::size_t size = (bodies.size() + waves - 1) / waves;
+  for (std::size_t done = 0; done < bodies.size(); done += size) {
+    update_wave(now, from, bodies.subspan(done, std::min(size, bodies.size() - done)));
+  }
 }
 
 }  // namespace orchard::runtime::detail

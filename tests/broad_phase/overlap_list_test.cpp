@@ -93,8 +93,10 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   for (const std::array<double, 3>& cells : shapes) {
     test::Draw draw(1);
     SweptGrid grid;
-    grid.reset(kBodies / 2, {});
-    SweptGrid::Queue queue;
+    grid.begin_reset(kBodies / 2);
+    grid.empty_parts({});
+    SweptGrid::Batch batch;
+    GridCounts counts;
     std::vector<PackedAabb> boxes(kBodies);
     std::vector<BodyPair> pairs;
     for (BodyIndex begin = 0; begin < kBodies; begin += kBlock) {
@@ -110,10 +112,11 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
         boxes[ids[i]] = PackedAabb(box);
         block.set(i, box);
       }
-      grid.insert(queue, ids, block, boxes, pairs);
+      for (std::size_t first = 0; first < kBlock; first += SweptGrid::kBatch) {
+        grid.encode(batch, std::span(ids).subspan(first, SweptGrid::kBatch), block, first);
+        grid.insert(batch, boxes, pairs, counts);
+      }
     }
-    grid.finish(queue, boxes, pairs);
-    const GridCounts counts = grid.counts();
     EXPECT_LT(static_cast<double>(counts.lines_read), 1.5 * static_cast<double>(counts.entries)) << cells[0];
   }
 }
