@@ -77,4 +77,54 @@ class WindowUpdates {
   std::unique_ptr<Shared> shared_;  // null until there are many
 };
 
+struct WindowUpdates::Block {
+  Step now;                              // the motions are of this step,
+  Step from;                             // and count from this one
+  QuantizedGrid quantized_grid;          // at `now`
+  Step common = kUpdateDue;              // what all ends are, and durations until then; kUpdateDue: they are not
+  std::array<Step, kBlock> ends;         // of the bodies' windows
+  std::array<double, kBlock> durations;  // until then, of which the last step is not
+  BoxBlock boxes;
+  Windows::LastEnd last;
+  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch>* batches = nullptr;  // to be inserted at once; null: scattered
+};
+
+struct WindowUpdates::Chunk {
+  struct Run {
+    Step end;
+    std::size_t bodies;
+  };
+  struct Left {
+    BodyIndex body;
+    Motion motion;
+  };
+  SweptGrid::VisitsByPart visits;
+  std::vector<BodyIndex> placed;   // in order
+  std::vector<Run> runs;           // of these, those one after the other whose windows end together
+  std::vector<BodyIndex> unknown;  // what holds from the later step on
+  std::vector<Left> left;          // not valid, or too large: placed one by one
+  std::vector<Motion> sampled;     // for the plan
+  std::vector<Motion> motions;     // of the block under way
+  QuantizedAabb extent;
+  BodyPool::Answers answers;
+  std::uint64_t asked;
+
+  void note_run(Step end, std::size_t bodies) {
+    if (runs.empty() || runs.back().end != end) runs.push_back({end, 0});
+    runs.back().bodies += bodies;
+  }
+  void clear() noexcept {
+    for (auto& part : visits) part.clear();
+    placed.clear(), runs.clear(), unknown.clear(), left.clear(), sampled.clear();
+    extent = BoxIndex::nothing();
+    asked = 0;
+  }
+  std::size_t memory_bytes() const noexcept {
+    std::size_t bytes = bytes_of(placed) + bytes_of(runs) + bytes_of(unknown) + bytes_of(left) + bytes_of(sampled) +
+                        bytes_of(motions) + answers.memory_bytes();
+    for (const auto& part : visits) bytes += part.memory_bytes();
+    return bytes;
+  }
+};
+
 }  // namespace orchard::runtime::detail
