@@ -119,7 +119,6 @@ orchard_detector_options orchard_default_detector(void) {
           nullptr,
           nullptr,
           1,
-          options.max_fronts,
           options.max_events};
 }
 
@@ -136,7 +135,6 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     if (with->watch >= 0) options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
     options.max_unfinished = with->max_unfinished;
-    options.max_fronts = with->max_fronts;
     if (with->max_events > 0) options.max_events = with->max_events;
     options.executor = {with->run, with->run_context, with->concurrency};
     orchard_detector* const self = made.get();

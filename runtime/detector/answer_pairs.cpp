@@ -86,8 +86,7 @@ bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) n
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
-void PairAnswerer::answer_coherently(std::uint32_t index, CachedPair& record, Step now,
-                                     QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   record.part_a = record.part_b = 0;
   record.impact = false;
   Verdict& verdict = record.verdict;
@@ -102,7 +101,6 @@ void PairAnswerer::answer_coherently(std::uint32_t index, CachedPair& record, St
     const bool tries = slow || record.touching;
     if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
-      if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
       record.along = query_of(scratch.workspace.narrow).apart_along();
     }
     scratch.work += kPairWork + verdict.work;
@@ -132,9 +130,8 @@ void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scr
   verdict.work = scratch.work - before;
 }
 
-void PairAnswerer::answer(std::uint32_t index, CachedPair& record, Step now,
-                          QueryPool::Scratch& scratch) const noexcept {
-  if (record.coherent) return answer_coherently(index, record, now, scratch);
+void PairAnswerer::answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+  if (record.coherent) return answer_coherently(record, now, scratch);
   if (places_->parts(record.bodies.a) == 1 && places_->parts(record.bodies.b) == 1) {
     return answer_two_parts(record, now, scratch);
   }
@@ -227,12 +224,6 @@ void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch
   certain = answer_others(record, touched, pair, scratch) && certain && record.verdict.answer != Answer::maybe;
   if (certain || record.verdict.answer == Answer::yes) record.answered = now;
   record.verdict.work = scratch.work - before;
-}
-
-void PairAnswerer::note_search(std::uint32_t index, CachedPair& record, std::uint64_t work,
-                               QueryPool::Scratch& scratch) noexcept {
-  if (scratch.wanting.capacity() == 0 || !FrontPool::wants(record, work)) return;
-  if (scratch.wanting.size() < scratch.wanting.capacity()) scratch.wanting.push_back(index);
 }
 
 void leave_open(CachedPair& record) noexcept {

@@ -10,8 +10,6 @@
 
 namespace orchard::runtime::detail {
 
-inline constexpr std::uint32_t kNoFront = 0xffffffffu;
-
 // What is remembered of a pair that could not be skipped at some step, while it is one, or until its touch has ended.
 // First what every loop over pairs reads.
 struct CachedPair {
@@ -26,15 +24,12 @@ struct CachedPair {
   bool touching = false;
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   bool met = false;       // of several parts, part_a and part_b have met, and are trees: `trees` knows where
-  bool large = false;     // trees, so that a front may be of use
   bool impact = false;
   bool swept = false;   // at the step before both poses were known: a sweep may start there
   bool unseen = false;  // there is no pose of the previous step, so no sweep is possible
   std::uint8_t importance = 0;
-  std::uint8_t costly = 0;         // searches of late, see there
-  std::uint8_t roots_wait = 0;     // steps within a budget for which the roots are not asked by themselves
-  std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
-  Step answered = -1;              // the step of `verdict`, if that is certain
+  std::uint8_t roots_wait = 0;  // steps within a budget for which the roots are not asked by themselves
+  Step answered = -1;           // the step of `verdict`, if that is certain
   std::uint32_t part_a = 0, part_b = 0;
   Verdict verdict;
   Vec3 apart_by{};     // from centre to centre,
@@ -87,12 +82,9 @@ class PairCache {
   const BodyPair& pair(std::size_t place) const noexcept { return pairs_[place]; }
   Known& known(std::size_t place) noexcept { return known_[slots_[place] & kSlot]; }
   const Known& known(std::size_t place) const noexcept { return known_[slots_[place] & kSlot]; }
-  // Whether a certain "no" would change its record; and whether its end would be noticed.
+  // Whether a certain "no" would change its record, or its end would be noticed.
   bool busy(std::size_t place) const noexcept { return (slots_[place] & kBusy) != 0; }
-  bool is_held(std::size_t place) const noexcept { return (slots_[place] & (kBusy | kHeld)) != 0; }
-  void tell(std::size_t place, bool busy, bool held) noexcept {
-    slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0) | (held ? kHeld : 0);
-  }
+  void tell(std::size_t place, bool busy) noexcept { slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0); }
   ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
   CachedPair& operator[](std::uint32_t record) noexcept { return *place_of(record); }
@@ -140,7 +132,7 @@ class PairCache {
   std::vector<Known> known_;
   std::vector<std::uint32_t> free_slots_;
   std::vector<BodyPair> pairs_, next_pairs_;
-  static constexpr std::uint32_t kBusy = 0x80000000u, kHeld = 0x40000000u, kSlot = kHeld - 1;
+  static constexpr std::uint32_t kBusy = 0x80000000u, kSlot = kBusy - 1;
   std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and flags
   std::vector<std::uint32_t> kept_places_;
   std::vector<Change> changes_;          // in match()
@@ -153,7 +145,7 @@ ORCHARD_INLINE void PairCache::prefetch_parting(std::size_t i) const noexcept {
   if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
   if (i + kRecord >= partings_.size()) return;
   const std::size_t place = partings_[i + kRecord];
-  if (is_held(place)) prefetch_all(*place_of(known(place).record));
+  if (busy(place)) prefetch_all(*place_of(known(place).record));
 }
 
 template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
@@ -164,7 +156,7 @@ void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   const auto look_at = [&](std::size_t place) {
     if (same(known(place))) return keep(place, 1);
-    if (is_held(place)) gone(known(place));  // of a body that is no more: it cannot stay
+    if (busy(place)) gone(known(place));  // of a body that is no more: it cannot stay
     leave(place);
     add(pairs_[place], generations(pairs_[place]));
   };
@@ -178,7 +170,7 @@ void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame
     }
   };
   const auto part = [&](std::size_t place) {
-    if (!is_held(place) || !gone(known(place))) return leave(place);
+    if (!busy(place) || !gone(known(place))) return leave(place);
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
     keep(place, 1);
   };

@@ -17,7 +17,7 @@ class EventReporter {
 
   // What a job's share of the active pairs adds to the frame, and where their events are to be.
   struct Tally {
-    std::size_t events = 0, certain = 0, large = 0;  // large: pairs of large trees, begun now
+    std::size_t events = 0, certain = 0;
     double worst_bound = 0;
     std::size_t ended_from = 0, events_from = 0;
   };

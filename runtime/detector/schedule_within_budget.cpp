@@ -110,7 +110,6 @@ void PairScheduler::decide(Task& task, CachedPair& record, std::uint64_t most,
   Verdict verdict;
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
-    if (verdict.answer != Answer::yes) PairAnswerer::note_search(task.record, record, verdict.work, scratch);
   } else {
     narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
@@ -134,7 +133,6 @@ void PairScheduler::once_each(std::span<const std::uint32_t> tasks, StepBudget& 
       if (alone ? budget.may_begin() : !budget.late()) piece(task, records[task.record], scratch);
     }
   });
-  give_fronts(records, now_);
   for (const std::uint32_t index : tasks) {
     const Task& task = tasks_[index];
     budget.spend(task.work);
@@ -255,7 +253,6 @@ void PairScheduler::fold(PairCache& records, std::span<const std::uint32_t> open
 
 void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open, Step now) {
   make_tasks(records, open, now);
-  now_ = now;
   sort_tasks(records);
   begun_ = 0;
   lead_ = 0;
