@@ -226,7 +226,8 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
 
 // Static bodies have windows without end, which are worth keeping if there are many.
 bool KineticBroadPhase::worth_sorting(Step now) const noexcept {
-  return planner_.plan().window == 1 && now >= sorts_from_ && 2 * pool_.statics() <= pool_.size();
+  return planner_.plan().window == 1 && pool_.slots() > kFewBodies && now >= sorts_from_ &&
+         2 * pool_.statics() <= pool_.size();
 }
 
 void KineticBroadPhase::begin_sorting() {

@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan asks: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
 constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
-constexpr double kNearlyAll = 0.9;                      // at each step so far: one step is enough
+constexpr double kNearlyAll = 0.9;                      // of many, at each step so far: one step is enough
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
 constexpr unsigned kPlansKept = 8;         // a plan that fits is made again after so many updates of all windows
 constexpr double kFarthestWay = 0x1p20;    // spacings, which cells are not much smaller than
@@ -34,7 +34,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   }
   const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
   const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
-  const bool tells = steps >= kStepsToTell || share > kNearlyAll;
+  const bool tells = steps >= kStepsToTell || (share > kNearlyAll && n > kFewBodies);
   const double cancelled = tells ? share : cancelled_;
   if (too_crowded) {
     crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
