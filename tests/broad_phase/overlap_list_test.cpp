@@ -86,6 +86,24 @@ TEST(PackedAabb, IsTheWholeBoxUpToFourCells) {
   }
 }
 
+TEST(SweptGrid, SharesNoLineBetweenCellsOfABox) {
+  constexpr auto kMaxOffset = static_cast<int>(kMaxCellsPerAxis) - 1;
+  for (unsigned bits = kMinLineBits; bits <= kMaxLineBits; ++bits) {
+    const std::array<std::uint32_t, 3> factors = line_factors(bits);
+    const std::uint32_t mask = (1u << bits) - 1;
+    for (int z = 0; z <= kMaxOffset; ++z) {
+      for (int y = -kMaxOffset; y <= kMaxOffset; ++y) {
+        for (int x = -kMaxOffset; x <= kMaxOffset; ++x) {
+          const std::uint32_t line = static_cast<std::uint32_t>(x) * factors[0] +
+                                     static_cast<std::uint32_t>(y) * factors[1] +
+                                     static_cast<std::uint32_t>(z) * factors[2];
+          ASSERT_EQ((line & mask) == 0, x == 0 && y == 0 && z == 0) << bits;
+        }
+      }
+    }
+  }
+}
+
 // As many lines are read for each entry, however long and thin the world is: a rebuild takes time in proportion.
 TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   constexpr std::size_t kBodies = 320 * kBlock;
