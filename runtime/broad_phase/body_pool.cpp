@@ -155,8 +155,7 @@ void BodyPool::ask_some(Step step, std::span<const BodyIndex> bodies, std::span<
 }
 
 std::size_t BodyPool::memory_bytes() const noexcept {
-  return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
-         bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) +
+  return bytes_of(in_class_, generations_, importance_, filters_, static_slot_, static_motions_, free_slots_, free_) +
          answers_.memory_bytes() + bytes_of(refused_) + (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
 }
 

@@ -290,11 +290,11 @@ ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
   for (std::size_t at = 0; at < sizeof(T); at += kLine) prefetch(begin + at);
 }
 
-template <typename T, typename Allocator>
-std::size_t bytes_of(const std::vector<T, Allocator>& v) noexcept {
-  return v.capacity() * sizeof(T);
+template <typename... Vectors>
+std::size_t bytes_of(const Vectors&... vectors) noexcept {
+  return ((vectors.capacity() * sizeof(typename Vectors::value_type)) + ...);
 }
 
-inline std::size_t BodyPool::Answers::memory_bytes() const noexcept { return bytes_of(moving) + bytes_of(motions); }
+inline std::size_t BodyPool::Answers::memory_bytes() const noexcept { return bytes_of(moving, motions); }
 
 }  // namespace orchard::runtime::detail

@@ -65,9 +65,7 @@ class BoxIndex {
   Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const;
-  std::size_t memory_bytes() const noexcept {
-    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + grid_.memory_bytes();
-  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(places_, boxes_, oversized_) + grid_.memory_bytes(); }
 
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };

@@ -253,8 +253,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
 }
 
 std::size_t BodyQueries::memory_bytes() const noexcept {
-  const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
-  return bytes(seen_, candidates_, asked_, found_, motions_, hits_, near_);
+  return detail::bytes_of(seen_, candidates_, asked_, found_, motions_, hits_, near_);
 }
 
 }  // namespace orchard::runtime

@@ -385,7 +385,7 @@ std::size_t KineticBroadPhase::memory_bytes() const noexcept {
   return sizeof(*this) + changes_.memory_bytes() + bytes_of(gone_) + windows_.memory_bytes() + boxes_.memory_bytes() +
          wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
          pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
-         bytes_of(due_) + bytes_of(entries_) + bytes_of(waiting_);
+         bytes_of(due_, entries_, waiting_);
 }
 
 std::unique_ptr<BroadPhaseAlgorithm> make_kinetic_broad_phase(BodyPool& pool, const BroadPhaseOptions& options) {

@@ -264,7 +264,7 @@ void NearPairs::forget_all() noexcept {
 }
 
 std::size_t NearPairs::memory_bytes() const noexcept {
-  return bytes_of(spheres_) + bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + own_.memory_bytes() + bytes_of(sure_);
+  return bytes_of(spheres_, overlaps_ahead_, doubtful_) + own_.memory_bytes() + bytes_of(sure_);
 }
 
 }  // namespace orchard::runtime::detail

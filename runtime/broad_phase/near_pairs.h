@@ -54,8 +54,7 @@ class NearPairs {
     std::vector<Motion> motions;
     BodyPool::Answers answers;
     std::size_t memory_bytes() const noexcept {
-      return bytes_of(touching) + bytes_of(parted) + bytes_of(ahead) + bytes_of(later) + bytes_of(doubtful) +
-             bytes_of(refused) + bytes_of(tests) + bytes_of(motions) + answers.memory_bytes();
+      return bytes_of(touching, parted, ahead, later, doubtful, refused, tests, motions) + answers.memory_bytes();
     }
   };
   void test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const;

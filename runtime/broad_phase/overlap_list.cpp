@@ -172,8 +172,7 @@ void OverlapList::clear() noexcept {
 }
 
 std::size_t OverlapList::memory_bytes() const noexcept {
-  return bytes_of(pairs_) + bytes_of(added_) + bytes_of(dropped_) + bytes_of(marks_) + bytes_of(begins_) +
-         bytes_of(ends_) + bytes_of(room_) + bytes_of(added_places_) + bytes_of(dropped_places_);
+  return bytes_of(pairs_, added_, dropped_, marks_, begins_, ends_, room_, added_places_, dropped_places_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -247,8 +247,7 @@ bool SortedSpheres::append_near(const Vec3& lower, const Vec3& upper, std::vecto
 void SortedSpheres::release() { *this = {}; }
 
 std::size_t SortedSpheres::memory_bytes() const noexcept {
-  return bytes_of(spheres_) + bytes_of(begins_) + bytes_of(x_) + bytes_of(y_) + bytes_of(z_) + bytes_of(radius_) +
-         bytes_of(body_) + bytes_of(large_) + bytes_of(pairs_);
+  return bytes_of(spheres_, begins_, x_, y_, z_, radius_, body_, large_, pairs_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -28,7 +28,7 @@ WindowUpdates::WindowUpdates(const Parts& parts, const BroadPhaseOptions& option
 WindowUpdates::~WindowUpdates() = default;
 
 std::size_t WindowUpdates::memory_bytes() const noexcept {
-  std::size_t bytes = bytes_of(motions_) + bytes_of(near_) + sizeof(Chunk) + chunk_->memory_bytes();
+  std::size_t bytes = bytes_of(motions_, near_) + sizeof(Chunk) + chunk_->memory_bytes();
   if (!shared_) return bytes;
   bytes += sizeof(Shared);
   for (const Chunk& chunk : shared_->chunks) bytes += chunk.memory_bytes();

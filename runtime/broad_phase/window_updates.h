@@ -120,8 +120,7 @@ struct WindowUpdates::Chunk {
     asked = 0;
   }
   std::size_t memory_bytes() const noexcept {
-    std::size_t bytes = bytes_of(placed) + bytes_of(runs) + bytes_of(unknown) + bytes_of(left) + bytes_of(sampled) +
-                        bytes_of(motions) + answers.memory_bytes();
+    std::size_t bytes = bytes_of(placed, runs, unknown, left, sampled, motions) + answers.memory_bytes();
     for (const auto& part : visits) bytes += part.memory_bytes();
     return bytes;
   }
