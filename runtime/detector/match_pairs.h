@@ -35,8 +35,7 @@ class PairMatcher {
     return pair.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
   }
   std::size_t memory_bytes() const noexcept {
-    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_) + bytes_of(left_out_) +
-           bytes_of(due_motions_);
+    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_, due_motions_);
   }
 
  private:

@@ -101,9 +101,8 @@ class PairCache {
   void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations,
              Load&& load);
   std::size_t memory_bytes() const noexcept {
-    return pieces_.size() * sizeof(Piece) + bytes_of(pieces_) + bytes_of(free_) + bytes_of(known_) +
-           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_) +
-           bytes_of(kept_places_) + bytes_of(changes_) + bytes_of(partings_);
+    return pieces_.size() * sizeof(Piece) + bytes_of(pieces_, free_, known_, free_slots_, pairs_, slots_, next_pairs_,
+                                                     next_slots_, kept_places_, changes_, partings_);
   }
 
  private:

@@ -33,9 +33,7 @@ class EventReporter {
   void report(const ActivePairs& active, Step step, Frame& frame);
 
   std::span<const PairEvent> events() const noexcept { return std::span(events_).first(event_count_); }
-  std::size_t memory_bytes() const noexcept {
-    return bytes_of(outcomes_) + bytes_of(tallies_) + bytes_of(events_) + bytes_of(ended_);
-  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(outcomes_, tallies_, events_, ended_); }
 
  private:
   enum class Outcome : std::uint8_t {  // the events, and none

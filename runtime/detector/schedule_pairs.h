@@ -33,8 +33,7 @@ class PairScheduler {
 
   Workspace* workspace() noexcept { return queries_.jobs() == 0 ? nullptr : &queries_.scratch(0).workspace; }
   std::size_t memory_bytes() const noexcept {
-    return queries_.memory_bytes() + bytes_of(tasks_) + bytes_of(schedule_) + bytes_of(sorted_) + bytes_of(order_) +
-           bytes_of(sweeps_);
+    return queries_.memory_bytes() + bytes_of(tasks_, schedule_, sorted_, order_, sweeps_);
   }
 
  private:

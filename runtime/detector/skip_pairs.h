@@ -43,7 +43,7 @@ class PairSkipper {
   bool needs_answer(CachedPair& pair, Step step, bool interrupted, bool& over) const noexcept;
   // After an answer: how far the two may move before they have to be asked about again.
   void keep_clearance(PairCache::Known& known, const CachedPair& pair) const noexcept;
-  std::size_t memory_bytes() const noexcept { return bytes_of(active_) + bytes_of(active_of_job_); }
+  std::size_t memory_bytes() const noexcept { return bytes_of(active_, active_of_job_); }
 
  private:
   RelativePlacement relative_placement(const BodyPair& pair) const noexcept;
