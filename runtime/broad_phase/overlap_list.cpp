@@ -24,8 +24,9 @@ class Finder {
 }  // namespace
 
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
-  if (2 * pairs.size() < slots || pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
-  if (pairs.size() > kPairsWithRoom * slots) return sort_in_place(pairs, slots);
+  // For very many, room for as many more would be too much.
+  const bool few = 2 * pairs.size() < slots || pairs.size()<kFewPairs, many = pairs.size()> kPairsWithRoom * slots;
+  if (few || many) return std::sort(pairs.begin(), pairs.end());
   room.resize(pairs.size());
   sort_by_body(pairs, room, slots, &BodyPair::b);
   sort_by_body(room, pairs, slots, &BodyPair::a);
@@ -40,30 +41,12 @@ void OverlapList::sort_by_body(std::span<const BodyPair> from, std::span<BodyPai
   for (const BodyPair& pair : from) to[begins_[pair.*body + 1]++] = pair;
 }
 
-// Where room for as many more would be too much: by the first body into buckets, within the vector, in each by the
-// second one.
-void OverlapList::sort_in_place(std::vector<BodyPair>& pairs, std::size_t slots) {
-  begins_.assign(slots + 1, 0);
-  for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
-  for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
-  ends_.assign(begins_.begin(), begins_.end() - 1);  // of what is in its bucket
-  for (std::size_t body = 0; body < slots; ++body) {
-    for (std::uint32_t& end = ends_[body]; end < begins_[body + 1];) {
-      BodyPair pair = pairs[end];
-      while (pair.a != body) std::swap(pair, pairs[ends_[pair.a]++]);
-      pairs[end++] = pair;
-    }
-    const auto begin = pairs.begin() + begins_[body], last = pairs.begin() + begins_[body + 1];
-    if (last - begin > 1) std::sort(begin, last);
-  }
-}
-
 void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
   clear();
   pairs_.resize(pairs.size());
   if (pairs.size() > kPairsWithRoom * slots) {
     std::copy(pairs.begin(), pairs.end(), pairs_.begin());
-    return sort_in_place(pairs_, slots);
+    return std::sort(pairs_.begin(), pairs_.end());
   }
   added_.resize(pairs.size());
   sort_by_body(pairs, added_, slots, &BodyPair::b);
@@ -172,7 +155,7 @@ void OverlapList::clear() noexcept {
 }
 
 std::size_t OverlapList::memory_bytes() const noexcept {
-  return bytes_of(pairs_, added_, dropped_, marks_, begins_, ends_, room_, added_places_, dropped_places_);
+  return bytes_of(pairs_, added_, dropped_, marks_, begins_, room_, added_places_, dropped_places_);
 }
 
 }  // namespace orchard::runtime::detail

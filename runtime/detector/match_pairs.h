@@ -70,8 +70,7 @@ void PairMatcher::match(GoesOn&& goes_on) {
     ++seen_.fresh;
     return generations(pair);
   };
-  const auto load = [&](const BodyPair& pair) ORCHARD_INLINE_LAMBDA { bodies.prefetch_sphere_cache(pair.b); };
-  cache_.match(pairs_.all(), doubted, same, gone, fresh, load);
+  cache_.match(pairs_.all(), doubted, same, gone, fresh);
   seen_.parted = seen_.known + seen_.fresh + cache_.kept().size() - cache_.size();
   bodies.forget_invalidated();
 }

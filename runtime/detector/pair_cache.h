@@ -96,22 +96,16 @@ class PairCache {
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
-  // the former if that says true; generations(pair) for each that is new, and load(pair) some pairs ahead.
-  template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
-  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations,
-             Load&& load);
+  // the former if that says true; generations(pair) for each that is new.
+  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
+  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
-    return pieces_.size() * sizeof(Piece) + bytes_of(pieces_, free_, known_, free_slots_, pairs_, slots_, next_pairs_,
-                                                     next_slots_, kept_places_, changes_, partings_);
+    return pieces_.size() * sizeof(Piece) +
+           bytes_of(pieces_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
   }
 
  private:
-  struct Change {  // so many pairs are as they were, then so many are no more, and so many new
-    std::uint32_t alike, parted, fresh;
-  };
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
-  void compare(std::span<const BodyPair> pairs);
-  ORCHARD_INLINE void prefetch_parting(std::size_t i) const noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
@@ -134,24 +128,11 @@ class PairCache {
   static constexpr std::uint32_t kBusy = 0x80000000u, kSlot = kBusy - 1;
   std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and flags
   std::vector<std::uint32_t> kept_places_;
-  std::vector<Change> changes_;          // in match()
-  std::vector<std::uint32_t> partings_;  // places, in all of these
 };
 
-// What partings_[i] and some after it need.
-ORCHARD_INLINE void PairCache::prefetch_parting(std::size_t i) const noexcept {
-  constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
-  if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
-  if (i + kRecord >= partings_.size()) return;
-  const std::size_t place = partings_[i + kRecord];
-  if (busy(place)) prefetch_all(*place_of(known(place).record));
-}
-
-template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
+template <typename Doubted, typename IsSame, typename Gone, typename Generations>
 void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                      Generations&& generations, Load&& load) {
-  constexpr std::size_t kFreshAhead = 8;
-  compare(pairs);
+                      Generations&& generations) {
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   const auto look_at = [&](std::size_t place) {
     if (same(known(place))) return keep(place, 1);
@@ -173,18 +154,14 @@ void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
     keep(place, 1);
   };
-  std::size_t old = 0, now = 0, gone_by = 0;
-  for (const Change& change : changes_) {
-    take_over(old, old + change.alike);
-    old += change.alike, now += change.alike;
-    for (std::uint32_t i = 0; i < change.parted; ++i) {
-      prefetch_parting(gone_by++);
-      part(old++);
-    }
-    for (std::uint32_t i = 0; i < change.fresh; ++i, ++now) {
-      if (now + kFreshAhead < pairs.size()) load(pairs[now + kFreshAhead]);
+  const std::size_t had = pairs_.size();
+  for (std::size_t old = 0, now = 0; old < had || now < pairs.size();) {
+    const std::size_t alike = common(pairs.subspan(now), std::span(pairs_).subspan(old));
+    take_over(old, old + alike);
+    old += alike, now += alike;
+    for (; old < had && (now == pairs.size() || pairs_[old] < pairs[now]); ++old) part(old);
+    for (; now < pairs.size() && (old == had || pairs[now] < pairs_[old]); ++now)
       add(pairs[now], generations(pairs[now]));
-    }
   }
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }

@@ -43,9 +43,9 @@ void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t
     PartPair pair;
     if (is_half_space(record.bodies.b)) pair.half = places.half_space(record.bodies.b);
     for (std::uint32_t i = 0; i < parts_a; ++i) {
-      places.place_sphere(record.bodies.a, i, pair.a);
+      places.place(record.bodies.a, i, pair.a);
       for (std::uint32_t j = 0; j < parts_b; ++j) {
-        places.place_sphere(record.bodies.b, j, pair.b);
+        places.place(record.bodies.b, j, pair.b);
         Task& task = tasks_.emplace_back();
         task.record = index, task.part_a = i, task.part_b = j;
         task.simple = pair.simple();

@@ -66,7 +66,7 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
             EXPECT_EQ(known.clearance.changes, model[known.pair].mark);
             return lasts(known.pair);
           },
-          generation_of, [](const BodyPair&) {});
+          generation_of);
       ASSERT_EQ(gone, gone_expected);
       ASSERT_EQ(table.size(), expected.size());
       ASSERT_EQ(table.kept().size(), kept.size());
