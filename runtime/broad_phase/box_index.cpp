@@ -45,16 +45,6 @@ QuantizedGrid BoxIndex::quantized_grid_at(Step now) const noexcept {
   return quantized_grid;
 }
 
-void BoxIndex::take_away(BodyIndex body) noexcept {
-  if (places_[body] == Place::inside) {
-    SweptGrid::Removals removals;
-    grid_.prepare_removal(body, boxes_[body].whole(), removals);
-    grid_.remove(removals);
-  }
-  if (places_[body] == Place::oversized) forget_oversized(oversized_, body);
-  places_[body] = Place::nowhere;
-}
-
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   constexpr std::size_t kAtOnce = SweptGrid::Removals::kBodies;

@@ -23,7 +23,7 @@ class BoxIndex {
   const Vec3& velocity() const noexcept { return quantized_grid_.velocity(); }
   bool moves() const noexcept { return quantized_grid_.moves(); }
 
-  void take_away(BodyIndex body) noexcept;
+  void take_away(BodyIndex body) noexcept { take_away({&body, 1}); }
   void take_away(std::span<const BodyIndex> bodies) noexcept;
   // Whether all of these, or one, take few enough cells for the grid.
   static bool all_fit(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }

@@ -79,8 +79,7 @@ class BodyQueries {
 
  private:
   struct Line;  // A ray or a segment with a direction of length 1.
-  struct FirstHit;
-  struct AllHits;
+  struct Hits;
   std::int64_t step() const noexcept;
   bool begin(bool valid);
   std::span<const BodyIndex> new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter);
@@ -89,10 +88,8 @@ class BodyQueries {
   template <typename Touches>
   std::span<const BodyIndex> touching(const Vec3& lower, const Vec3& upper, const QueryFilter& filter,
                                       const Touches& touches);
-  template <typename Hits>
-  void walk(const Line& line, Hits& hits);
+  std::span<const BodyHit> along(const Line& line, const QueryFilter& filter, bool first);
   std::optional<BodyHit> first_along(const Line& line, const QueryFilter& filter);
-  std::span<const BodyHit> all_along(const Line& line, const QueryFilter& filter);
   std::span<const BodyIndex> all_bodies();
 
   BroadPhase* world_;
