@@ -109,7 +109,7 @@ MedialAxis refined_axis_of(const Surface& surface) {
 }
 
 TEST(Prune, OfARefinedAxisKeepsTheTopologyByEveryMeasure) {
-  for (const TriangleMesh& mesh : {test::torus(32, 16), test::l_shape(), test::two_boxes(0.3)}) {
+  for (const TriangleMesh& mesh : {test::torus(24, 12), test::l_shape()}) {
     const Surface surface(mesh);
     const MedialAxis axis = refined_axis_of(surface);
     const Topology wanted = solid_topology(surface);
