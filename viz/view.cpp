@@ -9,10 +9,10 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
-#include <iterator>
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <regex>
 #include <set>
 
