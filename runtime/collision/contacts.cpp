@@ -44,8 +44,9 @@ std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexc
         if (!detail::triangles_intersect(a, b, &witness)) return false;
         ++found;
         if (found > Workspace::Scratch::kCuts) return false;
-        const detail::Segment3 common = detail::common_segment(a, b, witness);
-        scratch.cuts[found - 1] = {a, b, detail::face_planes(a, b), common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
+        const std::array<detail::ShiftPlanes, 2> faces = detail::face_planes(a, b);
+        const detail::Segment3 common = detail::common_segment(a, b, faces, witness);
+        scratch.cuts[found - 1] = {a, b, faces, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
         return false;
       });
   scratch.cut_count = std::min(found, Workspace::Scratch::kCuts);
@@ -226,7 +227,7 @@ void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PoseP
 
 // Of the walk: what the search for the shortest way out may take.
 std::uint64_t search_work(double effort, double found) noexcept {
-  constexpr double kLeast = 64, kMost = 1e18;  // kLeast: bodies of few triangles
+  constexpr double kLeast = 400, kMost = 1e18;  // kLeast: bodies of few triangles
   return static_cast<std::uint64_t>(std::clamp(effort * found, kLeast, kMost));
 }
 

@@ -9,6 +9,7 @@
 #include "collision/support_map.h"
 #include "collision/triangle_cut.h"
 #include "math/vector_functions.h"
+#include "orchard/runtime/shape_query.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -16,10 +17,12 @@ namespace {
 using Cut = Workspace::Scratch::Cut;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMaxAdvances = 64;    // along one direction
+constexpr int kMaxAdvances = 512;   // along one direction
+constexpr int kMet = 8;             // triangles that are looked at in one place, since the last of many takes long to find
 constexpr double kClear = 0.25;     // of a nudge: more than what rounding does to poses
 constexpr double kGain = 1e-6;      // less is no gain
 constexpr double kSame = 1 - 1e-9;  // cosine of directions that count as one
+constexpr std::uint64_t kTestsPerShifts = 4;  // of the walk, that take as long as MeetingShifts
 constexpr double kWayRounding = 1e-12;    // of the bodies' size: the rounding of shifts
 
 // A point of a piece in the frame of a box, and how it moves there for each unit of the way of the second body.
@@ -68,8 +71,13 @@ double leaves_boxes(const MinimumTranslationSearch& search, const Vec3& u, doubl
   return last;
 }
 
-// The triangles that meet after a part of a way, as far as they can move on together. Ends at the first pair that can
-// do so to `limit` of the way.
+// How far a shift can grow between the planes of the two triangles: no less than while these meet.
+double exit_of(const std::array<ShiftPlanes, 2>& faces, const Vec3& u, double slack) noexcept {
+  return std::min(faces[0].exit(u, slack), faces[1].exit(u, slack));
+}
+
+// The triangles that meet after a part of a way, as far as some of them can move on together. Ends at the first pair
+// that can do so to `limit` of the way.
 struct Meeting {
   bool any = false;
   bool clear = true;  // those that do not meet are farther apart than rounding
@@ -81,17 +89,19 @@ Meeting meeting_at(const MinimumTranslationSearch& search, const Vec3& u, double
   const PlacedPair ahead = search.pair.moved(at * u);
   Meeting meeting;
   meeting.normal = u;
+  int met = 0;
   walk_candidates(ahead, search.room,
                   [&](const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row) {
                     const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, ahead.relative);
-                    if (!triangles_intersect(a, b, nullptr)) {
-                      if (!meeting.any && meeting.clear) meeting.clear = are_parted_by(a, b, kClear * search.nudge);
-                      return false;
-                    }
+                    if (!meeting.any && are_parted_by(a, b, kClear * search.nudge)) return false;
+                    if (!triangles_intersect(a, b, nullptr)) return meeting.clear = false;
                     meeting.any = true;
-                    const MeetingShifts::Exit exit = MeetingShifts(a, b).exit(u);
+                    const std::array<ShiftPlanes, 2> faces = face_planes(a, b);
+                    if (exit_of(faces, u, kWayRounding * search.size) <= meeting.farthest) return false;
+                    search.room.spend(kTestsPerShifts);
+                    const MeetingShifts::Exit exit = MeetingShifts(a, b).exit(u, meeting.farthest);
                     if (exit.way > meeting.farthest) meeting.farthest = exit.way, meeting.normal = exit.normal;
-                    return at + exit.way >= limit;
+                    return at + exit.way >= limit || ++met == kMet;
                   });
   return meeting;
 }
@@ -100,15 +110,16 @@ Meeting meeting_at(const MinimumTranslationSearch& search, const Vec3& u, double
 class Obstacles {
  public:
   explicit Obstacles(const MinimumTranslationSearch& search) noexcept
-      : cuts_(search.cuts), slack_(kWayRounding * search.size) {}
+      : room_(search.room), cuts_(search.cuts), slack_(kWayRounding * search.size) {}
 
   // How far all of them are left behind, and what the last one is left at. Ends once that is `enough`.
   MeetingShifts::Exit exit(const Vec3& u, double enough) noexcept {
     MeetingShifts::Exit last{0, u};
+    if (last_left_ < cuts_.size()) last = shifts_of(last_left_).exit(u, 0);  // likely to be among the last again
     for (std::size_t i = 0; i < cuts_.size() && last.way < enough; ++i) {
-      if (leaves_by_faces(i, u) <= last.way) continue;
-      const MeetingShifts::Exit exit = shifts_of(i).exit(u);
-      if (exit.way > last.way) last = exit;
+      if (exit_of(cuts_[i].faces, u, slack_) <= last.way) continue;
+      const MeetingShifts::Exit exit = shifts_of(i).exit(u, last.way);
+      if (exit.way > last.way) last = exit, last_left_ = i;
     }
     return last;
   }
@@ -125,46 +136,54 @@ class Obstacles {
   // The one that was in the way of the direction before is likely to be so again.
   bool block(const Vec3& u, double limit) noexcept {
     if (!std::isfinite(limit)) return false;
-    if (last_ < cuts_.size() && blocks(last_, u, limit)) return true;
+    if (last_blocking_ < cuts_.size() && blocks(last_blocking_, u, limit)) return true;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      if (blocks(i, u, limit)) return last_ = i, true;
+      if (blocks(i, u, limit)) return last_blocking_ = i, true;
     }
     return false;
   }
 
   std::size_t kept() const noexcept { return std::min(kKept, cuts_.size()); }
   const MeetingShifts& shifts_of(std::size_t i) noexcept {
-    if (i >= kKept) return other_ = MeetingShifts(cuts_[i].first, cuts_[i].second);
-    if (!known_[i]) shifts_[i] = MeetingShifts(cuts_[i].first, cuts_[i].second), known_[i] = true;
-    return shifts_[i];
+    if (i < kKept && known_[i]) return shifts_[i];
+    room_.spend(kTestsPerShifts);
+    if (i < kKept) known_[i] = true;
+    return (i < kKept ? shifts_[i] : other_) = MeetingShifts(cuts_[i].first, cuts_[i].second);
   }
 
  private:
   static constexpr std::size_t kKept = 32;
 
-  double leaves_by_faces(std::size_t i, const Vec3& u) const noexcept {
-    return std::min(cuts_[i].faces[0].exit(u, slack_), cuts_[i].faces[1].exit(u, slack_));
-  }
   bool blocks(std::size_t i, const Vec3& u, double limit) noexcept {
-    return leaves_by_faces(i, u) >= limit && shifts_of(i).contain(u, limit);
+    return exit_of(cuts_[i].faces, u, slack_) >= limit && shifts_of(i).contain(u, limit);
   }
 
+  WalkStack& room_;
   std::span<const Cut> cuts_;
   double slack_;
-  std::size_t last_ = 0;
+  std::size_t last_left_ = 0, last_blocking_ = 0;
   std::array<MeetingShifts, kKept> shifts_;
   std::array<bool, kKept> known_{};
   MeetingShifts other_;
 };
 
-// To where the bodies' extents along a direction part: always an end, seldom the first one.
-MinimumTranslation way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
-  const Pose &relative = search.pair.relative, turn = {.rotation = relative.rotation};
-  const Vec3 back = rotate(inverse(turn), -u);
+// To where the bodies' extents along a direction part, or some 1 % of the bodies beyond: always an end, seldom the first
+// one.
+double way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
+  const Pose& relative = search.pair.relative;
+  const Pose back = inverse(Pose{.rotation = relative.rotation});
   const double reach = reach_along(search.pair.first.tree.supports, u) +
-                       reach_along(search.pair.second.tree.supports, back) * relative.scale;
-  const double past = reach - dot(u, relative.translation);
-  return {u, std::max(0.0, past) + kWayRounding * search.size + search.nudge, u, false};
+                       reach_along(search.pair.second.tree.supports, rotate(back, -u)) * relative.scale;
+  return std::max(0.0, reach - dot(u, relative.translation));
+}
+
+// The same by the triangles.
+double exact_way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
+  const TreeView &first = search.pair.first.tree, &second = search.pair.second.tree;
+  const Pose &relative = search.pair.relative, back = inverse(Pose{.rotation = relative.rotation});
+  const double reach = -deepest_point(first, {.translation = -Vec3(first.origin)}, -u, 0).distance -
+                       deepest_point(second, {.translation = -Vec3(second.origin)}, rotate(back, u), 0).distance * relative.scale;
+  return std::max(0.0, reach - dot(u, relative.translation)) + kWayRounding * search.size + search.nudge;
 }
 
 // The corners of a grid on a cube: 98 directions, at most 27 degrees from each other.
@@ -185,7 +204,10 @@ void each_direction_around(Visit&& visit) noexcept {
 class WaySearch {
  public:
   WaySearch(const MinimumTranslationSearch& search, std::uint32_t refinements) noexcept
-      : search_(search), obstacles_(search), refinements_(refinements) {}
+      : search_(search),
+        obstacles_(search),
+        refinements_(refinements),
+        last_listing_(search.room.work() / 2 + search.work / 2) {}
 
   const MinimumTranslation& best() const noexcept { return best_; }
   Obstacles& obstacles() noexcept { return obstacles_; }
@@ -210,7 +232,7 @@ class WaySearch {
   }
 
   void settle() noexcept {
-    while (count_ > 0 && !spent()) {
+    for (bool first = true; count_ > 0 && (first || search_.room.work() < search_.work); first = false) {
       std::pop_heap(listed_.begin(), listed_.begin() + static_cast<std::ptrdiff_t>(count_), longer);
       Listed next = listed_[--count_];
       if (next.way >= limit_) {
@@ -235,11 +257,10 @@ class WaySearch {
   };
   static bool longer(const Listed& a, const Listed& b) noexcept { return a.way > b.way; }
 
-  bool spent() const noexcept { return search_.room.work() >= search_.work; }
 
   bool list(const Vec3& direction, Plane& plane) noexcept {
     const double size = length(direction);
-    if (!(size > 0) || spent()) return false;
+    if (!(size > 0) || search_.room.work() >= last_listing_) return false;
     search_.room.spend(1 + search_.cuts.size() / kCutsPerTest);
     const Vec3 u = (1 / size) * direction;
     for (std::size_t i = 0; i < tried_count_; ++i) {
@@ -292,6 +313,7 @@ class WaySearch {
   const MinimumTranslationSearch& search_;
   Obstacles obstacles_;
   std::uint32_t refinements_;
+  std::uint64_t last_listing_;  // work of the walk from which on no direction is listed any more
   MinimumTranslation best_{{}, kInfinity, {}, false};
   double limit_ = kInfinity;  // of ways that count
   std::array<Listed, 192> listed_;
@@ -354,11 +376,14 @@ MinimumTranslation minimum_translation(const MinimumTranslationSearch& search, s
     }
   }
   if (ways.best().ended) return ways.best();
-  MinimumTranslation past = way_past(search, directions[0]);
+  Vec3 nearest = directions[0];  // of a grid's
   each_direction_around([&](const Vec3& u) {
-    const MinimumTranslation other = way_past(search, u);
-    if (other.way < past.way) past = other;
+    if (way_past(search, u) < way_past(search, nearest)) nearest = u;
   });
+  MinimumTranslation past{nearest, exact_way_past(search, nearest), nearest, false};
+  for (const Vec3& u : directions) {
+    if (const double way = exact_way_past(search, u); way < past.way) past = {u, way, u, false};
+  }
   return past;
 }
 

@@ -50,7 +50,7 @@ class WalkStack {
     return pairs_ != nullptr;
   }
   WalkPair* data() const noexcept { return pairs_.get(); }
-  // The tests of eight against one, and of leaves, so far.
+  // The tests of eight against one, of leaves, and visits to triangles so far.
   std::uint64_t work() const noexcept { return work_; }
   void spend(std::uint64_t tests) noexcept { work_ += tests; }
 
@@ -86,6 +86,7 @@ void walk_candidates(const PlacedPair& pair, WalkStack& room, Visit&& visit) noe
       const LeafPair leaves = {lanes, rows, lane_box, row_box};
       for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+        room.spend(1);
         if (visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth)) return;
       }
       continue;

@@ -15,6 +15,7 @@ constexpr double kNear = 1e-10;       // of the triangles' size: closer is touch
 constexpr double kOn = 1e-12;         // the same, for what is said to be common to both
 constexpr double kInclusive = 1e-12;  // of products of two lengths: what counts as parallel
 constexpr double kSliding = 1e-12;    // cosine of what counts as along a plane
+constexpr double kParallel = 1e-24;   // the square of the sine of what counts as parallel
 constexpr double kShift = 1e-13;      // of the triangles' size: the rounding of shifts
 
 double square(const Vec3& v) noexcept { return dot(v, v); }
@@ -60,9 +61,9 @@ bool holds(const TrianglePoints& t, const Vec3& normal, const Vec3& p, double sl
 }
 
 // Where the edges of one cross the plane of the other, in it.
-void add_crossings(const TrianglePoints& edges, const TrianglePoints& t, double size, Ends& ends) noexcept {
+void add_crossings(const TrianglePoints& edges, const TrianglePoints& t, const Vec3& normal, double size,
+                   Ends& ends) noexcept {
   const double slack = kOn * size;
-  const Vec3 normal = unit_or_zero(cross(minus(t[1], t[0]), minus(t[2], t[0])));
   if (square(normal) == 0) return;
   Vec3 height{};
   for (std::size_t i = 0; i < 3; ++i) height[i] = dot(normal, minus(edges[i], t[0]));
@@ -91,6 +92,10 @@ void add_edge_contacts(const TrianglePoints& a, const TrianglePoints& b, double 
   }
 }
 
+std::array<Vec3, 3> sides_of(const TrianglePoints& t) noexcept {
+  return {minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
+}
+
 Vec3 normal_of(const TrianglePoints& t) noexcept { return cross(minus(t[1], t[0]), minus(t[2], t[0])); }
 
 double size_of(const TrianglePoints& a, const TrianglePoints& b) noexcept {
@@ -100,6 +105,18 @@ double size_of(const TrianglePoints& a, const TrianglePoints& b) noexcept {
   }
   return std::sqrt(most);
 }
+
+// Two triangles relative to a corner of the first one, so that little is lost far from the origin.
+struct NearPair {
+  Vec3 a1, a2, b0, b1, b2;
+  NearPair(const TrianglePoints& a, const TrianglePoints& b) noexcept
+      : a1(minus(a[1], a[0])), a2(minus(a[2], a[0])), b0(minus(b[0], a[0])), b1(minus(b[1], a[0])), b2(minus(b[2], a[0])) {}
+
+  ShiftPlanes across(const Vec3& n) const noexcept {
+    const double p1 = dot(n, a1), p2 = dot(n, a2), q0 = dot(n, b0), q1 = dot(n, b1), q2 = dot(n, b2);
+    return {n, max(max(0, p1), p2) - min(min(q0, q1), q2), max(max(q0, q1), q2) - min(min(0, p1), p2)};
+  }
+};
 
 }  // namespace
 
@@ -114,29 +131,25 @@ Way::Way(const Vec3& direction) noexcept : u(unit_or_zero(direction)) {
   f = cross(u, e);
 }
 
-Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const Vec3& witness) noexcept {
+Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const std::array<ShiftPlanes, 2>& faces,
+                        const Vec3& witness) noexcept {
   const double size = size_of(a, b);
   Ends ends;
-  add_crossings(a, b, size, ends);
-  add_crossings(b, a, size, ends);
+  add_crossings(a, b, faces[1].normal, size, ends);
+  add_crossings(b, a, faces[0].normal, size, ends);
   if (ends.count() != 2) add_edge_contacts(a, b, kOn * size, ends);
   if (ends.count() == 0) return {witness, witness};
   return ends.farthest();
 }
 
 bool are_parted_by(const TrianglePoints& a, const TrianglePoints& b, double gap) noexcept {
-  TrianglePoints p, q, of_a, of_b;
-  for (std::size_t i = 0; i < 3; ++i) {
-    p[i] = minus(a[i], a[0]), q[i] = minus(b[i], a[0]);
-    of_a[i] = minus(a[(i + 1) % 3], a[i]), of_b[i] = minus(b[(i + 1) % 3], b[i]);
-  }
+  const NearPair pair(a, b);
   const auto part = [&](const Vec3& n) {
-    const double a0 = dot(n, p[0]), a1 = dot(n, p[1]), a2 = dot(n, p[2]);
-    const double b0 = dot(n, q[0]), b1 = dot(n, q[1]), b2 = dot(n, q[2]);
-    const double apart =
-        std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}), std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
+    const ShiftPlanes planes = pair.across(n);
+    const double apart = max(-planes.ahead, -planes.behind);
     return apart > 0 && apart * apart > gap * gap * square(n);
   };
+  const std::array<Vec3, 3> of_a = sides_of(a), of_b = sides_of(b);
   if (part(cross(of_a[0], of_a[1])) || part(cross(of_b[0], of_b[1]))) return true;
   for (const Vec3& u : of_a) {
     for (const Vec3& v : of_b) {
@@ -147,17 +160,6 @@ bool are_parted_by(const TrianglePoints& a, const TrianglePoints& b, double gap)
   return false;
 }
 
-namespace {
-
-// Relative to a corner of a, so that little is lost far from the origin.
-ShiftPlanes planes_across(const TrianglePoints& a, const TrianglePoints& b, const Vec3& n) noexcept {
-  const double a1 = dot(n, minus(a[1], a[0])), a2 = dot(n, minus(a[2], a[0]));
-  const double b0 = dot(n, minus(b[0], a[0])), b1 = dot(n, minus(b[1], a[0])), b2 = dot(n, minus(b[2], a[0]));
-  return {n, std::max({0.0, a1, a2}) - std::min({b0, b1, b2}), std::max({b0, b1, b2}) - std::min({0.0, a1, a2})};
-}
-
-}  // namespace
-
 double ShiftPlanes::exit(const Vec3& direction, double slack) const noexcept {
   // Along the planes of faces that slide on each other all of it is rounding: then nothing ends there.
   const double along = dot(normal, direction);
@@ -166,47 +168,39 @@ double ShiftPlanes::exit(const Vec3& direction, double slack) const noexcept {
 }
 
 std::array<ShiftPlanes, 2> face_planes(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return {planes_across(a, b, unit_or_zero(normal_of(a))), planes_across(a, b, unit_or_zero(normal_of(b)))};
+  const NearPair pair(a, b);
+  return {pair.across(unit_or_zero(normal_of(a))), pair.across(unit_or_zero(normal_of(b)))};
 }
 
 MeetingShifts::MeetingShifts(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  TrianglePoints of_a, of_b;
-  for (std::size_t i = 0; i < 3; ++i) {
-    of_a[i] = minus(a[(i + 1) % 3], a[i]), of_b[i] = minus(b[(i + 1) % 3], b[i]);
-  }
-  add(a, b, cross(of_a[0], of_a[1])), add(a, b, cross(of_b[0], of_b[1]));
+  const NearPair pair(a, b);
+  const auto add = [&](const Vec3& normal, double parallel) {
+    const double square_of_normal = square(normal);
+    if (!(square_of_normal > parallel)) return;
+    planes_[count_++] = pair.across((1 / std::sqrt(square_of_normal)) * normal);
+  };
+  const std::array<Vec3, 3> of_a = sides_of(a), of_b = sides_of(b);
+  add(cross(of_a[0], of_a[1]), 0), add(cross(of_b[0], of_b[1]), 0);
   for (const Vec3& u : of_a) {
-    for (const Vec3& v : of_b) {
-      const Vec3 n = cross(u, v);
-      // Of parallel edges: other planes bound the set.
-      if (square(n) > kInclusive * kInclusive * square(u) * square(v)) add(a, b, n);
-    }
+    for (const Vec3& v : of_b) add(cross(u, v), kParallel * square(u) * square(v));  // other planes bound the set there
   }
   const double size = size_of(a, b);
-  for (std::size_t i = 0; i < count_ && !flat_; ++i) {
-    if (!(planes_[i].ahead + planes_[i].behind > kNear * size)) add_flat(a, b, Vec3(planes_[i].normal));
-  }
-  flat_ = flat_ || count_ == 0;
   slack_ = kShift * size;
-}
-
-void MeetingShifts::add(const TrianglePoints& a, const TrianglePoints& b, const Vec3& normal) noexcept {
-  const Vec3 n = unit_or_zero(normal);
-  if (square(n) > 0) planes_[count_++] = planes_across(a, b, n);
-}
-
-// The set's plane, and in it what bounds a polygon.
-void MeetingShifts::add_flat(const TrianglePoints& a, const TrianglePoints& b, const Vec3& normal) noexcept {
-  flat_ = true, count_ = 0;
-  add(a, b, normal);
-  for (const TrianglePoints* t : {&a, &b}) {
-    for (std::size_t i = 0; i < 3; ++i) add(a, b, cross(normal, minus((*t)[(i + 1) % 3], (*t)[i])));
+  const auto* const flat = std::find_if(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(count_),
+                                        [&](const ShiftPlanes& p) { return !(p.ahead + p.behind > kNear * size); });
+  flat_ = count_ == 0 || flat != planes_.begin() + static_cast<std::ptrdiff_t>(count_);
+  if (count_ == 0 || !flat_) return;
+  const Vec3 normal = flat->normal;  // the set's plane, and in it what bounds a polygon
+  count_ = 0;
+  add(normal, 0);
+  for (const std::array<Vec3, 3>& edges : {of_a, of_b}) {
+    for (const Vec3& edge : edges) add(cross(normal, edge), 0);
   }
 }
 
-MeetingShifts::Exit MeetingShifts::exit(const Vec3& direction) const noexcept {
+MeetingShifts::Exit MeetingShifts::exit(const Vec3& direction, double least) const noexcept {
   Exit first{count_ > 0 ? std::numeric_limits<double>::infinity() : 0, direction};
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < count_ && first.way > least; ++i) {
     const double way = planes_[i].exit(direction, slack_);
     if (way < first.way) first = {way, planes_[i].normal};
   }

@@ -10,11 +10,6 @@ struct Segment3 {
   Vec3 p, q;
 };
 
-// What two triangles have in common, which triangles_intersect() says they have: the ends of the common segment, or
-// two points far apart of the common part of triangles in one plane; correct up to rounding. `witness`: a common point,
-// for the case that rounding leaves nothing else.
-Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const Vec3& witness) noexcept;
-
 // A direction and two across it, all of length 1.
 struct Way {
   Vec3 u, e, f;
@@ -37,6 +32,12 @@ struct ShiftPlanes {
 // Those across both triangles: 0 of a triangle without area.
 std::array<ShiftPlanes, 2> face_planes(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
+// What two triangles have in common, which triangles_intersect() says they have: the ends of the common segment, or
+// two points far apart of the common part of triangles in one plane; correct up to rounding. `witness`: a common point,
+// for the case that rounding leaves nothing else.
+Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const std::array<ShiftPlanes, 2>& faces,
+                        const Vec3& witness) noexcept;
+
 // All shifts of b that leave it meeting a, for two triangles that meet: a convex set, between the planes across the
 // triangles' normals and across pairs of their edges, up to rounding. The set is flat for triangles in one plane.
 class MeetingShifts {
@@ -49,7 +50,8 @@ class MeetingShifts {
     double way;
     Vec3 normal;
   };
-  Exit exit(const Vec3& direction) const noexcept;
+  // Where that is no more than `least`, any such way.
+  Exit exit(const Vec3& direction, double least) const noexcept;
   // Whether b meets a all the way to t * direction. False where the set is flat.
   bool contain(const Vec3& direction, double t) const noexcept;
   // The shortest shift that leads out, nearly. 0 where the set is flat.
@@ -57,9 +59,6 @@ class MeetingShifts {
   double shortest() const noexcept;  // its length
 
  private:
-  void add(const TrianglePoints& a, const TrianglePoints& b, const Vec3& normal) noexcept;
-  void add_flat(const TrianglePoints& a, const TrianglePoints& b, const Vec3& normal) noexcept;
-
   static constexpr std::size_t kPlanes = 11;
   std::array<ShiftPlanes, kPlanes> planes_;  // `count_` of them
   std::size_t count_ = 0;
