@@ -18,7 +18,7 @@ using Cut = Workspace::Scratch::Cut;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxAdvances = 512;   // along one direction
-constexpr int kMet = 8;             // triangles that are looked at in one place, since the last of many takes long to find
+constexpr int kMet = 3;             // triangles that are looked at in one place, since the last of many takes long to find
 constexpr double kClear = 0.25;     // of a nudge: more than what rounding does to poses
 constexpr double kGain = 1e-6;      // less is no gain
 constexpr double kSame = 1 - 1e-9;  // cosine of directions that count as one

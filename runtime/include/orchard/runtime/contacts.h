@@ -49,7 +49,7 @@ struct ContactOptions {
   // The work that the search for the depth may take, as a multiple of the work of finding the contact. Shallow contacts
   // need less than the default. Bodies that are deep in each other have a long way out in every direction; there, the
   // search ends with the best depth so far. Infinity searches to the end, which may take 100 times as long.
-  double effort = 1;
+  double effort = 0.5;
   bool depth = true;  // False: points and a first normal only, at a fraction of the cost.
   // The largest distance, in world units, of surfaces that get a point before they touch. The point is the middle
   // between the two nearest points, the normal is the direction from a to b, and both depths are minus the distance.
