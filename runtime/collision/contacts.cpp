@@ -278,9 +278,13 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
     if (exchanged) solids[i].is_first = !solids[i].is_first;
   }
   const double size = both.first.extent + both.second.extent * both.relative.scale;
-  const MinimumTranslationSearch search{
-      both, scratch->walk, cuts, std::span(solids.data(), boxes.size()), size, least_nudge(narrow, size),
-      scratch->walk.work() + search_work(options.effort, found)};
+  const MinimumTranslationSearch search{both,
+                                        scratch->walk,
+                                        cuts,
+                                        std::span(solids.data(), boxes.size()),
+                                        size,
+                                        least_nudge(narrow, size),
+                                        scratch->walk.work() + search_work(options.effort, found)};
   if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
     return result;

@@ -17,13 +17,13 @@ namespace {
 using Cut = Workspace::Scratch::Cut;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMaxAdvances = 512;   // along one direction
-constexpr int kMet = 3;             // triangles that are looked at in one place, since the last of many takes long to find
-constexpr double kClear = 0.25;     // of a nudge: more than what rounding does to poses
-constexpr double kGain = 1e-6;      // less is no gain
-constexpr double kSame = 1 - 1e-9;  // cosine of directions that count as one
+constexpr int kMaxAdvances = 512;  // along one direction
+constexpr int kMet = 3;          // triangles that are looked at in one place, since the last of many takes long to find
+constexpr double kClear = 0.25;  // of a nudge: more than what rounding does to poses
+constexpr double kGain = 1e-6;   // less is no gain
+constexpr double kSame = 1 - 1e-9;            // cosine of directions that count as one
 constexpr std::uint64_t kTestsPerShifts = 4;  // of the walk, that take as long as MeetingShifts
-constexpr double kWayRounding = 1e-12;    // of the bodies' size: the rounding of shifts
+constexpr double kWayRounding = 1e-12;        // of the bodies' size: the rounding of shifts
 
 // A point of a piece in the frame of a box, and how it moves there for each unit of the way of the second body.
 struct MovingPoint {
@@ -167,8 +167,8 @@ class Obstacles {
   MeetingShifts other_;
 };
 
-// To where the bodies' extents along a direction part, or some 1 % of the bodies beyond: always an end, seldom the first
-// one.
+// To where the bodies' extents along a direction part, or some 1 % of the bodies beyond: always an end, seldom the
+// first one.
 double way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
   const Pose& relative = search.pair.relative;
   const Pose back = inverse(Pose{.rotation = relative.rotation});
@@ -181,8 +181,9 @@ double way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept 
 double exact_way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
   const TreeView &first = search.pair.first.tree, &second = search.pair.second.tree;
   const Pose &relative = search.pair.relative, back = inverse(Pose{.rotation = relative.rotation});
-  const double reach = -deepest_point(first, {.translation = -Vec3(first.origin)}, -u, 0).distance -
-                       deepest_point(second, {.translation = -Vec3(second.origin)}, rotate(back, u), 0).distance * relative.scale;
+  const double reach =
+      -deepest_point(first, {.translation = -Vec3(first.origin)}, -u, 0).distance -
+      deepest_point(second, {.translation = -Vec3(second.origin)}, rotate(back, u), 0).distance * relative.scale;
   return std::max(0.0, reach - dot(u, relative.translation)) + kWayRounding * search.size + search.nudge;
 }
 
@@ -256,7 +257,6 @@ class WaySearch {
     double height;
   };
   static bool longer(const Listed& a, const Listed& b) noexcept { return a.way > b.way; }
-
 
   bool list(const Vec3& direction, Plane& plane) noexcept {
     const double size = length(direction);

@@ -22,8 +22,8 @@ struct MinimumTranslationSearch {
   WalkStack& room;
   std::span<const Workspace::Scratch::Cut> cuts;  // triangles that meet where the second one is now; more may
   std::span<const SolidBox> solids;
-  double size;   // of both bodies
-  double nudge;  // beyond a contact: more than what rounding does to poses
+  double size;         // of both bodies
+  double nudge;        // beyond a contact: more than what rounding does to poses
   std::uint64_t work;  // of the walk, at which the search ends
 };
 

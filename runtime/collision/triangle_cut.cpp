@@ -110,7 +110,11 @@ double size_of(const TrianglePoints& a, const TrianglePoints& b) noexcept {
 struct NearPair {
   Vec3 a1, a2, b0, b1, b2;
   NearPair(const TrianglePoints& a, const TrianglePoints& b) noexcept
-      : a1(minus(a[1], a[0])), a2(minus(a[2], a[0])), b0(minus(b[0], a[0])), b1(minus(b[1], a[0])), b2(minus(b[2], a[0])) {}
+      : a1(minus(a[1], a[0])),
+        a2(minus(a[2], a[0])),
+        b0(minus(b[0], a[0])),
+        b1(minus(b[1], a[0])),
+        b2(minus(b[2], a[0])) {}
 
   ShiftPlanes across(const Vec3& n) const noexcept {
     const double p1 = dot(n, a1), p2 = dot(n, a2), q0 = dot(n, b0), q1 = dot(n, b1), q2 = dot(n, b2);

@@ -20,7 +20,8 @@ struct Way {
 // rounding. Such a plane is all but sure to be found where they are that far apart.
 bool are_parted_by(const TrianglePoints& a, const TrianglePoints& b, double gap) noexcept;
 
-// A pair of parallel planes that all shifts of b are between that leave it meeting a: -behind <= normal . shift <= ahead.
+// A pair of parallel planes that all shifts of b are between that leave it meeting a: -behind <= normal . shift <=
+// ahead.
 struct ShiftPlanes {
   Vec3 normal;  // of length 1 but for rounding
   double ahead, behind;
