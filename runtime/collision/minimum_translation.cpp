@@ -20,6 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxAdvances = 512;  // along one direction
 constexpr int kMet = 3;          // triangles that are looked at in one place, since the last of many takes long to find
 constexpr double kClear = 0.25;  // of a nudge: more than what rounding does to poses
+constexpr double kRounded = 64;  // nudges: a way that is no longer is rounding, and so would be a shorter one
 constexpr double kGain = 1e-6;   // less is no gain
 constexpr double kSame = 1 - 1e-9;            // cosine of directions that count as one
 constexpr std::uint64_t kTestsPerShifts = 4;  // of the walk, that take as long as MeetingShifts
@@ -338,6 +339,39 @@ bool is_doubtful(const MinimumTranslationSearch& search, double way) noexcept {
   return way * way > kBeyondContact * kBeyondContact * square;
 }
 
+// For any way shorter than a doubtful one, else for one that is shorter by far.
+void look_around(const MinimumTranslationSearch& search, WaySearch& ways) noexcept {
+  constexpr double kShorterByFar = 0.85;
+  const MinimumTranslation first = ways.best();
+  const bool doubtful = !first.ended || is_doubtful(search, first.way);
+  const double limit = doubtful ? first.way : kShorterByFar * first.way;
+  Obstacles& obstacles = ways.obstacles();
+  if (!doubtful && obstacles.block_all(limit)) return;
+  ways.limit_to(limit);
+  for (std::size_t i = 0; i < obstacles.kept() && doubtful; ++i) {
+    const Vec3 way = obstacles.shifts_of(i).shortest_way_out();
+    if (length(way) < limit) ways.add(way);
+  }
+  each_direction_around([&](const Vec3& u) {
+    if (!obstacles.block(u, limit)) ways.add(u);
+  });
+  ways.settle();
+}
+
+// The shortest way to where the bodies' extents part, along one of the directions or of a grid of them.
+MinimumTranslation shortest_past(const MinimumTranslationSearch& search, std::span<const Vec3> directions) noexcept {
+  Vec3 nearest = directions[0];
+  double least = kInfinity;
+  each_direction_around([&](const Vec3& u) {
+    if (const double way = way_past(search, u); way < least) least = way, nearest = u;
+  });
+  MinimumTranslation past{nearest, exact_way_past(search, nearest), nearest, false};
+  for (const Vec3& u : directions) {
+    if (const double way = exact_way_past(search, u); way < past.way) past = {u, way, u, false};
+  }
+  return past;
+}
+
 }  // namespace
 
 const Vec3* piece_inside(const MinimumTranslationSearch& search, const SolidBox& solid) noexcept {
@@ -353,38 +387,9 @@ MinimumTranslation minimum_translation(const MinimumTranslationSearch& search, s
   WaySearch ways(search, refinements);
   for (const Vec3& direction : directions) ways.add_with_refinements(direction);
   ways.settle();
-  if (refinements > 0) {
-    // A way that is not doubtful is given up only for one that is shorter by far.
-    constexpr double kShorterByFar = 0.85;
-    const MinimumTranslation first = ways.best();
-    const bool doubtful = !first.ended || is_doubtful(search, first.way);
-    const double limit = doubtful ? first.way : kShorterByFar * first.way;
-    Obstacles& obstacles = ways.obstacles();
-    if (doubtful || !obstacles.block_all(limit)) {
-      ways.limit_to(limit);
-      const auto try_shortest = [&] {
-        for (std::size_t i = 0; i < obstacles.kept(); ++i) {
-          const Vec3 way = obstacles.shifts_of(i).shortest_way_out();
-          if (length(way) < limit) ways.add(way);
-        }
-      };
-      if (doubtful) try_shortest();
-      each_direction_around([&](const Vec3& u) {
-        if (!obstacles.block(u, limit)) ways.add(u);
-      });
-      ways.settle();
-    }
-  }
-  if (ways.best().ended) return ways.best();
-  Vec3 nearest = directions[0];  // of a grid's
-  each_direction_around([&](const Vec3& u) {
-    if (way_past(search, u) < way_past(search, nearest)) nearest = u;
-  });
-  MinimumTranslation past{nearest, exact_way_past(search, nearest), nearest, false};
-  for (const Vec3& u : directions) {
-    if (const double way = exact_way_past(search, u); way < past.way) past = {u, way, u, false};
-  }
-  return past;
+  const bool is_rounding = ways.best().ended && ways.best().way <= kRounded * search.nudge;
+  if (refinements > 0 && !is_rounding) look_around(search, ways);
+  return ways.best().ended ? ways.best() : shortest_past(search, directions);
 }
 
 }  // namespace orchard::runtime::detail
