@@ -60,7 +60,7 @@ class TreePair {
   }
 
  private:
-  friend struct Coherence;
+  friend class Coherence;
   static constexpr std::size_t kWitnesses = 2;
   // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
   struct Witness {
