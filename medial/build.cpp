@@ -1,6 +1,7 @@
 #include "orchard/medial/build.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -15,7 +16,8 @@ namespace {
 // Of the points: where fewer are added by gap repair and for open places, hardly any part is thinner than the spacing,
 // and reaching closes such places nearly as well as points, in a fraction of the time.
 constexpr double kFewAdded = 1.0 / 32;
-constexpr double kAlmost = 3;  // border losses: where no less is reached for, points are needed
+constexpr double kOnFeature = 1e-6;  // diagonals: a ball of radius 0 that is this near to an edge lies on it
+constexpr double kAlmost = 3;        // border losses: where no less is reached for, points are needed
 
 class MedialBuilder {
  public:
@@ -25,7 +27,7 @@ class MedialBuilder {
   MedialBuild run(MedialBuildInput input) {
     if (input.mesh) {
       import(*input.mesh);
-      finish_axis();
+      prune_axis();
       return std::move(build_);
     }
     const int rounds = input.sampling || input.diagram ? 0 : options_.open_rounds;
@@ -38,6 +40,7 @@ class MedialBuilder {
     }
     make_axis();
     if (options_.refine) refine(rounds);
+    prune_axis();
     if (options_.check_promise) check_promise();
     return std::move(build_);
   }
@@ -94,11 +97,30 @@ class MedialBuilder {
   void make_axis() {
     stage("medial axis",
           [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, options_.axis, progress_); });
-    finish_axis();
   }
-  void finish_axis() {
+
+  // The last step: refining would reach again for what pruning takes away.
+  void prune_axis() {
     build_.unpruned_vertices = build_.axis.size();
-    stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
+    if (options_.prune.removes_nothing()) return;
+    stage("pruning", [&] { build_.axis = prune(surface_, build_.axis, options_.prune, progress_); });
+    keep_reached_features();
+  }
+
+  // Keeps those edges of the mesh on which a sheet still ends in balls of radius 0.
+  void keep_reached_features() {
+    const double near = kOnFeature * surface_.bounding_box().diagonal().norm();
+    const std::vector<Point>& at = surface_.mesh().vertices;
+    std::erase_if(build_.features, [&](const std::array<Index, 2>& edge) {
+      const Point &a = at[edge[0]], along = at[edge[1]] - a;
+      for (Index v = 0; v < build_.axis.size(); ++v) {
+        if (build_.axis.radii[v] > 0) continue;
+        const Vector apart = build_.axis.centers[v] - a;
+        const double t = std::clamp(apart.dot(along) / along.squaredNorm(), 0.0, 1.0);
+        if ((apart - t * along).norm() <= near) return false;
+      }
+      return true;
+    });
   }
 
   void check_promise() {
@@ -178,8 +200,8 @@ AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& optio
   if (!options.refine) return promise;
   const RefineOptions& refine = *options.refine;
   promise.protrusion = detail::kMaxStickingOut * refine.tolerance;
-  const bool prunes = options.prune.angle > 0 || options.prune.scale > 1;
-  if (refine.reach_rounds > 0 && !prunes) promise.open = detail::left_open(surface, refine, points) + refine.tolerance;
+  if (refine.reach_rounds > 0 && options.prune.removes_nothing())
+    promise.open = detail::left_open(surface, refine, points) + refine.tolerance;
   return promise;
 }
 

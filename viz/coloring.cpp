@@ -105,7 +105,8 @@ vtkSmartPointer<vtkPolyData> bar(const Coloring& coloring, double left, double r
     points->InsertNextPoint(left, y, 0);
     points->InsertNextPoint(right, y, 0);
     if (i == kSteps) break;
-    const std::array<vtkIdType, 4> corners{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2};
+    const vtkIdType first = vtkIdType{2} * i;
+    const std::array<vtkIdType, 4> corners{first, first + 1, first + 3, first + 2};
     quads->InsertNextCell(4, corners.data());
   }
   data->SetPoints(points);

@@ -84,10 +84,10 @@ void Occluders::sort(const std::vector<std::pair<Vector2d, Vector2d>>& boxes) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const auto [x0, y0, x1, y1] = cells_of(boxes[i].first, boxes[i].second);
       for (int y = y0; y <= y1; ++y)
-        for (int x = x0; x <= x1; ++x) put(static_cast<std::size_t>(y * columns_ + x), static_cast<int>(i));
+        for (int x = x0; x <= x1; ++x) put(cell_at(x, y), static_cast<int>(i));
     }
   };
-  begin_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  begin_.assign(cell_at(0, rows_) + 1, 0);
   visit([&](std::size_t cell, int) { ++begin_[cell + 1]; });
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   sorted_.resize(static_cast<std::size_t>(begin_.back()));
@@ -142,7 +142,7 @@ std::vector<std::pair<double, double>> Occluders::visible(const Vector3d& a, con
     const auto [x0, y0, x1, y1] = cells_of(from.cwiseMin(to), from.cwiseMax(to));
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {
-        const auto cell = static_cast<std::size_t>(y * columns_ + x);
+        const auto cell = cell_at(x, y);
         near.insert(near.end(), sorted_.begin() + begin_[cell], sorted_.begin() + begin_[cell + 1]);
       }
     }

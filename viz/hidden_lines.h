@@ -38,6 +38,10 @@ class Occluders {
                Hidden& hidden) const;
   static void hide_by(const Sphere& sphere, const Eigen::Vector3d& a, const Eigen::Vector3d& b, Hidden& hidden);
 
+  std::size_t cell_at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+  }
+
   double slack_;
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
   std::vector<Sphere> spheres_;

@@ -21,7 +21,7 @@ ordered_json parsed(const std::string& line) { return ordered_json::parse(line);
 
 std::string csv_cell(const json& value) {
   if (value.is_null()) return {};
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   return '"' + replaced(text, "\"", "\"\"") + '"';
 }

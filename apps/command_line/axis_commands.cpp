@@ -12,6 +12,7 @@
 #include "command_line/sweep_option.h"
 #include "command_line/tree_options.h"
 #include "medial/axis_export.h"
+#include "medial/axis_importance.h"
 #include "orchard/geometry/noise.h"
 
 namespace orchard::apps {
@@ -129,6 +130,16 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
                   "where there are too few balls)")
       ->check(CLI::IsMember({"medial", "free"}))
       ->capture_default_str();
+  add_list(
+      command, "--importance", medial.importance,
+      "Also measure how much each ball matters, by these measures of --prune, as arrays of the views and of --export "
+      "npz and csv",
+      importance_names());
+  command
+      .add_option("--prune-curve", medial.prune_curve,
+                  "Also prune the axis by this measure at ever larger values, and write error and size: "
+                  "MODEL-prune-MEASURE.csv and .svg")
+      ->check(CLI::IsMember(prune_names()));
   command.add_flag("--curve", medial.curve,
                    "Also write the error of the axis simplified to fewer and fewer balls: MODEL-curve.csv and .svg");
   CLI::Option* envelope = command.add_option(

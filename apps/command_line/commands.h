@@ -194,22 +194,24 @@ struct MedialCommand {
   std::string up = "y";                       // the mesh's axis that points up in the picture
   Index quality_samples = 100'000;            // surface points of the judgement
   Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
-  double few_error = 0;                // percent of the diagonal that the simplified axis may be off; 0: not asked
-  std::string few_kind = "medial";     // what the balls of the simplified axis may be: medial or free
-  bool curve = false;                  // simplify to ever fewer vertices, and write how far off each is
-  std::filesystem::path envelope;      // .obj: the surface of what the axis stands for; empty: none
-  double envelope_cell = 0.5;          // % of the diagonal
-  std::vector<std::string> sweep;      // NAME=VALUE,VALUE,..
-  std::vector<SweptOption> swept;      // what it says
-  std::vector<MedialCommand> runs;     // of a sweep: the command of each combination, the last option fastest
-  std::vector<std::string> choice;     // of such a run: the values of the options that are swept
-  bool keep = false;                   // of a sweep: write the axis of each run as well
-  std::string best = "hausdorff_max";  // of a sweep: the measure that its rows are printed by, the best first
-  std::optional<TreeRequest> tree;     // of a sweep: the tree to build from each axis
-  bool views = true;                   // ParaView files, where the program was built with them
-  Index light_balls = 20'000;          // of a file for spheres, where the axis has more; 0: no such file
-  std::vector<std::string> given;      // the options on the command line, as of BuildCommand
-  bool accept = false;                 // as of BuildCommand
+  double few_error = 0;                 // percent of the diagonal that the simplified axis may be off; 0: not asked
+  std::string few_kind = "medial";      // what the balls of the simplified axis may be: medial or free
+  std::vector<std::string> importance;  // measures of the balls to add as arrays
+  std::string prune_curve;              // the measure whose values are written against error and size; empty: none
+  bool curve = false;                   // simplify to ever fewer vertices, and write how far off each is
+  std::filesystem::path envelope;       // .obj: the surface of what the axis stands for; empty: none
+  double envelope_cell = 0.5;           // % of the diagonal
+  std::vector<std::string> sweep;       // NAME=VALUE,VALUE,..
+  std::vector<SweptOption> swept;       // what it says
+  std::vector<MedialCommand> runs;      // of a sweep: the command of each combination, the last option fastest
+  std::vector<std::string> choice;      // of such a run: the values of the options that are swept
+  bool keep = false;                    // of a sweep: write the axis of each run as well
+  std::string best = "hausdorff_max";   // of a sweep: the measure that its rows are printed by, the best first
+  std::optional<TreeRequest> tree;      // of a sweep: the tree to build from each axis
+  bool views = true;                    // ParaView files, where the program was built with them
+  Index light_balls = 20'000;           // of a file for spheres, where the axis has more; 0: no such file
+  std::vector<std::string> given;       // the options on the command line, as of BuildCommand
+  bool accept = false;                  // as of BuildCommand
   Output output;
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line

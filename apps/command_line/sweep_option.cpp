@@ -15,9 +15,9 @@ namespace orchard::apps {
 namespace {
 
 // Options with values that no row of a sweep depends on, or that a sweep does not take.
-constexpr std::array kNotSwept{"output",   "sweep", "sort-by",        "axis",          "beside", "export",
-                               "threads",  "up",    "envelope",       "envelope-cell", "points", "diagram",
-                               "features", "side",  "outside-radius", "tree-depth"};
+constexpr std::array kNotSwept{"output",   "sweep", "sort-by",        "axis",          "beside",     "export",
+                               "threads",  "up",    "envelope",       "envelope-cell", "points",     "diagram",
+                               "features", "side",  "outside-radius", "tree-depth",    "importance", "prune-curve"};
 // Flags that concern the sweep, not its runs.
 constexpr std::array kOfTheSweep{"keep", "report", "picture", "no-views", "quiet", "json", "force"};
 

@@ -112,8 +112,9 @@ void refuse_unused_options(const BuildCommand& command) {
 
 void refuse_unused_options(const MedialCommand& command) {
   const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
-  if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
-    throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+  if (among("quality-samples", command.given) && !command.report && !judges && !sweeps && command.prune_curve.empty())
+    throw InputError(
+        "--quality-samples has no effect without --report, --prune-curve, --axis or --sweep: nothing is measured");
   if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
     throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
   if (!command.exports.empty() && sweeps && !command.keep)

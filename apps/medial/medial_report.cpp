@@ -125,11 +125,10 @@ void print(const MedialBuild& build) {
              repair.faces_still_crossing);
   if (repair.faces_at_cuts > 0) fmt::print(", {} of them where the mesh cuts itself", repair.faces_at_cuts);
   const RefineReport& refinement = build.refinement;
-  const Index pruned = refinement.vertices > 0 ? refinement.vertices_before : build.axis.size();
   fmt::print("\n{} medial vertices", build.axis.size());
-  if (pruned != build.unpruned_vertices) fmt::print(" after pruning {} to {}", build.unpruned_vertices, pruned);
+  if (build.axis.size() != build.unpruned_vertices) fmt::print(" after pruning, {} before", build.unpruned_vertices);
   if (refinement.vertices > 0)
-    fmt::print(", refined from {}: {} inexact, {} on sharp edges", pruned, refinement.inexact,
+    fmt::print(", refined from {}: {} inexact, {} on sharp edges", refinement.vertices_before, refinement.inexact,
                refinement.edge_vertices);
   if (build.axis.stems > 0) fmt::print(", {} without faces", build.axis.stems);
   if (build.axis.bridges > 0) fmt::print(", {} edges that bridge the outside", build.axis.bridges);

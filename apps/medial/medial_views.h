@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "command_line/commands.h"
+#include "medial/axis_importance.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/quality.h"
 #include "orchard/medial/segments.h"
@@ -32,6 +33,7 @@ struct MedialViews {
   const StructureGraph& graph;
   const MedialMesh& mesh;
   const MedialErrors* errors = nullptr;  // null: not measured
+  std::vector<ImportanceArray> importance = {};
   std::vector<WorstPlace> worst = {};
 };
 // Where the program was built with VTK.

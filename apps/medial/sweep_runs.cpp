@@ -170,7 +170,7 @@ class SweepRunner {
     quiet.views = false;
     json report = axis_report(quiet, solid, *build_, mesh);
     add_quality(judgement, report);
-    write_axis(quiet, *build_, mesh, "", outputs);
+    write_axis(quiet, *build_, mesh, {}, "", outputs);
     write_few_balls(quiet, destination.provenance, few, report, outputs);
     outputs.add_report(report);
     outputs.commit();

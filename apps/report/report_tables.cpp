@@ -76,6 +76,7 @@ std::string in_table(const std::string& rows) { return "<div class=\"wide\"><tab
 
 std::string values_table(const std::vector<ReportRow>& rows) {
   std::vector<ComparedRow> compared;
+  compared.reserve(rows.size());
   for (const ReportRow& row : rows) compared.push_back({row.name, {row.value}, row.words});
   return table_of({"value"}, compared);
 }

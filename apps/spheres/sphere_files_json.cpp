@@ -86,7 +86,7 @@ SphereFile spheres_of(const json& root, const std::string& file) {
   for (const auto& [link, value] : root.items()) {
     SphereGroup& group = result.groups.emplace_back();
     group.name = link;
-    add_any(group, value, file + ": link " + link);
+    add_any(group, value, fmt::format("{}: link {}", file, link));
   }
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <numeric>
 
 #include "orchard/geometry/error.h"
@@ -101,7 +102,7 @@ std::vector<CellMesh::Face> CellMesh::outer_faces() {
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto x = sorted(faces_[a]), y = sorted(faces_[b]);
     const auto less = std::lexicographical_compare_three_way(x.begin(), x.end(), y.begin(), y.end());
-    return less != 0 ? less < 0 : a < b;
+    return std::is_eq(less) ? a < b : std::is_lt(less);
   });
   std::vector<std::size_t> outer;
   for (std::size_t i = 0; i < order.size();) {
@@ -112,6 +113,7 @@ std::vector<CellMesh::Face> CellMesh::outer_faces() {
   }
   std::sort(outer.begin(), outer.end());
   std::vector<Face> result;
+  result.reserve(outer.size());
   for (const std::size_t face : outer) result.push_back(faces_[face]);
   return result;
 }

@@ -88,7 +88,7 @@ SphereAudit audit_spheres(const Surface& surface, std::span<const Sphere> balls,
   audit.touches = std::any_of(balls.begin(), balls.end(), [&](const Sphere& ball) { return touches(surface, ball); });
   find_open(surface, balls, options, progress, audit);
   if (!surface.solid()) return audit;
-  SphereAudit::BesideSolid& beside = audit.beside_solid.emplace();
+  SphereAudit::BesideSolid& beside = audit.beside_solid.emplace(SphereAudit::BesideSolid{});
   report_progress(progress, "measuring spheres", 0);
   find_protrusion(surface, balls, beside);
   report_progress(progress, "measuring spheres", 0.3);

@@ -86,7 +86,7 @@ std::vector<std::vector<Point>> detail::voids_of(const Surface& surface, std::sp
     done[first] = true;
     std::vector<Point>& own = voids.emplace_back();
     while (!open.empty()) {
-      const Corner corner = corners[open.back()];
+      const Corner& corner = corners[open.back()];
       open.pop_back();
       own.push_back(corner.at);
       for (std::size_t k = 0; k < corners.size(); ++k) {

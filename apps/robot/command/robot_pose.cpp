@@ -35,6 +35,7 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header, cons
     const auto joint = std::find_if(free.begin(), free.end(), [&](Index j) { return robot.joints[j].name == name; });
     if (joint == free.end() && name != "time") {
       std::vector<std::string> names;
+      names.reserve(free.size());
       for (const Index j : free) names.push_back(robot.joints[j].name);
       throw InputError(fmt::format("{}: \"{}\" is neither time nor a joint that moves by itself: {}", where, name,
                                    fmt::join(names, ", ")));
