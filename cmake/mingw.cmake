@@ -11,7 +11,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 # The compiler's own libraries are linked in, so that programs run without its folder in the path.
 set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
-find_program(ORCHARD_WINE NAMES wine64 wine PATHS /usr/lib/wine)
+find_program(ORCHARD_WINE NAMES wine64 wine64-stable PATHS /usr/lib/wine)
 if(ORCHARD_WINE)
   set(CMAKE_CROSSCOMPILING_EMULATOR ${ORCHARD_WINE})
 endif()

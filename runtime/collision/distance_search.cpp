@@ -195,10 +195,10 @@ void DistanceSearch::expand_within(const ObbNodePair& pair, std::uint32_t block,
   const float margin = placement.box_margin + reach_;
   detail::BoxGaps gaps;
   if (second) {
-    detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.obb_nodes[block],
-                     placement.scale, margin, gaps);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.obb_nodes[block],
+                          placement.scale, margin, gaps);
   } else {
-    detail::box_gaps(pair_.moved_box(pair.b), first.obb_nodes[block], 1, margin, gaps);
+    detail::meeting_boxes(pair_.moved_box(pair.b), first.obb_nodes[block], 1, margin, gaps);
   }
   if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
   ObbNodePair found[kBlockWidth];

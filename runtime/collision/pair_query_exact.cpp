@@ -38,10 +38,10 @@ inline bool PairQuery::find_children(const NodePair& pair, std::uint32_t a, std:
   const bool second =
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
   if (second) {
-    detail::box_gaps(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_->tree.obb_nodes[b],
-                     placement_.scale, placement_.box_margin, gaps);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_->tree.obb_nodes[b],
+                          placement_.scale, placement_.box_margin, gaps);
   } else {
-    detail::box_gaps(moved_box(pair.b), first_->tree.obb_nodes[a], 1, placement_.box_margin, gaps);
+    detail::meeting_boxes(moved_box(pair.b), first_->tree.obb_nodes[a], 1, placement_.box_margin, gaps);
   }
   if (placement_.coarse) leave_out_apart(pair, second, second ? b : a, gaps);
   return second;
@@ -111,13 +111,13 @@ void PairQuery::start_near(const NodePair& leaves) noexcept {
   constexpr std::uint32_t most = kBlockWidth;
   const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
   BoxGaps firsts, seconds;
-  detail::box_gaps(moved_box(leaves.b), first_->tree.obb_nodes[block_a], 1, placement_.box_margin, firsts);
+  detail::meeting_boxes(moved_box(leaves.b), first_->tree.obb_nodes[block_a], 1, placement_.box_margin, firsts);
   std::array<float, most> gaps;
   stack_size_ = 0;
   for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
     const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
-    detail::box_gaps(detail::moved_back(detail::node_box_at(first_->tree, a), placement_),
-                     second_->tree.obb_nodes[block_b], placement_.scale, placement_.box_margin, seconds);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first_->tree, a), placement_),
+                          second_->tree.obb_nodes[block_b], placement_.scale, placement_.box_margin, seconds);
     pair_tests_ += static_cast<std::uint64_t>(std::bit_width(seconds.used));
     for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));

@@ -95,11 +95,11 @@ void walk_candidates(const PlacedPair& pair, WalkStack& room, Visit&& visit) noe
                              ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * pair.placement.scale);
     const std::uint32_t block = open_second ? b : a;
     if (open_second) {
-      box_gaps(moved_back(node_box_at(first, top.a), pair.placement), second.obb_nodes[block], pair.placement.scale,
-               pair.placement.box_margin, gaps);
+      meeting_boxes(moved_back(node_box_at(first, top.a), pair.placement), second.obb_nodes[block],
+                    pair.placement.scale, pair.placement.box_margin, gaps);
     } else {
-      box_gaps(moved(node_box_at(second, top.b), pair.placement), first.obb_nodes[block], 1, pair.placement.box_margin,
-               gaps);
+      meeting_boxes(moved(node_box_at(second, top.b), pair.placement), first.obb_nodes[block], 1,
+                    pair.placement.box_margin, gaps);
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
       const std::uint32_t node = block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));

@@ -242,10 +242,6 @@ ORCHARD_INLINE NearestPair point_at_once(const Vec3& point, const TrianglePoints
 ORCHARD_INLINE NearestPair segment_at_once(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   return first_of(near_segment<FourDoubles>(p, q, t, 0));
 }
-#else
-constexpr auto triangles_at_once = triangles_one_by_one;
-constexpr auto point_at_once = point_one_by_one;
-constexpr auto segment_at_once = segment_one_by_one;
 #endif
 
 }  // namespace
@@ -260,6 +256,7 @@ double longest_edge(const TrianglePoints& t) noexcept {
 }
 
 // Machines without vectors of four doubles are better served by one number at a time.
+#ifdef ORCHARD_VECTORS
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
   return found_points(PerMachine<triangles_at_once, triangles_one_by_one>::call(a, b));
 }
@@ -269,5 +266,16 @@ NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcep
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   return found_points(PerMachine<segment_at_once, segment_one_by_one>::call(p, q, t));
 }
+#else
+NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
+  return found_points(triangles_one_by_one(a, b));
+}
+NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept {
+  return found_points(point_one_by_one(point, t));
+}
+NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+  return found_points(segment_one_by_one(p, q, t));
+}
+#endif
 
 }  // namespace orchard::runtime::detail

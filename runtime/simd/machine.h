@@ -9,8 +9,8 @@
 // made at the first call: no resolver runs before main(), where neither sanitizers nor other libraries are ready.
 namespace orchard::runtime::detail {
 
-// Each has what those before it have. `portable` is the base of the architecture with the loops of one number at a time
-// that other compilers get: tests choose it to compare these loops with the others.
+// Each has what those before it have. `portable` is the base of the architecture, where the broad phase takes the loops
+// of one number at a time that other compilers get: tests choose it to compare these loops with the others.
 enum class Machine : std::uint8_t { unknown, portable, base, avx2, avx512 };
 
 inline std::atomic<Machine> chosen_machine{Machine::unknown};
@@ -29,9 +29,8 @@ inline Machine machine() noexcept {
   return best;
 }
 
-// Not where the whole build is for such a machine anyway, nor for Windows with GCC, whose stack aligns vectors of eight
-// to half their size only (GCC's bug 54412).
-#if defined(ORCHARD_VECTORS) && defined(__x86_64__) && !defined(__AVX2__) && !defined(__MINGW32__)
+// Not where the whole build is for such a machine anyway.
+#if defined(ORCHARD_VECTORS) && defined(__x86_64__) && !defined(__AVX2__)
 #define ORCHARD_MACHINES 1
 #define ORCHARD_FOR_AVX2 __attribute__((target("avx2"), noinline))
 #define ORCHARD_FOR_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq"), noinline))
@@ -44,30 +43,25 @@ inline Machine machine() noexcept {
 
 // PerMachine<kernel>::call(..) is kernel(..) for the machine chosen. The kernel is ORCHARD_INLINE, so that it becomes
 // part of a function for each.
-// `base`: the same for the base of the architecture, where that is better served by other code. `plain`: for
-// Machine::portable.
-template <auto kernel, auto base = kernel, auto plain = base>
+// `base`: the same for the base of the architecture, where that is better served by other code.
+template <auto kernel, auto base = kernel>
 struct PerMachine;
 
 template <typename Result, typename... Arguments, Result (*kernel)(Arguments...) noexcept,
-          Result (*base)(Arguments...) noexcept, Result (*plain)(Arguments...) noexcept>
-struct PerMachine<kernel, base, plain> {
+          Result (*base)(Arguments...) noexcept>
+struct PerMachine<kernel, base> {
+#ifdef ORCHARD_MACHINES
   static Result call(Arguments... arguments) noexcept {
     const Machine chosen = machine();
-#ifdef ORCHARD_MACHINES
     if (chosen == Machine::avx512) return avx512(arguments...);
-    if (chosen == Machine::avx2) return avx2(arguments...);
-#endif
-    if (chosen == Machine::portable) return plain(arguments...);
-#if defined(ORCHARD_VECTORS) && !defined(__AVX2__)
-    return base(arguments...);
-#else
-    return kernel(arguments...);
-#endif
+    return chosen == Machine::avx2 ? avx2(arguments...) : base(arguments...);
   }
-#ifdef ORCHARD_MACHINES
   ORCHARD_FOR_AVX2 static Result avx2(Arguments... arguments) noexcept { return kernel(arguments...); }
   ORCHARD_FOR_AVX512 static Result avx512(Arguments... arguments) noexcept { return kernel(arguments...); }
+#elif defined(ORCHARD_VECTORS) && !defined(__AVX2__)
+  static Result call(Arguments... arguments) noexcept { return base(arguments...); }
+#else
+  static Result call(Arguments... arguments) noexcept { return kernel(arguments...); }
 #endif
 };
 

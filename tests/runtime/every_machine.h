@@ -5,28 +5,18 @@
 
 namespace orchard::runtime::test {
 
-// While one lives, the inner loops are those of this machine; then those of before.
+// While one lives, the inner loops are those of this machine.
 class OnMachine {
  public:
-  explicit OnMachine(detail::Machine machine) noexcept : before_(detail::machine()) { detail::use_machine(machine); }
+  explicit OnMachine(detail::Machine machine) noexcept { detail::use_machine(machine); }
   OnMachine(const OnMachine&) = delete;
   OnMachine& operator=(const OnMachine&) = delete;
-  ~OnMachine() { detail::use_machine(before_); }
-
- private:
-  detail::Machine before_;
+  ~OnMachine() { detail::use_machine(detail::best_machine()); }
 };
 
 // With the portable inner loops, or with the best ones.
 inline OnMachine on_portable_machine(bool portable) {
   return OnMachine(portable ? detail::Machine::portable : detail::best_machine());
-}
-
-// The inner loops of one number at a time, which those of all machines are compared with.
-template <typename Work>
-auto with_portable_loops(const Work& work) {
-  const OnMachine chosen(detail::Machine::portable);
-  return work();
 }
 
 // Runs `check` with the inner loops of every machine that this one can be.

@@ -24,18 +24,18 @@ struct Boxes {
             E::all(b.height), E::all(b.width), E::all(b.length), E::all(b.radius)};
   }
   // `scale`: times this, lanes are in the other one's units.
-  ORCHARD_INLINE static Boxes of(const ObbNodeBlock& b, float scale) noexcept {
+  ORCHARD_INLINE static Boxes of(const ObbNodeBlock& b, float scale, std::uint32_t lane) noexcept {
     const Floats unit = E::all(scale);
-    const Vectors n = {load<Floats>(b.nx), load<Floats>(b.ny), load<Floats>(b.nz)},
-                  m = {load<Floats>(b.mx), load<Floats>(b.my), load<Floats>(b.mz)};
-    return {{load<Floats>(b.x) * unit, load<Floats>(b.y) * unit, load<Floats>(b.z) * unit},
+    const Vectors n = {E::at(b.nx, lane), E::at(b.ny, lane), E::at(b.nz, lane)},
+                  m = {E::at(b.mx, lane), E::at(b.my, lane), E::at(b.mz, lane)};
+    return {{E::at(b.x, lane) * unit, E::at(b.y, lane) * unit, E::at(b.z, lane) * unit},
             n,
             m,
             E::cross(n, m),
-            load<Floats>(b.height) * unit,
-            load<Floats>(b.width) * unit,
-            load<Floats>(b.length) * unit,
-            load<Floats>(b.radius) * unit};
+            E::at(b.height, lane) * unit,
+            E::at(b.width, lane) * unit,
+            E::at(b.length, lane) * unit,
+            E::at(b.radius, lane) * unit};
   }
   // Of the second tree, to the first one's frame.
   ORCHARD_INLINE Boxes moved(const Placement& p) const noexcept {

@@ -7,7 +7,7 @@
 #include "simd/vector_support.h"
 
 // Eight numbers, and eight vectors, at a time: what the inner loops over ball slabs and triangles are made of. `Kind`
-// is PlainFloats, VectorFloats or FourFloats.
+// is PlainFloats or VectorFloats; or OneFloat, for one of the eight.
 namespace orchard::runtime::detail {
 
 // What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.
@@ -29,8 +29,17 @@ struct Eight {
     Floats x, y, z;
   };
 
-  static constexpr std::uint32_t kAll = (1u << kBlockWidth) - 1;
+  static constexpr std::size_t kCount = sizeof(Floats) / sizeof(float);
+  static constexpr std::uint32_t kAll = (1u << kCount) - 1;
 
+  // All of eight, or the one of them that is asked for.
+  ORCHARD_INLINE static Floats at(const std::array<float, kBlockWidth>& from, std::uint32_t lane) noexcept {
+    if constexpr (kCount == 1) {
+      return from[lane];
+    } else {
+      return load<Floats>(from);
+    }
+  }
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
   // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
   // number, both give the second one.
@@ -58,8 +67,8 @@ struct Eight {
     const Vectors turned = turn(p.rotation, v);
     return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
   }
-  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k) noexcept {
-    return {load<Floats>(block.corner[k][0]), load<Floats>(block.corner[k][1]), load<Floats>(block.corner[k][2])};
+  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k, std::uint32_t lane = 0) noexcept {
+    return {at(block.corner[k][0], lane), at(block.corner[k][1], lane), at(block.corner[k][2], lane)};
   }
 };
 

@@ -38,13 +38,14 @@ template <typename Kind>
 ORCHARD_INLINE void find_axes(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement,
                               float margin, BoxAxes& result) noexcept {
   const float scale = placement != nullptr ? placement->scale : 1;
-  find_axes_of<Kind>(Boxes<Kind>::of(single), Boxes<Kind>::of(lanes, scale), placement, margin, result);
+  find_axes_of<Kind>(Boxes<Kind>::of(single), Boxes<Kind>::of(lanes, scale, 0), placement, margin, result);
 }
 
 template <typename Kind>
 ORCHARD_INLINE void find_pair_axes(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement,
                                    float margin, BoxAxes& result) noexcept {
-  find_axes_of<Kind>(Boxes<Kind>::of(firsts, 1), Boxes<Kind>::of(seconds, 1).moved(placement), nullptr, margin, result);
+  find_axes_of<Kind>(Boxes<Kind>::of(firsts, 1, 0), Boxes<Kind>::of(seconds, 1, 0).moved(placement), nullptr, margin,
+                     result);
 }
 
 // The corner that is least far along u.
@@ -160,21 +161,36 @@ ORCHARD_INLINE float take_from_gaps(const Shift& shift, FrontBlock* blocks, std:
 
 void box_axes(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
               BoxAxes& result) noexcept {
-  PerMachine<find_axes<Widest>, find_axes<Base>, find_axes<PlainFloats>>::call(single, lanes, placement, margin,
-                                                                               result);
+  PerMachine<find_axes<Widest>, find_axes<Base>>::call(single, lanes, placement, margin, result);
 }
+void box_axes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
+                     BoxAxes& result) noexcept {
+  find_axes<PlainFloats>(single, lanes, placement, margin, result);
+}
+
 void box_pair_axes(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement, float margin,
                    BoxAxes& result) noexcept {
-  PerMachine<find_pair_axes<Widest>, find_pair_axes<Base>, find_pair_axes<PlainFloats>>::call(
-      firsts, seconds, placement, margin, result);
+  PerMachine<find_pair_axes<Widest>, find_pair_axes<Base>>::call(firsts, seconds, placement, margin, result);
 }
+void box_pair_axes_scalar(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement,
+                          float margin, BoxAxes& result) noexcept {
+  find_pair_axes<PlainFloats>(firsts, seconds, placement, margin, result);
+}
+
 LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                    float enough) noexcept {
-  return PerMachine<find_leaf_axis<Widest>, find_leaf_axis<Base>, find_leaf_axis<PlainFloats>>::call(pair, placement,
-                                                                                                     given, enough);
+  return PerMachine<find_leaf_axis<Widest>, find_leaf_axis<Base>>::call(pair, placement, given, enough);
 }
+LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
+                          float enough) noexcept {
+  return find_leaf_axis<PlainFloats>(pair, placement, given, enough);
+}
+
 float close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept {
-  return PerMachine<take_from_gaps<Widest>, take_from_gaps<Base>, take_from_gaps<PlainFloats>>::call(shift, blocks,
-                                                                                                     count, open);
+  return PerMachine<take_from_gaps<Widest>, take_from_gaps<Base>>::call(shift, blocks, count, open);
 }
+float close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept {
+  return take_from_gaps<PlainFloats>(shift, blocks, count, open);
+}
+
 }  // namespace orchard::runtime::detail

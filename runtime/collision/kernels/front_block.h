@@ -44,4 +44,13 @@ struct Shift {
 // gap is left to that lane of blocks[i]. Returns the least of those that are left, infinite if there is none.
 float close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept;
 
+// The same, one number at a time, for the tests.
+void box_axes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, const Placement* placement, float margin,
+                     BoxAxes& result) noexcept;
+void box_pair_axes_scalar(const ObbNodeBlock& firsts, const ObbNodeBlock& seconds, const Placement& placement,
+                          float margin, BoxAxes& result) noexcept;
+LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
+                          float enough) noexcept;
+float close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept;
+
 }  // namespace orchard::runtime::detail

@@ -192,20 +192,39 @@ TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, c
   return result;
 }
 
+// Without vectors the compiler's own are slower than one number at a time that stops early.
+#ifdef ORCHARD_VECTORS
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
-  PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>, find_triangle_gaps<PlainFloats>>::call(
-      lanes, rows, placement, direction, reach, result);
+  PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>>::call(lanes, rows, placement, direction, reach,
+                                                                         result);
 }
 
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  return PerMachine<find_candidates<Widest>, find_candidates<Base>, find_candidates<PlainFloats>>::call(pair,
-                                                                                                        placement);
+  return PerMachine<find_candidates<Widest>, find_candidates<Base>>::call(pair, placement);
 }
 
 bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept {
-  return PerMachine<visit_each<Widest>, visit_each<Base>, visit_each<PlainFloats>>::call(pair, placement, visit,
-                                                                                         context);
+  return PerMachine<visit_each<Widest>, visit_each<Base>>::call(pair, placement, visit, context);
 }
+#else
+void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                   const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
+  triangle_gaps_scalar(lanes, rows, placement, direction, reach, result);
+}
+
+std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+  return triangle_candidates_scalar(pair, placement);
+}
+
+bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept {
+  const std::uint64_t found = triangle_candidates_scalar(pair, placement);
+  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
+    const auto lanes = static_cast<std::uint32_t>(found >> (kBlockWidth * row) & 0xff);
+    if (lanes != 0 && visit(context, row, lanes)) return true;
+  }
+  return false;
+}
+#endif
 
 }  // namespace orchard::runtime::detail

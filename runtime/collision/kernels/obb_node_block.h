@@ -9,6 +9,8 @@
 #include "orchard/runtime/pose.h"
 
 // The inner loops of the exact level and of distances over triangles: eight against eight.
+// Every function has a twin that does the same, operation for operation, one number at a time: what the tests compare
+// with, and all that some compilers get.
 namespace orchard::runtime::detail {
 
 inline ObbNode obb_node_at(const ObbNodeBlock& b, std::uint32_t i) noexcept {
@@ -24,6 +26,7 @@ struct LeafPair {
 
 // Bit 8 * row + lane: pairs that may share a point. Never leaves out a pair that does.
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept;
+std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept;
 
 // The same a row at a time, in order, as far as need be: calls visit(context, row, bits of lanes) for each row that has
 // any, until it returns true, which is returned then.
@@ -41,6 +44,8 @@ struct TriangleGaps {
 // than need be to see that.
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept;
+void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                          const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept;
 
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept;
 TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept;

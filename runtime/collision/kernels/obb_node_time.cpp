@@ -72,10 +72,14 @@ ORCHARD_INLINE void find_times(const ObbNode& single, const ObbNodeBlock& lanes,
 
 }  // namespace
 
+void obb_node_times_scalar(const ObbNode& single, const ObbNodeBlock& lanes, const Placement* placement,
+                           const Closing& closing, float margin, ObbNodeTimes& result) noexcept {
+  find_times<PlainFloats>(single, lanes, placement, closing, margin, result);
+}
+
 void obb_node_times(const ObbNode& single, const ObbNodeBlock& lanes, const Placement* placement,
                     const Closing& closing, float margin, ObbNodeTimes& result) noexcept {
-  PerMachine<find_times<Widest>, find_times<Base>, find_times<PlainFloats>>::call(single, lanes, placement, closing,
-                                                                                  margin, result);
+  PerMachine<find_times<Widest>, find_times<Base>>::call(single, lanes, placement, closing, margin, result);
 }
 
 }  // namespace orchard::runtime::detail

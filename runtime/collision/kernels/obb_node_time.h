@@ -38,5 +38,7 @@ struct ObbNodeTimes {
 // since the distance from c does not change: so the gap along u, over that rate and the centres', is such a time.
 void obb_node_times(const ObbNode& single, const ObbNodeBlock& lanes, const Placement* placement,
                     const Closing& closing, float margin, ObbNodeTimes& result) noexcept;
+void obb_node_times_scalar(const ObbNode& single, const ObbNodeBlock& lanes, const Placement* placement,
+                           const Closing& closing, float margin, ObbNodeTimes& result) noexcept;
 
 }  // namespace orchard::runtime::detail

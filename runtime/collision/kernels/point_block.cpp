@@ -54,10 +54,14 @@ ORCHARD_INLINE void find_point_gaps(const std::array<float, 3>& point, const Tri
 
 }  // namespace
 
+void point_gaps_scalar(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
+                       PointGaps& lower) noexcept {
+  find_point_gaps<PlainFloats>(point, block, placement, lower);
+}
+
 void point_gaps(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
                 PointGaps& lower) noexcept {
-  PerMachine<find_point_gaps<Widest>, find_point_gaps<Base>, find_point_gaps<PlainFloats>>::call(point, block,
-                                                                                                 placement, lower);
+  PerMachine<find_point_gaps<Widest>, find_point_gaps<Base>>::call(point, block, placement, lower);
 }
 
 }  // namespace orchard::runtime::detail

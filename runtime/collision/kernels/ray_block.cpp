@@ -217,23 +217,29 @@ ORCHARD_INLINE RayLeaf find_leaf_of_boxes(const BoxTree& tree, const BoxRay& ray
 }  // namespace
 
 RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept {
-  return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>, find_leaf_of_tree<PlainFloats>>::call(tree,
-                                                                                                              walk);
+  return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>>::call(tree, walk);
 }
 
 RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept {
-  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>, find_leaf_of_boxes<PlainFloats>>::call(
-      tree, ray, walk);
+  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(tree, ray, walk);
+}
+
+std::uint32_t ray_obb_nodes_scalar(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
+                                   RayEntries& entries) noexcept {
+  return find_obb_nodes<PlainFloats>(ray, obb_nodes, begin, end, entries);
+}
+
+RayLeaf ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  return find_triangles<PlainFloats>(ray, block);
 }
 
 std::uint32_t ray_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
                             RayEntries& entries) noexcept {
-  return PerMachine<find_obb_nodes<Widest>, find_obb_nodes<Base>, find_obb_nodes<PlainFloats>>::call(
-      ray, obb_nodes, begin, end, entries);
+  return PerMachine<find_obb_nodes<Widest>, find_obb_nodes<Base>>::call(ray, obb_nodes, begin, end, entries);
 }
 
 RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
-  return PerMachine<find_triangles<Widest>, find_triangles<Base>, find_triangles<PlainFloats>>::call(ray, block);
+  return PerMachine<find_triangles<Widest>, find_triangles<Base>>::call(ray, block);
 }
 
 }  // namespace orchard::runtime::detail

@@ -75,10 +75,14 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
 
 }  // namespace
 
+void segment_gaps_scalar(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
+                         const Placement& placement, SegmentGaps& lower) noexcept {
+  find_segment_gaps<PlainFloats>(p, q, block, placement, lower);
+}
+
 void segment_gaps(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
                   const Placement& placement, SegmentGaps& lower) noexcept {
-  PerMachine<find_segment_gaps<Widest>, find_segment_gaps<Base>, find_segment_gaps<PlainFloats>>::call(
-      p, q, block, placement, lower);
+  PerMachine<find_segment_gaps<Widest>, find_segment_gaps<Base>>::call(p, q, block, placement, lower);
 }
 
 }  // namespace orchard::runtime::detail

@@ -174,6 +174,10 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
 
 }  // namespace
 
+void test_block_scalar(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept {
+  test<PlainKind>(pair, placement, level, hits);
+}
+
 #ifdef ORCHARD_VECTORS
 using WidestKind = VectorKind;
 #else
@@ -181,7 +185,7 @@ using WidestKind = PlainKind;
 #endif
 
 void test_block(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept {
-  PerMachine<test<WidestKind>, test<WidestKind>, test<PlainKind>>::call(pair, placement, level, hits);
+  PerMachine<test<WidestKind>>::call(pair, placement, level, hits);
 }
 
 }  // namespace orchard::runtime::detail

@@ -3,7 +3,7 @@
 #include "collision/kernels/node_box.h"
 #include "collision/kernels/obb_node_pair.h"
 
-// What the inner loops over triangles (obb_node_block.cpp) are made of.
+// What the inner loops over triangles (obb_node_block.cpp, obb_node_block_plain.cpp) are made of.
 //
 // Rounding. Ball slabs: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
@@ -100,7 +100,7 @@ ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& la
   const Vectors edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
   const Floats zero = E::all(0.0f), least = E::all(kMinRoom);
   for (std::size_t i = 0; i < 3 && left != 0; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t j = 0; j < 3 && (E::kCount > 1 || left != 0); ++j) {
       const Vectors axis = E::cross(edges[i], lanes.edge[j]);
       const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
       const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));

@@ -199,10 +199,9 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
     detail::BoxAxes axes[3]{}, plain[3]{};
     const float margin = placement.box_margin;
     const detail::NodeBox back = detail::moved_back(own, placement);
-    with_portable_loops([&] { detail::box_axes(back, b.obb_nodes[block_b], &placement, margin, plain[0]); });
-    with_portable_loops([&] { detail::box_axes(other, a.obb_nodes[block_a], nullptr, margin, plain[1]); });
-    with_portable_loops(
-        [&] { detail::box_pair_axes(a.obb_nodes[block_a], b.obb_nodes[block_b], placement, margin, plain[2]); });
+    detail::box_axes_scalar(back, b.obb_nodes[block_b], &placement, margin, plain[0]);
+    detail::box_axes_scalar(other, a.obb_nodes[block_a], nullptr, margin, plain[1]);
+    detail::box_pair_axes_scalar(a.obb_nodes[block_a], b.obb_nodes[block_b], placement, margin, plain[2]);
     const auto same = [](const detail::BoxAxes& p, const detail::BoxAxes& q) {
       return std::memcmp(&p.gap, &q.gap, sizeof p.gap) == 0 && std::memcmp(&p.ux, &q.ux, sizeof p.ux) == 0 &&
              std::memcmp(&p.uy, &q.uy, sizeof p.uy) == 0 && std::memcmp(&p.uz, &q.uz, sizeof p.uz) == 0 &&
@@ -238,8 +237,7 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
     const float enough = static_cast<float>(draw.uniform(0, 0.3));
     constexpr std::array<float, 3> given = {0, 0.6f, 0.8f};
     const std::array<float, 3>* const direction = draw.bits() % 2 == 0 ? &given : nullptr;
-    const detail::LeafAxis leaf =
-        with_portable_loops([&] { return detail::leaf_axis(pair, placement, direction, enough); });
+    const detail::LeafAxis leaf = detail::leaf_axis_scalar(pair, placement, direction, enough);
     on_every_machine([&] {
       const detail::LeafAxis again = detail::leaf_axis(pair, placement, direction, enough);
       ASSERT_EQ(again.gap, leaf.gap) << seed;
@@ -276,8 +274,7 @@ TEST(FrontBlock, ClosesGapsByTheSameBitsOnEveryMachine) {
     auto plain = blocks;
     std::vector<std::uint64_t> open((blocks.size() + 7) / 8), plain_open(open.size());
     const auto count = static_cast<std::uint32_t>(blocks.size());
-    const float plain_least =
-        with_portable_loops([&] { return detail::close_gaps(shift, plain.data(), count, plain_open.data()); });
+    const float plain_least = detail::close_gaps_scalar(shift, plain.data(), count, plain_open.data());
     on_every_machine([&] {
       auto moved = blocks;
       ASSERT_EQ(detail::close_gaps(shift, moved.data(), count, open.data()), plain_least) << seed;

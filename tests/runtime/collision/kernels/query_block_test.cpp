@@ -21,7 +21,6 @@ namespace {
 
 using test::Draw;
 using test::on_every_machine;
-using test::with_portable_loops;
 
 template <typename T>
 bool same_bits(const T& p, const T& q) {
@@ -53,7 +52,7 @@ TEST(PointBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachine)
                                         static_cast<float>(draw.uniform(-0.5, 0.5) * scale)};
         PointGaps lower, plain;
         point_gaps(p, block, placement, lower);
-        with_portable_loops([&] { point_gaps(p, block, placement, plain); });
+        point_gaps_scalar(p, block, placement, plain);
         ASSERT_TRUE(same_bits(lower, plain)) << seed;
         for (std::uint32_t i = 0; i < kBlockWidth && block.triangle[i] != kNoTriangle; ++i) {
           const double truth = nearest_points(Vec3{p[0], p[1], p[2]}, points_of(block, i)).distance;
@@ -89,7 +88,7 @@ TEST(SegmentBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachin
         }
         SegmentGaps lower, plain;
         segment_gaps(p, q, block, placement, lower);
-        with_portable_loops([&] { segment_gaps(p, q, block, placement, plain); });
+        segment_gaps_scalar(p, q, block, placement, plain);
         ASSERT_TRUE(same_bits(lower, plain)) << seed;
         for (std::uint32_t i = 0; i < kBlockWidth && block.triangle[i] != kNoTriangle; ++i) {
           const Vec3 from = {p[0], p[1], p[2]}, to = {q[0], q[1], q[2]};
@@ -135,8 +134,7 @@ TEST(RayBlock, KeepsEveryTriangleAndObbNodeOnTheRayOnEveryMachine) {
       for (std::size_t b = 0; b < tree.obb_nodes.size(); ++b) {
         RayEntries entries, plain;
         const std::uint32_t met = ray_obb_nodes(ray, tree.obb_nodes[b], begin, end, entries);
-        ASSERT_EQ(met, with_portable_loops([&] { return ray_obb_nodes(ray, tree.obb_nodes[b], begin, end, plain); }))
-            << seed;
+        ASSERT_EQ(met, ray_obb_nodes_scalar(ray, tree.obb_nodes[b], begin, end, plain)) << seed;
         ASSERT_TRUE(same_bits(entries, plain)) << seed;
         for (std::uint32_t lane = 0; lane < kBlockWidth && tree.obb_nodes[b].radius[lane] >= 0; ++lane) {
           const ObbNodeBlock& slab = tree.obb_nodes[b];
@@ -154,7 +152,7 @@ TEST(RayBlock, KeepsEveryTriangleAndObbNodeOnTheRayOnEveryMachine) {
       }
       for (const TriangleBlock& block : tree.triangle_blocks) {
         const std::uint32_t some = ray_triangles(ray, block).some;
-        ASSERT_EQ(some, with_portable_loops([&] { return ray_triangles(ray, block).some; })) << seed;
+        ASSERT_EQ(some, ray_triangles_scalar(ray, block).some) << seed;
         for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
           const bool aimed = &tree.triangles[block.triangle[lane]] == &t;
           ASSERT_TRUE(!aimed || (some >> lane & 1)) << seed;
@@ -221,7 +219,7 @@ TEST(ObbNodeTimes, AreNotLaterThanAnyContactOnEveryMachine) {
       const Placement placement = still(8);
       ObbNodeTimes times, plain;
       obb_node_times(single, lanes, &placement, closing, placement.margin, times);
-      with_portable_loops([&] { obb_node_times(single, lanes, &placement, closing, placement.margin, plain); });
+      obb_node_times_scalar(single, lanes, &placement, closing, placement.margin, plain);
       ASSERT_TRUE(same_bits(times.time, plain.time) && same_bits(times.x, plain.x)) << seed;
       ASSERT_EQ(times.used, 0x7fu);
       // As far as the axes go: the gap of two balls' centres along a line must not close before.

@@ -18,7 +18,6 @@ namespace {
 
 using test::Draw;
 using test::on_every_machine;
-using test::with_portable_loops;
 
 SiblingBlock random_block(Draw& draw, std::uint32_t used) {
   SiblingBlock block;
@@ -73,7 +72,7 @@ TEST(SphereBlock, GivesTheSameBitsWithAndWithoutVectors) {
     make(draw, c);
     LevelState plain_level = c.level;
     BlockHits plain_hits;
-    with_portable_loops([&] { test_block(c.pair, c.placement, plain_level, plain_hits); });
+    test_block_scalar(c.pair, c.placement, plain_level, plain_hits);
     on_every_machine([&] {
       LevelState level = c.level;
       BlockHits hits;
@@ -151,9 +150,8 @@ TEST(SphereBlock, NeverReportsUnusedLanes) {
     c.placement.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     c.placement.scale = 1;
     BlockHits hits;
-    for (const bool portable : {false, true}) {
-      const test::OnMachine chosen = test::on_portable_machine(portable);
-      test_block(c.pair, c.placement, c.level, hits);
+    for (const auto test : {test_block, test_block_scalar}) {
+      test(c.pair, c.placement, c.level, hits);
       const std::uint64_t used = (std::uint64_t{1} << c.pair.lane_count) - 1;
       ASSERT_EQ(hits.meeting & ~(used * 0x0101010101010101u), 0u) << seed;
       ASSERT_EQ((hits.leaves | hits.improving) & ~hits.meeting, 0u) << seed;

@@ -18,7 +18,6 @@ namespace {
 using test::Draw;
 using test::on_every_machine;
 using test::placement_of;
-using test::with_portable_loops;
 
 // A tree of few random triangles, flat ones, needles and points among them, not far from the origin.
 PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
@@ -44,12 +43,22 @@ PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
 // What the compiler's vectors find against what is found one number at a time.
 void expect_same_on_every_machine(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                                   std::uint64_t seed, BoxGaps& plain) {
-  with_portable_loops([&] { box_gaps(single, lanes, scale, margin, plain); });
+  box_gaps_scalar(single, lanes, scale, margin, plain);
   on_every_machine([&] {
-    BoxGaps gaps;
+    BoxGaps gaps, meeting, plain_meeting;
     box_gaps(single, lanes, scale, margin, gaps);
     ASSERT_EQ(std::memcmp(&gaps.gap, &plain.gap, sizeof plain.gap), 0) << seed;
     ASSERT_EQ(std::pair(gaps.used, gaps.meeting), std::pair(plain.used, plain.meeting)) << seed;
+    meeting_boxes(single, lanes, scale, margin, meeting);
+    meeting_boxes_scalar(single, lanes, scale, margin, plain_meeting);
+    for (const BoxGaps& found : {meeting, plain_meeting}) {
+      ASSERT_EQ(std::pair(found.used, found.meeting), std::pair(plain.used, plain.meeting)) << seed;
+      for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+        if (found.meeting >> lane & 1) {
+          ASSERT_EQ(found.gap[lane], plain.gap[lane]) << seed;
+        }
+      }
+    }
   });
 }
 
@@ -151,7 +160,7 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
     const TriangleBlock lanes = test::one_block(a), rows = test::one_block(b);
     const NodeBox lane_box = node_box_at(a.obb_nodes[0], 0), row_box = moved(node_box_at(b.obb_nodes[0], 0), placement);
     const LeafPair pair{lanes, rows, lane_box, row_box};
-    const std::uint64_t found = with_portable_loops([&] { return triangle_candidates(pair, placement); });
+    const std::uint64_t found = triangle_candidates_scalar(pair, placement);
     on_every_machine([&] {
       ASSERT_EQ(triangle_candidates(pair, placement), found) << seed;
       ASSERT_EQ(visited(pair, placement, kBlockWidth), found) << seed;
