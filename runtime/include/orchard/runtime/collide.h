@@ -98,7 +98,7 @@ class Workspace {
   NarrowPhase narrow;
   DistanceQuery distance;
 
-  struct Scratch;               // Memory of contacts() and time_of_impact(), about 100 KB.
+  struct Scratch;               // Memory of contacts() and time_of_impact(), about 150 KB.
   Scratch* scratch() noexcept;  // Allocated at the first call; null if there is no memory.
 
  private:
