@@ -13,11 +13,12 @@
 namespace orchard {
 namespace {
 
-// Of the points: where fewer are added by gap repair and for open places, hardly any part is thinner than the spacing,
-// and reaching closes such places nearly as well as points, in a fraction of the time.
+// As a fraction of the points. If gap repair and open places add fewer points, hardly any part is thinner than the
+// point spacing. Reaching then closes open places nearly as well as points do, in a fraction of the time.
 constexpr double kFewAdded = 1.0 / 32;
 constexpr double kOnFeature = 1e-6;  // diagonals: a ball of radius 0 that is this near to an edge lies on it
-constexpr double kAlmost = 3;        // border losses: where no less is reached for, points are needed
+// In border losses: if sheets cannot reach a place that is open by more, points have to be added there.
+constexpr double kAlmost = 3;
 
 class MedialBuilder {
  public:
@@ -49,7 +50,7 @@ class MedialBuilder {
   template <class Function>
   void stage(const char* name, Function&& function) {
     time_stage(build_.seconds, name, std::forward<Function>(function));
-    // Of all rounds together.
+    // Stages of the same name are added up over all rounds.
     const auto last = std::prev(build_.seconds.end());
     const auto first =
         std::find_if(build_.seconds.begin(), last, [&](const auto& stage) { return stage.first == name; });
@@ -130,7 +131,8 @@ class MedialBuilder {
     });
   }
 
-  // Before sheets reach for places left open, such places become points in so many rounds.
+  // Refines the axis. In this many rounds, places that it leaves open become surface points before sheets are extended
+  // to those that remain.
   void refine(int rounds) {
     std::optional<detail::Refiner> refiner;
     detail::FoundBalls found;
@@ -150,8 +152,8 @@ class MedialBuilder {
     });
   }
 
-  // Those that a refined axis leaves open; and rebuilds the diagram. False if they are so few that they are left to
-  // reaching.
+  // Adds the places that a refined axis leaves open as points, and rebuilds the diagram. Returns false if they are so
+  // few that reaching deals with them.
   bool add_open_places(const detail::Refiner& refiner) {
     SurfaceSampling added;
     const double limit = options_.refine->border_loss * surface_.bounding_box().diagonal().norm();
@@ -189,9 +191,11 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
                               MedialBuildInput input) {
   if (!surface.solid())
     throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
-  if (options.open_rounds < 0) throw InputError("rounds of adding points at open places: not negative");
+  if (options.open_rounds < 0)
+    throw InputError("the number of rounds that add points at open places must be at least 0");
   if (input.sampling.has_value() + input.diagram.has_value() + input.mesh.has_value() > 1)
-    throw InputError("a medial axis is built from own points, an own diagram or an own axis, not from several");
+    throw InputError(
+        "a medial axis is built from given points, a given diagram or a given axis, but not from several of these");
   return MedialBuilder(surface, options, progress).run(std::move(input));
 }
 
@@ -211,7 +215,7 @@ std::vector<int> repair_passes(const MedialBuild& build) {
     if (build.sampling.origins[i] == PointOrigin::repair) pass_of_point[i] = -1;
   }
   if (build.gap_repair.points_removed > 0) return pass_of_point;
-  // The last passes' points are the last ones of the sampling, in their order.
+  // The points of the last passes are the last points of the sampling, in the same order.
   const std::vector<GapRepairPass>& passes = build.gap_repair.passes;
   auto at = pass_of_point.rbegin();
   for (std::size_t pass = passes.size(); pass > 0; --pass) {

@@ -37,7 +37,8 @@ std::vector<std::string> axis_export_names(const MedialCommand& command) {
 void check_axis_exports(const MedialCommand& command) {
 #ifndef ORCHARD_HAS_VIZ
   if (std::find(command.exports.begin(), command.exports.end(), "vtp") != command.exports.end())
-    throw InputError("--export vtp: this program was built without VTK");
+    throw InputError(
+        "--export vtp: this program was built without VTK; choose another format, or build it with ORCHARD_VIZ=ON");
 #else
   (void)command;
 #endif

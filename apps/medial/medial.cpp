@@ -39,8 +39,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Levels of noise that borders may lose beside what they lose anyway. Smoothing leaves a third to a half of the noise,
-// in waves that are too long to be told from the shape, and what they raise on the axis loses less than this.
+// Deviations of the noise that borders may lose beside what they lose anyway. Smoothing leaves a third to a half of the
+// noise, in waves that are too long to be told from the shape, and what they raise on the axis loses less than this.
 constexpr double kLossOfNoise = 1.5;
 constexpr const char* kSmoothedEnding = "-smoothed.obj";
 constexpr double kDistanceAccuracy = 1e-4;  // of the diagonal: to which the largest distance of two axes is searched
@@ -367,7 +367,7 @@ MedialTuning tuning_for(const MedialCommand& command, const SolidMesh& solid) {
   MedialTuning tuning = command.tuning;
   if (!solid.is_smoothed()) return tuning;
   const RefineOptions standard;
-  const double times = 1 + kLossOfNoise * solid.noise->level / standard.border_loss;
+  const double times = 1 + kLossOfNoise * solid.noise->deviation / standard.border_loss;
   if (!given(command, "border-loss")) tuning.refinement.border_loss = times * standard.border_loss;
   if (!given(command, "feature-loss")) tuning.refinement.feature_loss = times * standard.feature_loss;
   return tuning;

@@ -84,7 +84,7 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
                            const QualityOptions& options) {
   std::vector<Sphere> middles;
   add_middles(build.axis, build.axis.faces, middles);
-  add_middles(build.axis, build.axis.walls, middles);
+  add_middles(build.axis, build.axis.topology_faces, middles);
   QualityOptions no_contacts = options;
   no_contacts.contact_cells = 0;
   return {.vertices = in_percent(ball_errors(surface, balls_of(mesh), options)),

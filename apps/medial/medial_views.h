@@ -15,8 +15,8 @@ namespace orchard::apps {
 
 // What is wrong where, in the units of medial_measures(): percent of the diagonal, and of the radius for centredness.
 struct MedialErrors {
-  BallErrors vertices;         // of the medial mesh, of which the axis's come first
-  BallErrors faces;            // of the balls at the middles of the axis's faces, then of its walls; no centredness
+  BallErrors vertices;  // of the medial mesh, of which the axis's come first
+  BallErrors faces;     // of the balls at the middles of the axis's faces, then of its topology faces; no centredness
   SurfaceErrors points, mesh;  // at the surface points, and at the vertices of the mesh
 };
 // Of an axis that was built here.

@@ -20,21 +20,23 @@ constexpr double kMerging = 2.5e-4;
 constexpr std::size_t kMaxContacts = 4;  // of the balls that triangles can be cut at
 
 void check(const PruneOptions& options) {
-  if (!(options.angle >= 0 && options.angle <= std::numbers::pi)) throw InputError("prune angle: between 0 and pi");
-  if (!(options.scale >= 1 && std::isfinite(options.scale))) throw InputError("prune scale: at least 1");
+  if (!(options.angle >= 0 && options.angle <= std::numbers::pi))
+    throw InputError("the angle of pruning must be between 0 and pi radians");
+  if (!(options.scale >= 1 && std::isfinite(options.scale)))
+    throw InputError("the scale of pruning must be at least 1");
   const auto check_length = [](const char* name, double value) {
     if (!(value >= 0 && std::isfinite(value)))
-      throw InputError(std::string("prune ") + name + ": a finite number of diagonals, not negative");
+      throw InputError(std::string("the ") + name + " of pruning must be a finite number of diagonals, at least 0");
   };
   check_length("border loss", options.border_loss);
   check_length("lambda", options.lambda);
   check_length("erosion", options.erosion);
-  check_length("geodesic", options.geodesic);
+  check_length("geodesic length", options.geodesic);
 }
 
 // Whether an axis consists of balls with few contacts, edges and triangles: refined and imported ones do.
 bool can_be_cut(const MedialAxis& axis) {
-  if (axis.walls.size() > 0) return false;
+  if (axis.topology_faces.size() > 0) return false;
   for (Index face = 0; face < axis.faces.size(); ++face)
     if (axis.faces[face].size() != 3) return false;
   for (Index v = 0; v < axis.size(); ++v)

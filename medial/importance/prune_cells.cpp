@@ -153,11 +153,11 @@ class Pruner {
     }
     for (Index face = 0; face < complex_.face_count(); ++face) {
       if (!face_alive_[face]) continue;
-      const bool wall = face >= axis_.faces.size();
-      Rows& rows = wall ? result.walls : result.faces;
+      const bool for_topology = face >= axis_.faces.size();
+      Rows& rows = for_topology ? result.topology_faces : result.faces;
       for (const Index corner : complex_.corners(face)) rows.items.push_back(renumbered[corner]);
       rows.close_row();
-      (wall ? result.wall_points : result.face_points).push_back(complex_.points(face));
+      (for_topology ? result.topology_face_points : result.face_points).push_back(complex_.points(face));
     }
     return result;
   }

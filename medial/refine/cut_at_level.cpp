@@ -12,7 +12,7 @@
 namespace orchard::detail {
 namespace {
 
-// A quotient as a number from 0 to 1: 1/2 for 1.
+// Maps a quotient to a number from 0 to 1, which is 1/2 for 1.
 double scaled(double over_level) { return std::isfinite(over_level) ? over_level / (1 + over_level) : 1; }
 
 double scaled_loss(const ExactBall& ball, double level) {
@@ -40,11 +40,11 @@ class LevelCut {
   }
 
  private:
-  static constexpr int kLevelSteps = 5;       // of bisection for the place where an edge crosses the level
-  static constexpr double kNearLevel = 0.04;  // of the loss: near enough to end that
+  static constexpr int kLevelSteps = 5;       // steps of bisection towards the place where an edge crosses the level
+  static constexpr double kNearLevel = 0.04;  // of the loss: bisection ends when it is this near to the level
 
-  // Where an edge from a vertex above the level to one below crosses it: the last exact ball above; nothing if there is
-  // none.
+  // Finds where an edge from a vertex above the level to one below crosses it. Returns the last exact ball above the
+  // level, and false if there is none.
   bool crossing(BallSolver& solver, Index vertex_above, Index vertex_below, ExactBall& found) const {
     const ExactBall &above = complex_.balls[vertex_above], &below = complex_.balls[vertex_below];
     const double high = values_[vertex_above], low = values_[vertex_below];

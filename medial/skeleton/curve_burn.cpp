@@ -10,14 +10,14 @@
 namespace orchard::detail {
 namespace {
 
-// A sheet is nearly a curve where its fire comes from no farther than this fraction of its radius, and an edge, which
-// counts for at most another fraction of the radius.
+// A sheet counts as a curve if its fire comes from no farther than this fraction of its radius plus an edge, where an
+// edge counts for at most the other fraction of the radius.
 constexpr double kNarrow = 0.1, kNarrowEdge = 0.25;
-constexpr double kLeastRatio = 0.2;  // of SkeletonOptions::ratio
-// Of the options' thresholds: below this share of them, ends of curves are noise of the triangulation.
+constexpr double kLeastRatio = 0.2;  // over SkeletonOptions::ratio
+// As a share of the thresholds in the options: ends of curves below it are artefacts of the triangulation.
 constexpr double kNoise = 0.5;
 
-// The length of the mean front up to which fires meet at a place, and from which one fire passes.
+// The length of the mean front below which fires meet at a place, and above which a single fire passes.
 constexpr double kFiresMeet = 0.3, kFirePasses = 0.7;
 
 class CurveBurner {
@@ -74,10 +74,10 @@ class CurveBurner {
     return gain >= (is_narrow(edge) ? kLeastRatio : ratio_) * removed_at_[edge];
   }
 
-  // How long the fire takes along an edge from its end: where fires meet head-on, as long as the edge; elsewhere, as
-  // far as the edge runs along with the mean front. Where fires meet at an angle, that front runs along the curve on
-  // which they meet, and edges of the triangulation wind around it. Where one fire passes, this is how long it takes
-  // itself.
+  // Returns how long the fire takes along an edge from its end. Where fires meet head-on, this is the length of the
+  // edge. Elsewhere, it is the extent of the edge along the mean front, because fires that meet at an angle have a mean
+  // front along the curve on which they meet, while edges of the triangulation zigzag around that curve. Where a single
+  // fire passes, it is the time that this fire takes.
   double duration(Index edge, Index end) const {
     const Index inner = other_end(edge, end);
     const Vector front = 0.5 * (burn_.vertex_fronts[end] + burn_.vertex_fronts[inner]);
@@ -97,7 +97,7 @@ class CurveBurner {
     return degrees;
   }
 
-  // Everything that has an end, in the order of the times.
+  // Burns all edges that have a free end, in the order of their times.
   void burn_all() {
     std::vector<Index> degree = degrees();
     std::vector<std::uint8_t> alive = burn_.edge_alive;
@@ -113,7 +113,7 @@ class CurveBurner {
     while (!queue.empty()) {
       const auto [time, edge] = queue.top();
       queue.pop();
-      if (!alive[edge]) continue;  // it burned from its other end
+      if (!alive[edge]) continue;  // it has burned from its other end
       const auto [a, b] = mesh_.edges[edge];
       const Index end = degree[a] != 1 ? b : degree[b] != 1 ? a : exposed[b] < exposed[a] ? b : a;
       const Index inner = other_end(edge, end);
@@ -146,7 +146,7 @@ class CurveBurner {
     }
   }
 
-  // Marks the edges from an end of a curve to where it branches, if none of them is significant.
+  // Marks the edges from an end of a curve to its next branching if none of them is significant.
   void mark_branch(Index end, std::vector<std::uint8_t>& marked) const {
     std::vector<Index> branch;
     Index edge = only(at_.edges_at[end], result_.edge_alive);
@@ -165,8 +165,8 @@ class CurveBurner {
     for (const Index e : branch) marked[e] = 1;
   }
 
-  // All at once, so that of equal branches none is taken for the end of the curve that they branch from. Returns
-  // whether there was one.
+  // Removes all marked branches at once, so that of equal branches none is mistaken for the end of the curve that they
+  // branch from. Returns whether there were any.
   bool remove_branches() {
     std::vector<std::uint8_t> marked(mesh_.edges.size(), 0);
     for (Index vertex = 0; vertex < mesh_.size(); ++vertex) {
@@ -181,7 +181,7 @@ class CurveBurner {
     return removed;
   }
 
-  // Along the way on which the fire came.
+  // Extends the curves that stay to their ends, along the path on which the fire came.
   void restore_ends() {
     std::vector<Index> tips;
     for (Index vertex = 0; vertex < mesh_.size(); ++vertex) {
@@ -200,10 +200,10 @@ class CurveBurner {
   const CellIncidence& at_;
   const SheetBurn& burn_;
   const double erosion_, ratio_, edge_length_;
-  std::vector<double> removed_at_;   // of each edge, by the fire of curves
-  std::vector<Index> last_removed_;  // of each vertex, the edge over which the fire came last
+  std::vector<double> removed_at_;   // of each edge: when the fire of the curves removed it
+  std::vector<Index> last_removed_;  // of each vertex: the last edge over which the fire came
   std::vector<Removal> order_;
-  std::vector<Index> degree_;  // of each vertex in the result
+  std::vector<Index> degree_;  // of each vertex: the number of its edges in the result
   PrunedCurves result_;
 };
 

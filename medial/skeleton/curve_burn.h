@@ -7,18 +7,18 @@
 
 namespace orchard::detail {
 
-// The curves that are left of a burned complex after insignificant ones were removed.
+// The curves that remain of a burned complex after insignificant ones have been removed.
 struct PrunedCurves {
   std::vector<std::uint8_t> edge_alive, vertex_alive;
-  // The time between the fire of the sheets and that of the curves at each edge; infinite for edges that no fire of
-  // curves reaches.
+  // Of each edge, the time between the fire of the sheets and that of the curves. It is infinite for edges that the
+  // fire of the curves does not reach.
   std::vector<double> significance;
 };
 
-// Burns the curves of a complex from their ends and removes those ends that are insignificant. `diagonal` is that of
-// the solid, to which options.erosion refers, and `edge_length` the longest edge of the mesh; both in mesh units. A
-// vertex disappears with its only edge, in an elementary collapse. Curves of the axis itself, and sheets so narrow that
-// they are nearly curves, need no width to be told from, so that they are kept up to their ends. O(n log n).
+// Burns the curves of a complex from their ends and removes insignificant ends. `diagonal` is that of the solid, to
+// which options.erosion refers, and `edge_length` is the longest edge of the mesh; both are in mesh units. A vertex
+// disappears together with its only edge, in an elementary collapse. For curves of the axis itself, and for sheets so
+// narrow that they are nearly curves, no width has to be subtracted, so they are kept up to their ends. O(n log n).
 PrunedCurves prune_curves(const MedialMesh& mesh, const CellIncidence& at, const SheetBurn& burn,
                           const SkeletonOptions& options, double diagonal, double edge_length);
 

@@ -100,7 +100,7 @@ class MedialAxis:
     @property
     def contact_angle(self) -> Floats:
         """The angle in radians between the two contacts of each ball that are seen farthest apart, (k,): what is near
-        pi lies between two walls, small angles are spurs. NaN where it is not known, as of an axis that was read."""
+        pi lies between two opposite sides, small angles are spurs. NaN where it is not known, as of an axis that was read."""
         return typing.cast(Floats, view(self._axis.vertex_angles()))
 
     def importance(self, *measures: str, progress: Progress = None) -> dict[str, Floats]:

@@ -11,7 +11,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kPointsPerCell = 6;
-// However thin the solid is in its box, no more points than this many times those wanted inside.
+// The maximum number of points in the box over the number wanted inside, for solids that are thin in their box.
 constexpr double kMostPerInside = 12;
 
 double squared(double x) { return x * x; }
@@ -99,7 +99,7 @@ bool VolumePoints::is_in(const Sphere& ball, Index i) const {
          ball.radius * ball.radius;
 }
 
-// Of the points in a ball that so many balls of the set hold.
+// Returns the worth of those points in a ball that exactly `holders` balls of the set contain.
 double VolumePoints::worth_in(const Sphere& ball, std::uint16_t holders) const {
   double worth = 0;
   for_each_near(box_around(ball), [&](Index i) {
@@ -113,7 +113,7 @@ double VolumePoints::gain_of_change(const Sphere& from, const Sphere& to) const 
   for_each_near(box_around(from).merged(box_around(to)), [&](Index i) {
     if (held_[i] > 1) return;
     const bool was = is_in(from, i);
-    if (held_[i] == 1 && !was) return;  // by another ball
+    if (held_[i] == 1 && !was) return;  // it is contained in another ball
     const bool is = is_in(to, i);
     if (was != is) gain += is ? worth_[i] : -worth_[i];
   });

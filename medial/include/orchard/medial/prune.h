@@ -33,10 +33,10 @@ struct PruneOptions {
 MedialAxis prune(const Surface& surface, const MedialAxis& axis, const PruneOptions& options,
                  const Progress& progress = {});
 
-// Returns the angle in radians at which the two points of a face or wall are seen from its middle, but at most the
-// angle between the surface normals at the points and at most the largest angle of the face's vertices. The limits
+// Returns the angle in radians at which the two points of a face or topology face are seen from its middle, but at most
+// the angle between the surface normals at the points and at most the largest angle of the face's vertices. The limits
 // matter for faces close to the surface, which slivers of the point set cause: without them, such faces would seem to
-// lie between two opposite walls. If the axis has no `turns` and no `angles`, there are no limits.
+// lie between two opposite sides of the solid. If the axis has no `turns` and no `angles`, there are no limits.
 double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points);
 
 // Returns axis.angles. For an axis without them, returns for each vertex the widest angle between two forming points,
