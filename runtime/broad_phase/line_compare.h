@@ -64,7 +64,7 @@ struct HalvesCompare {
   }
   ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
     const Words first = (query + at(line, 0)) & kGuards, second = (query + at(line, 32)) & kGuards;
-#if defined(__x86_64__) && !defined(__clang__)
+#if (defined(ORCHARD_MACHINES) || defined(__AVX2__)) && !defined(__clang__)
     using Doubles __attribute__((vector_size(32))) = double;
     const auto signs = [](const Words& w) ORCHARD_INLINE_LAMBDA {
       return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256(reinterpret_cast<Doubles>(-w)));

@@ -40,27 +40,10 @@ double slack(const PreparedTree& a, const PreparedTree& b, const Pose& pose_a, c
 
 }  // namespace
 
-struct Coherence {
-  Workspace& workspace;
-  TreePair& pair;
-  const Pose &a, &b;
-  TreePair::Memory& memory = pair.memory_;
-
-  bool placed = false;                // the workspace's NarrowPhase is bound and placed for triangles
-  bool rigid = false;                 // both poses are, once that has been looked at
-  std::optional<Pose> relative = {};  // of b in a's frame, likewise
-
-  bool find_rigid() noexcept {  // both, side by side
-    if (rigid) return true;
-    double places = 0;
-    for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a.translation[i]) + std::fabs(b.translation[i]);
-    return rigid = std::isfinite(places) && detail::PoseLanes(a, b).rotate();
-  }
-
-  const Pose& find_relative() noexcept {
-    if (!relative) relative.emplace(compose(inverse(a), b));
-    return *relative;
-  }
+class Coherence {
+ public:
+  Coherence(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept
+      : workspace_(workspace), pair_(pair), a_(a), b_(b) {}
 
   static bool remembers(const TreePair& of) noexcept {
     return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
@@ -68,22 +51,75 @@ struct Coherence {
 
   // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
   bool recall(Verdict& verdict) noexcept {
-    if (!remembers(pair)) return false;
+    if (!remembers(pair_)) return false;
     if (!find_rigid()) {
-      pair.forget();
+      pair_.forget();
       return false;
     }
-    if (memory.clearance > 0) {
-      const double moved = displacement(pair.b(), memory.relative, find_relative()) + slack(pair.a(), pair.b(), a, b);
-      const double left = memory.clearance * kMargin - moved;
+    if (memory_.clearance > 0) {
+      const double moved =
+          displacement(pair_.b(), memory_.relative, find_relative()) + slack(pair_.a(), pair_.b(), a_, b_);
+      const double left = memory_.clearance * kMargin - moved;
       if (left > 0) {
-        verdict = apart(left * a.scale);
+        verdict = apart(left * a_.scale);
         return true;
       }
     }
-    if (memory.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
-    ::new (&verdict) Verdict(query_of(workspace.narrow).verdict());
+    if (memory_.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
+    ::new (&verdict) Verdict(query_of(workspace_.narrow).verdict());
     return true;
+  }
+
+  // The roots come first, unless they have not decided of late.
+  Verdict search(const Budget& budget) noexcept {
+    if (memory_.witness_count > 0) return search_after_yes(budget);
+    if (pair_.front_ != nullptr) return search_front(budget);
+    const bool tried = memory_.close && memory_.wait > 0;
+    if (tried && place_narrow()) {
+      --memory_.wait;
+      query_of(workspace_.narrow).search(budget);
+      return remembered();
+    }
+    collide(budget);
+    memory_.close = query_of(workspace_.narrow).exact();
+    memory_.in_vain = static_cast<std::uint8_t>(memory_.close ? std::min<int>(memory_.in_vain + 1, kInVain) : 0);
+    memory_.wait = memory_.in_vain == kInVain ? kSearchesBeforeRoots : 0;
+    return remembered();
+  }
+
+  // The query's verdict.
+  Verdict remembered() noexcept {
+    const Answer answer = query_of(workspace_.narrow).answer();
+    if (answer == Answer::yes) {
+      const std::size_t kept = std::min<std::size_t>(memory_.witness_count, TreePair::kWitnesses - 1);
+      std::copy_backward(memory_.witnesses.begin(), memory_.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
+                         memory_.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+      memory_.witness_count = static_cast<std::uint8_t>(kept + 1);
+      const PairQuery::Place& place = query_of(workspace_.narrow).meeting();
+      memory_.witnesses[0] = query_of(workspace_.narrow).exchanged()
+                                 ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
+                                 : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
+    } else {
+      memory_.witness_count = 0;
+    }
+    const bool have_triangles = !pair_.a().tree.obb_nodes.empty() && !pair_.b().tree.obb_nodes.empty();
+    memory_.clearance =
+        answer == Answer::no && have_triangles ? query_of(workspace_.narrow).lower_bound() / a_.scale : 0;
+    if (memory_.clearance > 0) memory_.relative = find_relative();
+    return query_of(workspace_.narrow).verdict();
+  }
+
+ private:
+  bool find_rigid() noexcept {  // both, side by side
+    if (rigid_) return true;
+    double places = 0;
+    for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a_.translation[i]) + std::fabs(b_.translation[i]);
+    return rigid_ = std::isfinite(places) && detail::PoseLanes(a_, b_).rotate();
+  }
+
+  const Pose& find_relative() noexcept {
+    if (!relative_) relative_.emplace(compose(inverse(a_), b_));
+    return *relative_;
   }
 
   static Verdict apart(double lower) noexcept {
@@ -94,109 +130,92 @@ struct Coherence {
     return verdict;
   }
 
-  // The roots come first, unless they have not decided of late.
-  Verdict search(const Budget& budget) noexcept {
-    if (memory.witness_count > 0) return search_after_yes(budget);
-    if (pair.front_ != nullptr) return search_front(budget);
-    const bool tried = memory.close && memory.wait > 0;
-    if (tried && place_narrow()) {
-      --memory.wait;
-      query_of(workspace.narrow).search(budget);
-      return remembered();
-    }
-    collide(budget);
-    memory.close = query_of(workspace.narrow).exact();
-    memory.in_vain = static_cast<std::uint8_t>(memory.close ? std::min<int>(memory.in_vain + 1, kInVain) : 0);
-    memory.wait = memory.in_vain == kInVain ? kSearchesBeforeRoots : 0;
-    return remembered();
-  }
-
   void collide(const Budget& budget) noexcept {
-    PairQuery& narrow = query_of(workspace.narrow);
-    narrow.bind_where(pair.a(), pair.b());
-    answer_exactly(narrow, a, b, budget);
+    PairQuery& narrow = query_of(workspace_.narrow);
+    narrow.bind_where(pair_.a(), pair_.b());
+    answer_exactly(narrow, a_, b_, budget);
   }
 
   // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
   Verdict search_after_yes(const Budget& budget) noexcept {
-    PairQuery& narrow = query_of(workspace.narrow);
+    PairQuery& narrow = query_of(workspace_.narrow);
     if (!place_narrow()) {
       collide(budget);
       return remembered();
     }
     Budget rest = budget;
     if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
-      if (pair.front_ != nullptr) pair.front_->clear();
+      if (pair_.front_ != nullptr) pair_.front_->clear();
       narrow.search(rest);
     }
-    memory.close = true;
+    memory_.close = true;
     return remembered();
   }
 
   bool place_for_triangles() noexcept {
-    if (placed) return true;
-    query_of(workspace.narrow).bind_where(pair.a(), pair.b());
-    placed = query_of(workspace.narrow).has_last_level() && find_rigid() &&
-             query_of(workspace.narrow).place_for_triangles(a, b);
-    return placed;
+    if (placed_) return true;
+    query_of(workspace_.narrow).bind_where(pair_.a(), pair_.b());
+    placed_ = query_of(workspace_.narrow).has_last_level() && find_rigid() &&
+              query_of(workspace_.narrow).place_for_triangles(a_, b_);
+    return placed_;
   }
 
   bool place_narrow() noexcept {
     if (!place_for_triangles()) return false;
-    query_of(workspace.narrow).place();
+    query_of(workspace_.narrow).place();
     return true;
   }
 
   // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
-    PairQuery& narrow = query_of(workspace.narrow);
-    const bool tried = memory.close && memory.wait > 0;
+    PairQuery& narrow = query_of(workspace_.narrow);
+    const bool tried = memory_.close && memory_.wait > 0;
     if (tried ? !place_narrow() : !has_last_level()) {
       collide(budget);
       return remembered();
     }
     if (!tried && !ask_roots()) return remembered();
-    FrontWalk walk(*pair.front_, narrow);
+    FrontWalk walk(*pair_.front_, narrow);
     if (!walk.resume()) {
       if (tried && !ask_roots()) return remembered();
       walk.begin();
     }
-    --memory.wait;
+    --memory_.wait;
     walk.run(budget);
     return remembered();
   }
 
   bool has_last_level() noexcept {
-    query_of(workspace.narrow).bind_where(pair.a(), pair.b());
-    return query_of(workspace.narrow).has_last_level();
+    query_of(workspace_.narrow).bind_where(pair_.a(), pair_.b());
+    return query_of(workspace_.narrow).has_last_level();
   }
 
   // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
   bool ask_roots() noexcept {
-    PairQuery& narrow = query_of(workspace.narrow);
-    narrow.start(a, b);
-    memory.close = !narrow.finished();
-    memory.wait = kSearchesBeforeRoots;
-    if (memory.close) narrow.place();
-    return memory.close;
+    PairQuery& narrow = query_of(workspace_.narrow);
+    narrow.start(a_, b_);
+    memory_.close = !narrow.finished();
+    memory_.wait = kSearchesBeforeRoots;
+    if (memory_.close) narrow.place();
+    return memory_.close;
   }
 
   // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
   bool witness_meets(std::size_t i) noexcept {
-    return query_of(workspace.narrow).test_two(place_of(memory.witnesses[i]));
+    return query_of(workspace_.narrow).test_two(place_of(memory_.witnesses[i]));
   }
 
   // Those that have not met for longer: bodies that go to and fro come back to them.
   bool older_meet() noexcept {
-    for (std::size_t i = 1; i < memory.witness_count; ++i) {
+    for (std::size_t i = 1; i < memory_.witness_count; ++i) {
       if (witness_meets(i)) return true;
     }
     return false;
   }
 
   PairQuery::Place place_of(const TreePair::Witness& w) const noexcept {
-    if (query_of(workspace.narrow).exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
+    if (query_of(workspace_.narrow).exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
     return {w.a, w.b, w.lane_a, w.lane_b};
   }
 
@@ -204,62 +223,50 @@ struct Coherence {
   bool leaves_meet(std::uint64_t& left) noexcept {
     if (left == 0) return false;
     constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-    query_of(workspace.narrow).add_work(tests);
+    query_of(workspace_.narrow).add_work(tests);
     left -= std::min(left, tests);
-    const PairQuery::Place place = place_of(memory.witnesses[0]);
-    return query_of(workspace.narrow).test_leaves(place.first, place.second);
+    const PairQuery::Place place = place_of(memory_.witnesses[0]);
+    return query_of(workspace_.narrow).test_leaves(place.first, place.second);
   }
 
   // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
   bool near_meet(Budget& left) noexcept {
     if (left.time != Budget{}.time) return false;
-    const PairQuery::Place place = place_of(memory.witnesses[0]);
-    const std::uint64_t before = query_of(workspace.narrow).work();
-    const bool meet = query_of(workspace.narrow).search_near(place.first, place.second, left);
-    left.work -= std::min(left.work, query_of(workspace.narrow).work() - before);
+    const PairQuery::Place place = place_of(memory_.witnesses[0]);
+    const std::uint64_t before = query_of(workspace_.narrow).work();
+    const bool meet = query_of(workspace_.narrow).search_near(place.first, place.second, left);
+    left.work -= std::min(left.work, query_of(workspace_.narrow).work() - before);
     return meet;
   }
 
-  // The query's verdict.
-  Verdict remembered() noexcept {
-    const Answer answer = query_of(workspace.narrow).answer();
-    if (answer == Answer::yes) {
-      const std::size_t kept = std::min<std::size_t>(memory.witness_count, TreePair::kWitnesses - 1);
-      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
-                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
-      memory.witness_count = static_cast<std::uint8_t>(kept + 1);
-      const PairQuery::Place& place = query_of(workspace.narrow).meeting();
-      memory.witnesses[0] = query_of(workspace.narrow).exchanged()
-                                ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
-                                : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
-    } else {
-      memory.witness_count = 0;
-    }
-    const bool have_triangles = !pair.a().tree.obb_nodes.empty() && !pair.b().tree.obb_nodes.empty();
-    memory.clearance = answer == Answer::no && have_triangles ? query_of(workspace.narrow).lower_bound() / a.scale : 0;
-    if (memory.clearance > 0) memory.relative = find_relative();
-    return query_of(workspace.narrow).verdict();
-  }
+  Workspace& workspace_;
+  TreePair& pair_;
+  const Pose &a_, &b_;
+  TreePair::Memory& memory_ = pair_.memory_;
+
+  bool placed_ = false;                // the workspace's NarrowPhase is bound and placed for triangles
+  bool rigid_ = false;                 // both poses are, once that has been looked at
+  std::optional<Pose> relative_ = {};  // of b in a's frame, likewise
 };
 
 bool CoherentPair::recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
                           Verdict& verdict) noexcept {
-  return Coherence{workspace, pair, a, b}.recall(verdict);
+  return Coherence(workspace, pair, a, b).recall(verdict);
 }
 
 bool CoherentPair::remembers(const TreePair& pair) noexcept { return Coherence::remembers(pair); }
 
 Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
                              const Budget& budget) noexcept {
-  return Coherence{workspace, pair, a, b}.search(budget);
+  return Coherence(workspace, pair, a, b).search(budget);
 }
 
 void CoherentPair::remember(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
-  Coherence{workspace, pair, a, b}.remembered();
+  Coherence(workspace, pair, a, b).remembered();
 }
 
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
-  Coherence coherence{workspace, pair, a, b};
+  Coherence coherence(workspace, pair, a, b);
   Verdict known;
   return coherence.recall(known) ? known : coherence.search({});
 }

@@ -44,8 +44,9 @@ std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexc
         if (!detail::triangles_intersect(a, b, &witness)) return false;
         ++found;
         if (found > Workspace::Scratch::kCuts) return false;
-        const detail::Segment3 common = detail::common_segment(a, b, witness);
-        scratch.cuts[found - 1] = {a, b, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
+        const std::array<detail::ShiftPlanes, 2> faces = detail::face_planes(a, b);
+        const detail::Segment3 common = detail::common_segment(a, b, faces, witness);
+        scratch.cuts[found - 1] = {a, b, faces, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
         return false;
       });
   scratch.cut_count = std::min(found, Workspace::Scratch::kCuts);
@@ -59,11 +60,8 @@ Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
   Vec3 sum{};
   double weights = 0;
   for (const Cut& cut : cuts) {
-    const auto normal = [](const detail::TrianglePoints& t) {
-      return unit(cross(minus(t[1], t[0]), minus(t[2], t[0])));
-    };
     const double weight = length(minus(cut.q, cut.p)) + least;
-    sum = along(along(sum, normal(cut.first), weight), normal(cut.second), -weight);
+    sum = sum + weight * (cut.faces[0].normal - cut.faces[1].normal);
     weights += weight;
   }
   return length(sum) > kLeastFacing * weights ? unit(sum) : Vec3{};
@@ -227,6 +225,12 @@ void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PoseP
   }
 }
 
+// Of the walk: what the search for the shortest way out may take.
+std::uint64_t search_work(double effort, double found) noexcept {
+  constexpr double kLeast = 400, kMost = 1e18;  // kLeast: bodies of few triangles
+  return static_cast<std::uint64_t>(std::clamp(effort * found, kLeast, kMost));
+}
+
 // Without triangles, or without an answer: what the spheres say.
 Manifold by_spheres(PairQuery& narrow) noexcept {
   while (!narrow.finished()) narrow.refine();
@@ -262,7 +266,9 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
     return by_spheres(narrow);
   }
   const PlacedPair both{narrow.first(), narrow.second(), narrow.relative(), narrow.placement()};
+  const std::uint64_t before = scratch->walk.work();
   find_cuts(both, *scratch);
+  const double found = static_cast<double>(scratch->walk.work() - before);
   const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
   const Pose& world = narrow.first_pose();
   const bool exchanged = narrow.exchanged();
@@ -272,8 +278,13 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
     if (exchanged) solids[i].is_first = !solids[i].is_first;
   }
   const double size = both.first.extent + both.second.extent * both.relative.scale;
-  const MinimumTranslationSearch search{
-      both, scratch->walk, cuts, std::span(solids.data(), boxes.size()), size, least_nudge(narrow, size)};
+  const MinimumTranslationSearch search{both,
+                                        scratch->walk,
+                                        cuts,
+                                        std::span(solids.data(), boxes.size()),
+                                        size,
+                                        least_nudge(narrow, size),
+                                        scratch->walk.work() + search_work(options.effort, found)};
   if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
     return result;

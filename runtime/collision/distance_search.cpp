@@ -74,9 +74,9 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
   lower_ = pair_.lower_bound();
   work_ = 0;
   stack_size_ = 0;
-  nearest_ = min_lower_ = std::numeric_limits<double>::infinity();
-  direction_ = {};
-  triangle_first_ = triangle_second_ = kNoTriangle;
+  nearest_.distance = min_lower_ = std::numeric_limits<double>::infinity();
+  nearest_.direction = {};
+  nearest_.triangle_first = nearest_.triangle_second = kNoTriangle;
   upper_ = std::numeric_limits<double>::infinity();
   limit_ = std::numeric_limits<double>::infinity();
   enough_ = 0;
@@ -100,8 +100,8 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
 // What is farther need not be looked at.
 void DistanceSearch::find_cut() noexcept {
   const double absolute = tolerance_.absolute > 0 ? tolerance_.absolute / pair_.first_pose_.scale : 0;
-  cut_ = std::min(limit_, (nearest_ - absolute) / (1 + tolerance_.relative));
-  below_nearest_ = nearest_ <= limit_;
+  cut_ = std::min(limit_, (nearest_.distance - absolute) / (1 + tolerance_.relative));
+  below_nearest_ = nearest_.distance <= limit_;
 }
 
 bool DistanceSearch::may_be_nearer(double lower) const noexcept {
@@ -112,7 +112,7 @@ void DistanceSearch::refine(const Budget& budget) noexcept {
   if (finished_ || budget.work == 0) return;
   PairBudget tracker(budget);
   const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
-  while (stack_size_ > 0 && nearest_ > enough_ && !tracker.exhausted()) {
+  while (stack_size_ > 0 && nearest_.distance > enough_ && !tracker.exhausted()) {
     const ObbNodePair pair = stack_[--stack_size_];
     if (!may_be_nearer(double{pair.lower})) {
       min_lower_ = std::min(min_lower_, double{pair.lower});
@@ -130,7 +130,7 @@ void DistanceSearch::refine(const Budget& budget) noexcept {
     expand(pair, open_second ? b : a, open_second);
     tracker.spend(kBlockWidth);
   }
-  if (nearest_ <= enough_) leave_the_rest();
+  if (nearest_.distance <= enough_) leave_the_rest();
   finished_ = stack_size_ == 0;
   work_ += tracker.spent();
   report();
@@ -154,7 +154,7 @@ bool DistanceSearch::surely_near(const ObbNodePair& pair) noexcept {
   const double farthest =
       std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{pair_.placement_.margin};
   if (farthest > enough_) return false;
-  nearest_ = std::min(nearest_, farthest);
+  nearest_.distance = std::min(nearest_.distance, farthest);
   min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
   return true;
 }
@@ -224,7 +224,7 @@ void DistanceSearch::compare_leaves(const ObbNodePair& pair) noexcept {
   if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
   detail::TriangleGaps gaps;
   const float reach = float_above(std::min(cut_, 1e30));
-  detail::triangle_gaps(lanes, rows, pair_.placement_, direction_, reach, gaps);
+  detail::triangle_gaps(lanes, rows, pair_.placement_, nearest_.direction, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
   float left_out = gaps.beyond;
   std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;  // triangles to be looked at
@@ -241,7 +241,7 @@ void DistanceSearch::compare_leaves(const ObbNodePair& pair) noexcept {
                lane = static_cast<std::uint32_t>(*nearest) % kBlockWidth;
     const float lower = gaps.lower[row][lane];
     // The rest of the pair is no nearer than this one and than its boxes.
-    if (nearest_ <= enough_ || !may_be_nearer(double{std::max(lower, least)})) {
+    if (nearest_.distance <= enough_ || !may_be_nearer(double{std::max(lower, least)})) {
       left_out = std::min(left_out, lower);
       break;
     }
@@ -269,7 +269,7 @@ void DistanceSearch::find_within(const ObbNodePair& pair, const TriangleBlock& l
     const auto& [self, lane_block, row_block] = *static_cast<Leaves*>(of);
     for (; left != 0; left &= left - 1) {
       self.compare_triangles(lane_block, static_cast<std::uint32_t>(std::countr_zero(left)), row_block, row, true);
-      if (self.nearest_ <= self.enough_) return true;
+      if (self.nearest_.distance <= self.enough_) return true;
     }
     return false;
   };
@@ -287,35 +287,35 @@ void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t
   const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
   const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));
   min_lower_ = std::min(min_lower_, std::max(0.0, nearest.distance * (1 - kDistanceRounding) - error));
-  if (nearest.distance >= nearest_) return;
-  nearest_ = nearest.distance;
+  if (nearest.distance >= nearest_.distance) return;
+  nearest_.distance = nearest.distance;
   find_cut();
-  on_first_ = nearest.on_a, on_second_ = nearest.on_b;
-  triangle_first_ = lanes.triangle[lane], triangle_second_ = rows.triangle[row];
-  if (nearest_ == 0) return;
+  nearest_.on_first = nearest.on_a, nearest_.on_second = nearest.on_b;
+  nearest_.triangle_first = lanes.triangle[lane], nearest_.triangle_second = rows.triangle[row];
+  if (nearest_.distance == 0) return;
   for (std::size_t i = 0; i < 3; ++i) {
-    direction_[i] = static_cast<float>((on_second_[i] - on_first_[i]) / nearest_);
+    nearest_.direction[i] = static_cast<float>((nearest_.on_second[i] - nearest_.on_first[i]) / nearest_.distance);
   }
 }
 
 // Bounds never get worse, whatever rounding does.
 void DistanceSearch::report() noexcept {
-  double least = std::min(min_lower_, nearest_);
+  double least = std::min(min_lower_, nearest_.distance);
   for (std::size_t i = 0; i < stack_size_; ++i) least = std::min(least, double{stack_[i].lower});
   const double scale = pair_.first_pose_.scale, error = pair_.exact_error_;
   if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kDistanceRounding) - error);
-  upper_ = std::min(upper_, nearest_ * scale * (1 + kDistanceRounding) + error);
+  upper_ = std::min(upper_, nearest_.distance * scale * (1 + kDistanceRounding) + error);
   lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose ball slabs do not hold their triangles
 }
 
 DistanceSearch::Points DistanceSearch::points() const noexcept {
   Points result;
-  if (triangle_first_ == kNoTriangle) return result;
+  if (nearest_.triangle_first == kNoTriangle) return result;
   const auto world = [this](std::array<double, 3> point) {
     for (std::size_t i = 0; i < 3; ++i) point[i] += pair_.first_->tree.origin[i];
     return transform(pair_.first_pose_, point);
   };
-  result = {world(on_first_), world(on_second_), triangle_first_, triangle_second_};
+  result = {world(nearest_.on_first), world(nearest_.on_second), nearest_.triangle_first, nearest_.triangle_second};
   if (pair_.exchanged_) {
     std::swap(result.on_a, result.on_b);
     std::swap(result.triangle_a, result.triangle_b);

@@ -57,15 +57,18 @@ class DistanceSearch {
   Tolerance tolerance_;
   double limit_ = std::numeric_limits<double>::infinity();  // what is farther is left out
   float reach_ = std::numeric_limits<float>::infinity();    // it, rounded up
-  double cut_ = std::numeric_limits<double>::infinity();    // from nearest_ and limit_, with the tolerance
+  double cut_ = std::numeric_limits<double>::infinity();    // from the nearest and limit_, with the tolerance
   bool below_nearest_ = false;                              // what is as far is not looked at, either
   double enough_ = 0;                                       // so near: nothing nearer is looked for
   // In the first tree's units, of the stored triangles.
-  double nearest_ = std::numeric_limits<double>::infinity();    // the least distance found
+  struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();  // the least found
+    Vec3 on_first{}, on_second{};
+    std::array<float, 3> direction{};  // unit, from the point on the first one to that on the second one
+    std::uint32_t triangle_first = kNoTriangle, triangle_second = kNoTriangle;
+  };
+  Nearest nearest_;
   double min_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
-  Vec3 on_first_{}, on_second_{};
-  std::array<float, 3> direction_{};  // unit, from the nearest point of the first one to that of the second one
-  std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
   double lower_ = 0, upper_ = std::numeric_limits<double>::infinity();
   std::uint64_t work_ = 0;
   bool finished_ = true;

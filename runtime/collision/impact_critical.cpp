@@ -49,7 +49,7 @@ void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Crit
   const std::uint32_t own_lane = top.a % kBlockWidth;
   const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[own_lane] < top.second.radius);
   const std::uint32_t block = open_second ? b : a;
-  const auto margin = static_cast<float>((double{placement.margin} + margin_) * (1 + 1e-6));
+  const auto margin = static_cast<float>((double{placement.margin} + limits_.margin) * (1 + 1e-6));
   ObbNodeTimes times;
   if (open_second) {
     obb_node_times(obb_node_at(own, own_lane), second().obb_nodes[block], &placement, closing_, margin, times);
@@ -82,10 +82,10 @@ void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& criti
                          (second_turn_.spin + second_turn_.turning) * second_reach;
   // Before that no gap closes, whatever its direction.
   const auto earliest = [&](float lower) {
-    const double gap = double{lower} - margin_;
+    const double gap = double{lower} - limits_.margin;
     return gap > 0 ? gap / (fastest * (1 + kImpactRounding)) : 0;
   };
-  const double reach_in_time = fastest * (1 + kImpactRounding) * critical.cut + margin_;
+  const double reach_in_time = fastest * (1 + kImpactRounding) * critical.cut + limits_.margin;
   TriangleGaps gaps;
   triangle_gaps(lanes, rows, narrow_.placement(), direction_,
                 static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
@@ -119,7 +119,7 @@ void ImpactSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t l
     const Vec3 u = along({0, 0, 0}, way, 1 / size);
     const auto [low, high] = std::pair(std::min({dot(u, b[0]), dot(u, b[1]), dot(u, b[2])}),
                                        std::max({dot(u, a[0]), dot(u, a[1]), dot(u, a[2])}));
-    gap = low - high - margin_ - error_;
+    gap = low - high - limits_.margin - limits_.error;
     rate = speed_ - dot(velocity_, u) + first_turn_.rate(u, speeds.first_reach) +
            second_turn_.rate(u, speeds.second_reach) + kImpactRounding * speeds.fastest;
   }

@@ -93,7 +93,10 @@ class ImpactSearch {
   double speed_ = 0;
   Turn first_turn_, second_turn_;
   Closing closing_;
-  double margin_ = 0, tolerance_ = 0, finest_ = 0, error_ = 0;
+  struct Limits {  // lengths
+    double margin = 0, tolerance = 0, finest = 0, error = 0;
+  };
+  Limits limits_;
   int near_ = 0;     // steps within the tolerance
   double soon_ = 0;  // a contact may be expected by then, from the last one
   std::array<float, 3> direction_{};

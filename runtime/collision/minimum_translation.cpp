@@ -6,21 +6,25 @@
 #include <cstdlib>
 #include <limits>
 
-#include "collision/least_reaching.h"
 #include "collision/support_map.h"
 #include "collision/triangle_cut.h"
 #include "math/vector_functions.h"
+#include "orchard/runtime/shape_query.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
 using Cut = Workspace::Scratch::Cut;
 
-constexpr int kMaxAdvances = 64;       // along one direction
-constexpr double kClear = 0.25;        // of a nudge: more than what rounding does to poses
-constexpr double kGain = 1e-6;         // less is no gain
-constexpr double kSame = 1 - 1e-9;     // cosine of directions that count as one
-constexpr std::size_t kObstacles = 8;  // kept at most
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMaxAdvances = 512;  // along one direction
+constexpr int kMet = 3;          // triangles that are looked at in one place, since the last of many takes long to find
+constexpr double kClear = 0.25;  // of a nudge: more than what rounding does to poses
+constexpr double kRounded = 64;  // nudges: a way that is no longer is rounding, and so would be a shorter one
+constexpr double kGain = 1e-6;   // less is no gain
+constexpr double kSame = 1 - 1e-9;            // cosine of directions that count as one
+constexpr std::uint64_t kTestsPerShifts = 4;  // of the walk, that take as long as MeetingShifts
+constexpr double kWayRounding = 1e-12;        // of the bodies' size: the rounding of shifts
 
 // A point of a piece in the frame of a box, and how it moves there for each unit of the way of the second body.
 struct MovingPoint {
@@ -68,254 +72,255 @@ double leaves_boxes(const MinimumTranslationSearch& search, const Vec3& u, doubl
   return last;
 }
 
-// The triangles that meet after a part of a way, as far as they can move on together. Ends at the first pair that can
-// do so to `limit` of the way.
+// How far a shift can grow between the planes of the two triangles: no less than while these meet.
+double exit_of(const std::array<ShiftPlanes, 2>& faces, const Vec3& u, double slack) noexcept {
+  return std::min(faces[0].exit(u, slack), faces[1].exit(u, slack));
+}
+
+// The triangles that meet after a part of a way, as far as some of them can move on together. Ends at the first pair
+// that can do so to `limit` of the way.
 struct Meeting {
   bool any = false;
   bool clear = true;  // those that do not meet are farther apart than rounding
-  double farthest = -std::numeric_limits<double>::infinity();
+  double farthest = -kInfinity;
   Vec3 normal;
 };
 
-Meeting meeting_at(const MinimumTranslationSearch& search, const Way& way, double at, double limit) noexcept {
-  const PlacedPair ahead = search.pair.moved(along({0, 0, 0}, way.u, at));
+Meeting meeting_at(const MinimumTranslationSearch& search, const Vec3& u, double at, double limit) noexcept {
+  const PlacedPair ahead = search.pair.moved(at * u);
   Meeting meeting;
-  meeting.normal = way.u;
+  meeting.normal = u;
+  int met = 0;
   walk_candidates(ahead, search.room,
                   [&](const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row) {
                     const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, ahead.relative);
-                    if (!triangles_intersect(a, b, nullptr)) {
-                      if (!meeting.any && meeting.clear) meeting.clear = are_parted_by(a, b, kClear * search.nudge);
-                      return false;
-                    }
+                    if (!meeting.any && are_parted_by(a, b, kClear * search.nudge)) return false;
+                    if (!triangles_intersect(a, b, nullptr)) return meeting.clear = false;
                     meeting.any = true;
-                    const Exit exit = exit_along(a, b, way);
-                    if (exit.t > meeting.farthest) meeting.farthest = exit.t, meeting.normal = exit.normal;
-                    return at + exit.t >= limit;
+                    const std::array<ShiftPlanes, 2> faces = face_planes(a, b);
+                    if (exit_of(faces, u, kWayRounding * search.size) <= meeting.farthest) return false;
+                    search.room.spend(kTestsPerShifts);
+                    const MeetingShifts::Exit exit = MeetingShifts(a, b).exit(u, meeting.farthest);
+                    if (exit.way > meeting.farthest) meeting.farthest = exit.way, meeting.normal = exit.normal;
+                    return at + exit.way >= limit || ++met == kMet;
                   });
   return meeting;
 }
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Along one direction to the end, or until it is longer than `limit`. What is in the way beyond `give_up` at some place
-// ends it there, at the first pair of triangles that is.
-MinimumTranslation follow(const MinimumTranslationSearch& search, const Vec3& direction, double limit,
-                          double give_up = kInfinity) noexcept {
-  const Way way(direction);
-  MinimumTranslation out{way.u, 0, way.u, true};
-  for (const Cut& cut : search.cuts) {
-    const Exit exit = exit_along(cut.first, cut.second, way);
-    if (exit.t > out.way) out.way = exit.t, out.normal = exit.normal;
-  }
-  double nudge = search.nudge;
-  for (int i = 0; i < kMaxAdvances; ++i) {
-    out.ended = false;
-    if (out.way >= limit) return out;
-    const double at = out.way + nudge;
-    const Meeting meeting = meeting_at(search, way, at, give_up);
-    const double further = meeting.any ? at + meeting.farthest : leaves_boxes(search, way.u, at);
-    if (!meeting.any && further < 0) {  // the way includes the nudge, since only there it is known to have ended
-      out.way = at, out.ended = true, out.clear = meeting.clear;
-      return out;
-    }
-    if (further > at) {
-      out.way = further, nudge = search.nudge;
-      if (meeting.any) out.normal = meeting.normal;
-    } else {
-      nudge *= 4;  // they touch but for rounding
-    }
-  }
-  return out;
-}
-
-// To where the bodies' extents along a direction part: always an end, seldom the first one.
-MinimumTranslation way_past(const MinimumTranslationSearch& search, const Vec3& direction) noexcept {
-  const Way way(direction);
-  const Pose &relative = search.pair.relative, turn = {.rotation = relative.rotation};
-  const Vec3 back = rotate(inverse(turn), along({0, 0, 0}, way.u, -1));
-  const double reach = reach_along(search.pair.first.tree.supports, way.u) +
-                       reach_along(search.pair.second.tree.supports, back) * relative.scale;
-  const double past = reach - dot(way.u, relative.translation);
-  return {way.u, std::max(0.0, past) + kReaches * search.size + search.nudge, way.u, false};
-}
-
-// From one direction to a local minimum.
-class Descent {
+// What the triangles that meet now tell about directions, without a look at any others.
+class Obstacles {
  public:
-  explicit Descent(const MinimumTranslationSearch& search) noexcept : search_(search) {}
+  explicit Obstacles(const MinimumTranslationSearch& search) noexcept
+      : room_(search.room), cuts_(search.cuts), slack_(kWayRounding * search.size) {}
 
-  // False if it was tried before, nearly.
-  bool try_direction(const Vec3& direction) noexcept {
-    const double length = std::sqrt(dot(direction, direction));
-    if (!(length > 0)) return false;
-    const Vec3 u = along({0, 0, 0}, direction, 1 / length);
+  // How far all of them are left behind, and what the last one is left at. Ends once that is `enough`.
+  MeetingShifts::Exit exit(const Vec3& u, double enough) noexcept {
+    MeetingShifts::Exit last{0, u};
+    if (last_left_ < cuts_.size()) last = shifts_of(last_left_).exit(u, 0);  // likely to be among the last again
+    for (std::size_t i = 0; i < cuts_.size() && last.way < enough; ++i) {
+      if (exit_of(cuts_[i].faces, u, slack_) <= last.way) continue;
+      const MeetingShifts::Exit exit = shifts_of(i).exit(u, last.way);
+      if (exit.way > last.way) last = exit, last_left_ = i;
+    }
+    return last;
+  }
+
+  // Whether one of them is in the way of all directions, and often is among the first.
+  bool block_all(double limit) noexcept {
+    constexpr std::size_t kFirst = 8;
+    for (std::size_t i = 0; i < std::min(kFirst, kept()); ++i) {
+      if (shifts_of(i).shortest() >= limit) return true;
+    }
+    return false;
+  }
+
+  // The one that was in the way of the direction before is likely to be so again.
+  bool block(const Vec3& u, double limit) noexcept {
+    if (!std::isfinite(limit)) return false;
+    if (last_blocking_ < cuts_.size() && blocks(last_blocking_, u, limit)) return true;
+    for (std::size_t i = 0; i < cuts_.size(); ++i) {
+      if (blocks(i, u, limit)) return last_blocking_ = i, true;
+    }
+    return false;
+  }
+
+  std::size_t kept() const noexcept { return std::min(kKept, cuts_.size()); }
+  const MeetingShifts& shifts_of(std::size_t i) noexcept {
+    if (i < kKept && known_[i]) return shifts_[i];
+    room_.spend(kTestsPerShifts);
+    if (i < kKept) known_[i] = true;
+    return (i < kKept ? shifts_[i] : other_) = MeetingShifts(cuts_[i].first, cuts_[i].second);
+  }
+
+ private:
+  static constexpr std::size_t kKept = 32;
+
+  bool blocks(std::size_t i, const Vec3& u, double limit) noexcept {
+    return exit_of(cuts_[i].faces, u, slack_) >= limit && shifts_of(i).contain(u, limit);
+  }
+
+  WalkStack& room_;
+  std::span<const Cut> cuts_;
+  double slack_;
+  std::size_t last_left_ = 0, last_blocking_ = 0;
+  std::array<MeetingShifts, kKept> shifts_;
+  std::array<bool, kKept> known_{};
+  MeetingShifts other_;
+};
+
+// To where the bodies' extents along a direction part, or some 1 % of the bodies beyond: always an end, seldom the
+// first one.
+double way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
+  const Pose& relative = search.pair.relative;
+  const Pose back = inverse(Pose{.rotation = relative.rotation});
+  const double reach = reach_along(search.pair.first.tree.supports, u) +
+                       reach_along(search.pair.second.tree.supports, rotate(back, -u)) * relative.scale;
+  return std::max(0.0, reach - dot(u, relative.translation));
+}
+
+// The same by the triangles.
+double exact_way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
+  const TreeView &first = search.pair.first.tree, &second = search.pair.second.tree;
+  const Pose &relative = search.pair.relative, back = inverse(Pose{.rotation = relative.rotation});
+  const double reach =
+      -deepest_point(first, {.translation = -Vec3(first.origin)}, -u, 0).distance -
+      deepest_point(second, {.translation = -Vec3(second.origin)}, rotate(back, u), 0).distance * relative.scale;
+  return std::max(0.0, reach - dot(u, relative.translation)) + kWayRounding * search.size + search.nudge;
+}
+
+// The corners of a grid on a cube: 98 directions, at most 27 degrees from each other.
+template <typename Visit>
+void each_direction_around(Visit&& visit) noexcept {
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = -2; z <= 2; ++z) {
+        const Vec3 v = {double(x), double(y), double(z)};
+        if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == 2) visit((1 / length(v)) * v);
+      }
+    }
+  }
+}
+
+// Directions in the order of what is known of their ways: first as long as the triangles that meet now take, then
+// longer by what else gets in the way, until a way is free and no other one can be shorter.
+class WaySearch {
+ public:
+  WaySearch(const MinimumTranslationSearch& search, std::uint32_t refinements) noexcept
+      : search_(search),
+        obstacles_(search),
+        refinements_(refinements),
+        last_listing_(search.room.work() / 2 + search.work / 2) {}
+
+  const MinimumTranslation& best() const noexcept { return best_; }
+  Obstacles& obstacles() noexcept { return obstacles_; }
+  void limit_to(double way) noexcept { limit_ = std::min(limit_, way); }
+
+  // Lists a direction.
+  void add(const Vec3& direction) noexcept {
+    Plane plane;
+    list(direction, plane);
+  }
+
+  // Lists a direction and the ways across what is in the way of it.
+  void add_with_refinements(const Vec3& direction) noexcept {
+    Vec3 next = direction;
+    Plane before{};
+    for (std::uint32_t i = 0; i <= refinements_; ++i) {
+      Plane plane;
+      if (!list(next, plane)) return;
+      if (i > 0) add(past_both(plane, before));
+      next = plane.normal, before = plane;
+    }
+  }
+
+  void settle() noexcept {
+    for (bool first = true; count_ > 0 && (first || search_.room.work() < search_.work); first = false) {
+      std::pop_heap(listed_.begin(), listed_.begin() + static_cast<std::ptrdiff_t>(count_), longer);
+      Listed next = listed_[--count_];
+      if (next.way >= limit_) {
+        count_ = 0;
+        return;
+      }
+      advance(next);
+    }
+  }
+
+ private:
+  struct Listed {
+    Vec3 u;
+    double way;
+    Vec3 normal;
+    double nudge;
+    int advances = 0;
+  };
+  struct Plane {  // that a direction is left at: no shorter way leads past it
+    Vec3 normal;
+    double height;
+  };
+  static bool longer(const Listed& a, const Listed& b) noexcept { return a.way > b.way; }
+
+  bool list(const Vec3& direction, Plane& plane) noexcept {
+    const double size = length(direction);
+    if (!(size > 0) || search_.room.work() >= last_listing_) return false;
+    search_.room.spend(1 + search_.cuts.size() / kCutsPerTest);
+    const Vec3 u = (1 / size) * direction;
     for (std::size_t i = 0; i < tried_count_; ++i) {
       if (dot(tried_[i], u) > kSame) return false;
     }
     tried_[tried_count_ < tried_.size() ? tried_count_++ : tried_.size() - 1] = u;
-    last_ = follow(search_, u, best_.way);
-    add({last_.normal, last_.way * dot(last_.normal, last_.direction)});
-    if (last_.ended && last_.way < best_.way * (1 - kGain)) best_ = last_;
+    const MeetingShifts::Exit exit = obstacles_.exit(u, limit_);
+    if (exit.way >= limit_) return false;
+    push({u, exit.way, exit.normal, search_.nudge});
+    plane = {exit.normal, exit.way * dot(exit.normal, u)};
     return true;
   }
 
-  void refine(std::uint32_t& left) noexcept {
-    while (left > 0) {
-      const double before = best_.way;
-      if (try_direction(best_.normal)) --left;
-      if (best_.way < before) continue;
-      if (left > 0 && try_direction(min_reaching(std::span(obstacles_.data(), obstacle_count_), search_.size))) {
-        --left;
-      } else {
-        return;
-      }
-      if (!(best_.way < before) && ++idle_ > 3) return;
-    }
+  void push(const Listed& listed) noexcept {
+    if (count_ == listed_.size()) return;
+    listed_[count_++] = listed;
+    std::push_heap(listed_.begin(), listed_.begin() + static_cast<std::ptrdiff_t>(count_), longer);
   }
 
-  const MinimumTranslation& best() const noexcept { return best_; }
-  const MinimumTranslation& last() const noexcept { return last_; }
-
- private:
-  void add(const Obstacle& obstacle) noexcept {
-    for (std::size_t i = 0; i < obstacle_count_; ++i) {
-      if (dot(obstacles_[i].normal, obstacle.normal) > kSame) {
-        obstacles_[i].height = std::max(obstacles_[i].height, obstacle.height);
-        return;
-      }
+  // One step along a direction, to where what is in the way there has been left.
+  void advance(Listed next) noexcept {
+    const double at = next.way + next.nudge;
+    const Meeting meeting = meeting_at(search_, next.u, at, limit_);
+    const double further = meeting.any ? at + meeting.farthest : leaves_boxes(search_, next.u, at);
+    if (!meeting.any && further < 0) {  // the way includes the nudge, since only there it is known to have ended
+      best_ = {next.u, at, next.normal, true, meeting.clear};
+      limit_ = at * (1 - kGain);
+      if (refinements_ > 0) add_with_refinements(next.normal);
+      return;
     }
-    if (obstacle_count_ < kObstacles) obstacles_[obstacle_count_++] = obstacle;
+    if (further >= limit_ || ++next.advances == kMaxAdvances) return;
+    if (further > at) {
+      next.way = further, next.nudge = search_.nudge;
+      if (meeting.any) next.normal = meeting.normal;
+    } else {
+      next.nudge *= 4;  // they touch but for rounding
+    }
+    push(next);
   }
+
+  // The shortest way that reaches two planes; 0 of parallel ones.
+  static Vec3 past_both(const Plane& p, const Plane& q) noexcept {
+    const double c = dot(p.normal, q.normal), across = 1 - c * c;
+    if (!(across > 1e-9)) return {};
+    return ((p.height - c * q.height) / across) * p.normal + ((q.height - c * p.height) / across) * q.normal;
+  }
+
+  static constexpr std::size_t kCutsPerTest = 8;  // that take as long to look at as a test of the walk
 
   const MinimumTranslationSearch& search_;
-  MinimumTranslation best_{{}, std::numeric_limits<double>::infinity(), {}, false}, last_{};
-  std::array<Obstacle, kObstacles> obstacles_{};
-  std::size_t obstacle_count_ = 0;
-  std::array<Vec3, 32> tried_{};
-  std::size_t tried_count_ = 0;
-  int idle_ = 0;
-};
-
-// Directions all around, and the best of them to go down from.
-class AllAround {
- public:
-  // Looks for ways shorter than `limit`. `best`: the shortest one so far.
-  AllAround(const MinimumTranslationSearch& search, const MinimumTranslation& best, double limit,
-            std::uint32_t refinements) noexcept
-      : search_(search), best_(best), refinements_(refinements), limit_(limit) {}
-
-  // `thorough`: also along the shortest way out of every pair of triangles, not only of those that are in the way.
-  MinimumTranslation find(bool thorough) noexcept {
-    if (thorough) {
-      for (std::size_t i = 0; i < remembered(); ++i) shifts_of(i);
-      try_shortest();
-    } else if (is_blocked_all_around()) {
-      return best_;
-    }
-    // The corners of a grid on a cube: 98 directions, at most 27 degrees from each other.
-    for (int x = -2; x <= 2; ++x) {
-      for (int y = -2; y <= 2; ++y) {
-        for (int z = -2; z <= 2; ++z) {
-          if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == 2) try_direction({double(x), double(y), double(z)});
-        }
-      }
-    }
-    if (!thorough) try_shortest();
-    if (best_.ended) try_beside(best_.direction);
-    for (std::size_t i = 0; i < start_count_; ++i) {
-      Descent descent(search_);
-      descent.try_direction(starts_[i].direction);
-      std::uint32_t left = refinements_;
-      if (descent.best().ended) descent.refine(left);
-      offer(descent.best());
-    }
-    return best_;
-  }
-
- private:
-  static constexpr double kWorthStarting = 1.5;  // times the best way: from there a descent may end below it
-  static constexpr std::size_t kStarts = 3, kRemembered = 32;
-
-  std::size_t remembered() const noexcept { return std::min(kRemembered, search_.cuts.size()); }
-
-  void offer(const MinimumTranslation& out) noexcept {
-    if (out.ended && (!best_.ended || out.way < best_.way)) best_ = out;
-  }
-
-  void try_shortest() noexcept {
-    for (std::size_t i = 0; i < remembered(); ++i) {
-      if (!known_[i]) continue;
-      const double way = shifts_[i].shortest();
-      if (way > 0 && way < limit_) try_direction(shifts_[i].shortest_way_out());
-    }
-  }
-
-  // Close to a direction, where little may be in the way of its neighbours.
-  void try_beside(const Vec3& direction) noexcept {
-    constexpr std::array<std::array<double, 2>, 6> kAround = {
-        {{1, 0}, {0.5, 0.866}, {-0.5, 0.866}, {-1, 0}, {-0.5, -0.866}, {0.5, -0.866}}};
-    const Way way(direction);
-    for (const double off : {0.02, 0.06, 0.18}) {
-      for (const auto& [x, y] : kAround) try_direction(along(along(way.u, way.e, off * x), way.f, off * y));
-    }
-  }
-
-  void try_direction(const Vec3& direction) noexcept {
-    const Vec3 u = along({0, 0, 0}, direction, 1 / std::sqrt(dot(direction, direction)));
-    if (is_blocked(u)) return;
-    const MinimumTranslation out = follow(search_, u, limit_, limit_);
-    if (!out.ended || !(out.way < limit_)) return;
-    limit_ = std::min(limit_, kWorthStarting * out.way);
-    std::size_t at = start_count_ < kStarts ? start_count_++ : kStarts;
-    for (; at > 0 && starts_[at - 1].way > out.way; --at) {
-      if (at < kStarts) starts_[at] = starts_[at - 1];
-    }
-    if (at < kStarts) starts_[at] = out;
-    offer(out);
-  }
-
-  // One pair of triangles that is in the way of every direction settles it at once, and often is among the first.
-  bool is_blocked_all_around() noexcept {
-    constexpr std::size_t kFirst = 8;
-    for (std::size_t i = 0; i < std::min(kFirst, remembered()); ++i) {
-      if (shifts_of(i).shortest() >= limit_) return true;
-    }
-    return false;
-  }
-
-  // By the triangles that meet now: the pair that was in the way of the direction before is likely to be so again.
-  bool is_blocked(const Vec3& u) noexcept {
-    if (!std::isfinite(limit_)) return false;
-    const std::size_t count = search_.cuts.size();
-    if (blocking_ < count && is_in_the_way(blocking_, u)) return true;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!is_in_the_way(i, u)) continue;
-      blocking_ = i;
-      return true;
-    }
-    return false;
-  }
-
-  bool is_in_the_way(std::size_t i, const Vec3& u) noexcept {
-    if (i < kRemembered) return shifts_of(i).contain(u, limit_);
-    return MeetingShifts(search_.cuts[i].first, search_.cuts[i].second).contain(u, limit_);
-  }
-
-  const MeetingShifts& shifts_of(std::size_t i) noexcept {
-    if (!known_[i]) shifts_[i] = MeetingShifts(search_.cuts[i].first, search_.cuts[i].second), known_[i] = true;
-    return shifts_[i];
-  }
-
-  const MinimumTranslationSearch& search_;
-  MinimumTranslation best_;
+  Obstacles obstacles_;
   std::uint32_t refinements_;
-  double limit_;
-  std::size_t blocking_ = 0;
-  std::array<MeetingShifts, kRemembered> shifts_;
-  std::array<bool, kRemembered> known_{};
-  std::array<MinimumTranslation, kStarts> starts_{};
-  std::size_t start_count_ = 0;
+  std::uint64_t last_listing_;  // work of the walk from which on no direction is listed any more
+  MinimumTranslation best_{{}, kInfinity, {}, false};
+  double limit_ = kInfinity;  // of ways that count
+  std::array<Listed, 192> listed_;
+  std::size_t count_ = 0;
+  std::array<Vec3, 64> tried_{};
+  std::size_t tried_count_ = 0;
 };
 
 // Whether a way is so long, beside the smaller body or beside the curves in which the surfaces cut each other, that a
@@ -334,6 +339,39 @@ bool is_doubtful(const MinimumTranslationSearch& search, double way) noexcept {
   return way * way > kBeyondContact * kBeyondContact * square;
 }
 
+// For any way shorter than a doubtful one, else for one that is shorter by far.
+void look_around(const MinimumTranslationSearch& search, WaySearch& ways) noexcept {
+  constexpr double kShorterByFar = 0.85;
+  const MinimumTranslation first = ways.best();
+  const bool doubtful = !first.ended || is_doubtful(search, first.way);
+  const double limit = doubtful ? first.way : kShorterByFar * first.way;
+  Obstacles& obstacles = ways.obstacles();
+  if (!doubtful && obstacles.block_all(limit)) return;
+  ways.limit_to(limit);
+  for (std::size_t i = 0; i < obstacles.kept() && doubtful; ++i) {
+    const Vec3 way = obstacles.shifts_of(i).shortest_way_out();
+    if (length(way) < limit) ways.add(way);
+  }
+  each_direction_around([&](const Vec3& u) {
+    if (!obstacles.block(u, limit)) ways.add(u);
+  });
+  ways.settle();
+}
+
+// The shortest way to where the bodies' extents part, along one of the directions or of a grid of them.
+MinimumTranslation shortest_past(const MinimumTranslationSearch& search, std::span<const Vec3> directions) noexcept {
+  Vec3 nearest = directions[0];
+  double least = kInfinity;
+  each_direction_around([&](const Vec3& u) {
+    if (const double way = way_past(search, u); way < least) least = way, nearest = u;
+  });
+  MinimumTranslation past{nearest, exact_way_past(search, nearest), nearest, false};
+  for (const Vec3& u : directions) {
+    if (const double way = exact_way_past(search, u); way < past.way) past = {u, way, u, false};
+  }
+  return past;
+}
+
 }  // namespace
 
 const Vec3* piece_inside(const MinimumTranslationSearch& search, const SolidBox& solid) noexcept {
@@ -346,19 +384,12 @@ const Vec3* piece_inside(const MinimumTranslationSearch& search, const SolidBox&
 
 MinimumTranslation minimum_translation(const MinimumTranslationSearch& search, std::span<const Vec3> directions,
                                        std::uint32_t refinements) noexcept {
-  Descent descent(search);
-  for (const Vec3& direction : directions) descent.try_direction(direction);
-  std::uint32_t left = refinements;
-  if (descent.best().ended) descent.refine(left);
-  MinimumTranslation best = descent.best();
-  if (refinements > 0) {
-    // A way that is not doubtful is given up only for one that is shorter by far.
-    constexpr double kShorterByFar = 0.85;
-    const bool doubtful = !best.ended || is_doubtful(search, best.way);
-    const double limit = !best.ended ? kInfinity : doubtful ? best.way : kShorterByFar * best.way;
-    best = AllAround(search, best, limit, refinements).find(doubtful);
-  }
-  return best.ended ? best : way_past(search, descent.last().direction);
+  WaySearch ways(search, refinements);
+  for (const Vec3& direction : directions) ways.add_with_refinements(direction);
+  ways.settle();
+  const bool is_rounding = ways.best().ended && ways.best().way <= kRounded * search.nudge;
+  if (refinements > 0 && !is_rounding) look_around(search, ways);
+  return ways.best().ended ? ways.best() : shortest_past(search, directions);
 }
 
 }  // namespace orchard::runtime::detail

@@ -19,11 +19,12 @@ struct SolidBox {
 // What a way out is looked for in. The second tree is moved, in the first tree's frame and units.
 struct MinimumTranslationSearch {
   const PlacedPair& pair;
-  const WalkStack& room;
+  WalkStack& room;
   std::span<const Workspace::Scratch::Cut> cuts;  // triangles that meet where the second one is now; more may
   std::span<const SolidBox> solids;
-  double size;   // of both bodies
-  double nudge;  // beyond a contact: more than what rounding does to poses
+  double size;         // of both bodies
+  double nudge;        // beyond a contact: more than what rounding does to poses
+  std::uint64_t work;  // of the walk, at which the search ends
 };
 
 // How far the second tree has to move along a direction until no triangle of it meets any of the first one, and no
@@ -40,10 +41,11 @@ struct MinimumTranslation {
 const Vec3* piece_inside(const MinimumTranslationSearch& search, const SolidBox& solid) noexcept;
 
 // The shortest way out that is found from `directions` on, at least one of them, by following what is in the way: where
-// the last triangles part at a face or two edges, the way across these is tried next, or the shortest one that leaves
-// all such obstacles behind. Directions all around are tried as well, so that no wrong first direction decides: for any
-// shorter way where that one is long beside the bodies or the contact, else for one that is shorter by far. Where no
-// direction comes to an end in time, the way is that to where the bodies' extents part, and `ended` is false.
+// the last triangles part at a face or two edges, the way across these is tried next, or the shortest one past the last
+// two of them, at most `refinements` times from each. Directions all around are tried as well, so that no wrong first
+// direction decides: for any shorter way where that one is long beside the bodies or the contact, else for one that is
+// shorter by far. Where no direction comes to an end in time, the way is one to where the bodies' extents part, and
+// `ended` is false.
 MinimumTranslation minimum_translation(const MinimumTranslationSearch& search, std::span<const Vec3> directions,
                                        std::uint32_t refinements) noexcept;
 

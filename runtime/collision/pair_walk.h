@@ -50,10 +50,14 @@ class WalkStack {
     return pairs_ != nullptr;
   }
   WalkPair* data() const noexcept { return pairs_.get(); }
+  // The tests of eight against one, of leaves, and visits to triangles so far.
+  std::uint64_t work() const noexcept { return work_; }
+  void spend(std::uint64_t tests) noexcept { work_ += tests; }
 
  private:
   std::unique_ptr<WalkPair[]> pairs_;
   std::size_t room_ = 0;
+  std::uint64_t work_ = 0;
 };
 
 inline std::uint32_t obb_node_child(const TreeView& tree, std::uint32_t node) noexcept {
@@ -64,7 +68,7 @@ inline std::uint32_t obb_node_child(const TreeView& tree, std::uint32_t node) no
 // tests do not tell apart, until it returns true. Precondition: both trees have triangles, and `room` suffices for
 // them.
 template <typename Visit>
-void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visit) noexcept {
+void walk_candidates(const PlacedPair& pair, WalkStack& room, Visit&& visit) noexcept {
   const TreeView &first = pair.first.tree, &second = pair.second.tree;
   WalkPair* const stack = room.data();
   std::size_t size = 0;
@@ -72,6 +76,7 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
   BoxGaps gaps;
   while (size > 0) {
     const WalkPair top = stack[--size];
+    room.spend(1);
     const std::uint32_t a = obb_node_child(first, top.a), b = obb_node_child(second, top.b);
     const ObbNodeBlock &of_a = first.obb_nodes[top.a / kBlockWidth], &of_b = second.obb_nodes[top.b / kBlockWidth];
     const std::uint32_t lane_a = top.a % kBlockWidth, lane_b = top.b % kBlockWidth;
@@ -81,6 +86,7 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
       const LeafPair leaves = {lanes, rows, lane_box, row_box};
       for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+        room.spend(1);
         if (visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth)) return;
       }
       continue;

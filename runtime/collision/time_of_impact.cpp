@@ -76,10 +76,10 @@ bool ImpactSearch::place(double time) noexcept {
   if (!(fastest <= kMaxQuantity && reach <= kMaxQuantity && fastest * reach <= kMaxQuantity * kMaxQuantity))
     return false;
   if (!(speed_ >= 0 && first_turn_.turning >= 0 && second_turn_.turning >= 0)) return false;
-  error_ = narrow_.exact_error() * shrink + kImpactRounding * size;
-  margin_ = options_.margin * shrink;
-  finest_ = std::max(kMinTolerance * size, 4 * error_);
-  tolerance_ = std::max(options_.tolerance * shrink, finest_);
+  limits_.error = narrow_.exact_error() * shrink + kImpactRounding * size;
+  limits_.margin = options_.margin * shrink;
+  limits_.finest = std::max(kMinTolerance * size, 4 * limits_.error);
+  limits_.tolerance = std::max(options_.tolerance * shrink, limits_.finest);
   for (std::size_t i = 0; i < 3; ++i) closing_.velocity[i] = static_cast<float>(velocity_[i]);
   closing_.speed = static_cast<float>((speed_ + 1e-6 * length_of(velocity_)) * (1 + 1e-6));
   closing_.first = first_turn_.in_float(), closing_.second = second_turn_.in_float();
@@ -95,7 +95,7 @@ double ImpactSearch::without_turning() const noexcept {
   const bool exchanged = narrow_.exchanged();
   const Vec3 center = minus((exchanged ? a_ : b_).center, q.tree.origin);
   const double gap = distance * (1 - kImpactRounding) - reach_of(p, first_turn_.center) - scale * reach_of(q, center) -
-                     margin_ - error_;
+                     limits_.margin - limits_.error;
   if (!(gap > 0)) return 0;
   // The direction is fixed, so this holds for balls that pass each other, too.
   const double rate = speed_ - dot(velocity_, way) / distance + kImpactRounding * length_of(velocity_);
@@ -171,9 +171,9 @@ bool ImpactSearch::advance(PairBudget& tracker) noexcept {
   }
   if (all && found) report(critical);
   // Nearer than asked for, a few more steps tell a contact from a near miss.
-  if (all && found && critical.distance <= margin_ + tolerance_) {
-    const double soon = critical.rate > 0 ? (critical.distance + finest_) / critical.rate : left;
-    if (++near_ > kFineSteps || critical.distance <= margin_ + finest_) {
+  if (all && found && critical.distance <= limits_.margin + limits_.tolerance) {
+    const double soon = critical.rate > 0 ? (critical.distance + limits_.finest) / critical.rate : left;
+    if (++near_ > kFineSteps || critical.distance <= limits_.margin + limits_.finest) {
       soon_ = soon;
       return false;
     }

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "collision/pair_walk.h"
+#include "collision/triangle_cut.h"
 #include "orchard/runtime/collide.h"
 
 namespace orchard::runtime {
@@ -16,6 +17,7 @@ struct Workspace::Scratch {
   // Pairs of triangles that meet, and what they have in common, in the first tree's frame.
   struct Cut {
     detail::TrianglePoints first, second;
+    std::array<detail::ShiftPlanes, 2> faces;
     Vec3 p, q;  // the ends of the common segment
     std::uint32_t triangle_first, triangle_second;
   };

@@ -229,12 +229,12 @@ double top_along(const Shape& shape, const Pose& pose, const Vec3& n) noexcept {
 
 }  // namespace
 
-// Where their extents along the normal are free of each other, both are; from there the second one is taken back for as
-// long as they stay so, by halves. A gap lasts for as long a way back, and so does what is in common for a way on: most
-// halves are known from those before.
+// Where their extents along the normal are free of each other, both are. Before that the second one is moved to where
+// it has certainly left what it touches now, again and again, and every third time to half of the rest, since many
+// surfaces may be in the way one after another. A gap lasts for as long a way back, and what is in common for a way on.
 double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     const Vec3& normal) noexcept {
-  constexpr int kHalvings = 40;
+  constexpr int kSteps = 120;
   constexpr double kRounding = 1e-12;  // of coordinates and lengths, in what is known from others
   const double most = std::max(0.0, top_along(a, pose_a, normal) + top_along(b, pose_b, -1.0 * normal));
   if (!a.has_tree() && !b.has_tree()) return most;
@@ -242,25 +242,23 @@ double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Po
   const Round round(second ? b : a, second ? pose_b : pose_a);
   const double slack = kRounding * (most + round.radius + length(round.p) + length(round.q) +
                                     length(Vec3(pose_a.translation)) + length(Vec3(pose_b.translation)));
-  double touching = 0, free = most, surely_touching = 0, surely_free = most;
-  for (int i = 0; i < kHalvings && free > 0; ++i) {
-    const double at = 0.5 * (touching + free);
-    if (at > surely_touching && at < surely_free) {
-      const Vec3 way = at * normal;
-      Pose moved = pose_b;
-      moved.translation = Vec3(pose_b.translation) + way;
-      const Verdict verdict = test_simple(a, pose_a, b, moved, kNoTriangle);
-      if (verdict.answer == Answer::no) {
-        surely_free = std::min(at, at - simple_distance(a, pose_a, b, moved) + slack);
-      } else if (verdict.answer == Answer::yes) {
-        const Vec3 of_round = second ? way : Vec3{}, center = verdict.contact.center;
-        const Vec3 core = nearest_of_segment(round.p + of_round, round.q + of_round, center);
-        surely_touching = std::max(at, at + round.radius - length(core - center) - slack);
-      } else {
-        surely_touching = at;
-      }
+  double touching = 0, free = most;
+  for (int i = 0; i < kSteps && free - touching > 4 * slack; ++i) {
+    const double at = i % 3 == 2 ? 0.5 * (touching + free) : touching + 2 * slack;
+    const Vec3 way = at * normal;
+    Pose moved = pose_b;
+    moved.translation = Vec3(pose_b.translation) + way;
+    const Verdict verdict = test_simple(a, pose_a, b, moved, kNoTriangle);
+    if (verdict.answer == Answer::no) {
+      const double gap = i % 3 == 2 ? simple_distance(a, pose_a, b, moved) : 0;
+      free = std::max(touching, at - std::max(0.0, gap - slack));
+    } else if (verdict.answer == Answer::yes) {
+      const Vec3 of_round = second ? way : Vec3{}, center = verdict.contact.center;
+      const Vec3 core = nearest_of_segment(round.p + of_round, round.q + of_round, center);
+      touching = std::min(free, std::max(at, at + round.radius - length(core - center) - slack));
+    } else {
+      touching = at;
     }
-    (at >= surely_free ? free : touching) = at;
   }
   return free;
 }

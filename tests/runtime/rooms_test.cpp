@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -115,6 +116,26 @@ TEST(Rooms, HoldNoFileLongerThanFourHundredLines) {
     ++files;
   }
   EXPECT_GT(files, 100u);
+}
+
+// Those that begin in the first column.
+TEST(Rooms, HoldNoFunctionLongerThanSixtyLines) {
+  std::size_t functions = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kRuntime)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".h" && extension != ".cpp") continue;
+    std::ifstream in(entry.path());
+    std::size_t number = 0, begin = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      if (!line.empty() && std::isalpha(static_cast<unsigned char>(line[0])) && line.back() == '{') begin = number;
+      if (line == "};") begin = 0;  // of a class
+      if (line != "}" || begin == 0) continue;
+      EXPECT_LE(number - begin + 1, 60u) << entry.path() << ":" << begin << ": divide it";
+      ++functions, begin = 0;
+    }
+  }
+  EXPECT_GT(functions, 500u);
 }
 
 TEST(Rooms, OfTheCoreHaveAtMostSixteenPublicHeaders) {

@@ -94,16 +94,16 @@ TEST(CInterface, ReadsAFileThatMayBeCutShortAfterwards) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   const char* error = nullptr;
-  orchard_tree* const tree = orchard_tree_read(path.c_str(), &error);
+  orchard_tree* const tree = orchard_tree_read(path.string().c_str(), &error);
   ASSERT_NE(tree, nullptr) << error;
   std::filesystem::resize_file(path, 0);
   orchard_pair* const pair = orchard_pair_new(tree, tree);
   const orchard_pose still = orchard_identity();
   EXPECT_EQ(orchard_collide(pair, &still, &still, {ORCHARD_NO_LIMIT, ORCHARD_NO_LIMIT}).answer, ORCHARD_YES);
-  EXPECT_EQ(orchard_tree_read(path.c_str(), &error), nullptr);
+  EXPECT_EQ(orchard_tree_read(path.string().c_str(), &error), nullptr);
   EXPECT_NE(std::strstr(error, "shorter"), nullptr) << error;
   std::filesystem::remove(path);
-  EXPECT_EQ(orchard_tree_read(path.c_str(), &error), nullptr);
+  EXPECT_EQ(orchard_tree_read(path.string().c_str(), &error), nullptr);
   EXPECT_NE(std::strstr(error, "opened"), nullptr) << error;
   orchard_pair_free(pair);
   orchard_tree_close(tree);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bodies.h"
 #include "improper_poses.h"
@@ -166,7 +167,7 @@ TEST(Contacts, AreNoMoreThanHalfDeeperThanTheLeastWayOut) {
     Draw draw(orchard::test::first_seed() + i);
     const TreePair pair = i % 3 == 0 ? TreePair(a, a) : i % 3 == 1 ? TreePair(a, b) : TreePair(b, b);
     const Pose at_a = draw.pose(0), at_b = draw.pose(draw.uniform(0.8, 1.8));
-    const Manifold m = contacts(workspace, pair, at_a, at_b);
+    const Manifold m = contacts(workspace, pair, at_a, at_b, {.effort = std::numeric_limits<double>::infinity()});
     if (m.answer != Answer::yes) continue;
     ++judged;
     const double limit = m.depth / 1.5;

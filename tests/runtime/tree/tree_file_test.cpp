@@ -91,23 +91,23 @@ TEST(TreeFile, LoadsFromDiskAndNamesWhatFails) {
   const auto file = serialize(tree);
   write(path, file);
   PackedSphereTree loaded;
-  EXPECT_EQ(load_file(path.c_str(), loaded), LoadStatus::ok);
+  EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::ok);
   EXPECT_TRUE(same(loaded, tree));
   for (const std::size_t size : {std::size_t{0}, std::size_t{31}, std::size_t{100}, file.size() - 1}) {
     write(path, {file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)});
-    EXPECT_EQ(load_file(path.c_str(), loaded), LoadStatus::truncated) << size;
+    EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::truncated) << size;
   }
   auto longer = file;
   longer.push_back(std::byte{0});
   write(path, longer);
-  EXPECT_EQ(load_file(path.c_str(), loaded), LoadStatus::invalid_structure);
+  EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::invalid_structure);
   auto boastful = file;  // promises more than any memory holds
   put(boastful, kFileSizeAt, ~0ull);
   write(path, boastful);
-  EXPECT_EQ(load_file(path.c_str(), loaded), LoadStatus::truncated);
+  EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::truncated);
   std::filesystem::remove(path);
-  EXPECT_EQ(load_file(path.c_str(), loaded), LoadStatus::cannot_open);
-  EXPECT_EQ(load_file(std::filesystem::temp_directory_path().c_str(), loaded), LoadStatus::read_failed);
+  EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::cannot_open);
+  EXPECT_EQ(load_file(std::filesystem::temp_directory_path().string().c_str(), loaded), LoadStatus::read_failed);
   EXPECT_TRUE(same(loaded, tree));
 }
 
@@ -124,7 +124,7 @@ TEST(TreeFile, IsUsedInPlaceWithoutACopy) {
   write(path, file);
   MappedTree mapped;
   EXPECT_TRUE(mapped.view().blocks.empty());
-  ASSERT_EQ(mapped.open(path.c_str()), LoadStatus::ok);
+  ASSERT_EQ(mapped.open(path.string().c_str()), LoadStatus::ok);
   MappedTree moved = std::move(mapped);
   EXPECT_EQ(serialize(moved.view()), file);
   NarrowPhase by_view(moved.view(), seen), by_copy(tree, tree);
@@ -137,13 +137,13 @@ TEST(TreeFile, IsUsedInPlaceWithoutACopy) {
     ASSERT_EQ(by_view.separation_bound(), by_copy.separation_bound());
   }
   write(path, {file.begin(), file.begin() + 100});
-  EXPECT_EQ(moved.open(path.c_str()), LoadStatus::truncated);
+  EXPECT_EQ(moved.open(path.string().c_str()), LoadStatus::truncated);
   EXPECT_TRUE(moved.view().blocks.empty());
   write(path, {});
-  EXPECT_EQ(moved.open(path.c_str()), LoadStatus::truncated);
+  EXPECT_EQ(moved.open(path.string().c_str()), LoadStatus::truncated);
   std::filesystem::remove(path);
-  EXPECT_EQ(moved.open(path.c_str()), LoadStatus::cannot_open);
-  EXPECT_EQ(moved.open(std::filesystem::temp_directory_path().c_str()), LoadStatus::read_failed);
+  EXPECT_EQ(moved.open(path.string().c_str()), LoadStatus::cannot_open);
+  EXPECT_EQ(moved.open(std::filesystem::temp_directory_path().string().c_str()), LoadStatus::read_failed);
 }
 
 TEST(TreeFile, IsNotUsedInPlaceWhereItIsNotAligned) {

@@ -60,7 +60,7 @@ class TreePair {
   }
 
  private:
-  friend struct Coherence;
+  friend class Coherence;
   static constexpr std::size_t kWitnesses = 2;
   // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
   struct Witness {
@@ -98,7 +98,7 @@ class Workspace {
   NarrowPhase narrow;
   DistanceQuery distance;
 
-  struct Scratch;               // Memory of contacts() and time_of_impact(), about 100 KB.
+  struct Scratch;               // Memory of contacts() and time_of_impact(), about 150 KB.
   Scratch* scratch() noexcept;  // Allocated at the first call; null if there is no memory.
 
  private:

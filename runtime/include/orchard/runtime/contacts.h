@@ -28,7 +28,8 @@ struct Manifold {
   std::array<ContactPoint, kMaxContactPoints> points{};
   // A unit vector from a to b. After b has moved by `depth` along it, b does not touch a any more, rounding included;
   // after moving by less than `depth` - `error`, it still does. Of the directions that were tried, it is the one with
-  // the smallest depth, and a local minimum. The search tries directions all around, but may miss a better one. For
+  // the smallest depth, and a local minimum. The search tries directions all around as far as
+  // ContactOptions::effort allows, but may miss a better one. For
   // "maybe", the normal is a guess: the direction from one sphere to the other.
   std::array<double, 3> normal{};
   double depth = 0;
@@ -46,6 +47,10 @@ struct ContactOptions {
   // The maximum number of directions that are tried from each initial direction; 0 computes only the depth of the first
   // normal. Higher values find smaller depths and take longer.
   std::uint32_t refinements = 12;
+  // The work that the search for the depth may take, as a multiple of the work of finding the contact. Shallow contacts
+  // need less than the default. If bodies are deep in each other, the search ends with the best depth so far, or with
+  // the extents of the bodies (Manifold::complete). Infinity searches to the end, which may take 100 times as long.
+  double effort = 0.5;
   bool depth = true;  // False: points and a first normal only, at a fraction of the cost.
   // The largest distance, in world units, of surfaces that get a point before they touch. The point is the middle
   // between the two nearest points, the normal is the direction from a to b, and both depths are minus the distance.

@@ -1,0 +1,17 @@
+# Windows of 64 bits from another machine: Debian's cross compiler, and Wine for the tests where it is installed.
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)
+set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
+set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
+set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+# The compiler's own libraries are linked in, so that programs run without its folder in the path.
+set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
+find_program(ORCHARD_WINE NAMES wine64 wine64-stable PATHS /usr/lib/wine)
+if(ORCHARD_WINE)
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${ORCHARD_WINE})
+endif()
