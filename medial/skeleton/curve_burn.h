@@ -15,10 +15,10 @@ struct PrunedCurves {
   std::vector<double> significance;
 };
 
-// Burns the curves of a complex from their ends and removes those ends that are insignificant. `diagonal` is that of
-// the solid, to which options.erosion refers, and `edge_length` the longest edge of the mesh; both in mesh units. A
-// vertex disappears with its only edge, in an elementary collapse. Curves of the axis itself, and sheets so narrow that
-// they are nearly curves, need no width to be told from, so that they are kept up to their ends. O(n log n).
+// Burns the curves of a complex from their ends, finds where each curve ends (SkeletonOptions), and removes what is
+// beyond and the branches that are insignificant. `diagonal` is that of the solid, to which options.erosion refers, and
+// `edge_length` the longest edge of the mesh; both in mesh units. A vertex disappears with its only edge, in an
+// elementary collapse. O(n log n).
 PrunedCurves prune_curves(const MedialMesh& mesh, const CellIncidence& at, const SheetBurn& burn,
                           const SkeletonOptions& options, double diagonal, double edge_length);
 

@@ -43,10 +43,7 @@ Vector gradient_of(const std::array<Point, 3>& corners, const std::array<double,
 class SheetBurner {
  public:
   SheetBurner(const MedialMesh& mesh, const CellIncidence& at)
-      : mesh_(mesh),
-        at_(at),
-        sectors_(3 * mesh.triangles.size()),
-        arrivals_(3 * mesh.triangles.size(), kNotBurned) {
+      : mesh_(mesh), at_(at), sectors_(3 * mesh.triangles.size()), arrivals_(3 * mesh.triangles.size(), kNotBurned) {
     result_.isolated.assign(mesh.edges.size(), std::numeric_limits<double>::quiet_NaN());
     result_.edge_alive.assign(mesh.edges.size(), 1);
     result_.triangle_alive.assign(mesh.triangles.size(), 1);
