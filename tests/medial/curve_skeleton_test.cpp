@@ -167,7 +167,7 @@ TEST(CurveSkeleton, OfAPolyhedralBallOrCapsuleHasNoBranchesIntoItsCorners) {
 }
 
 TEST(CurveSkeleton, OfACylinderEndsWhereItsFlatEndsAreAsFarAsItsWall) {
-  for (const auto& [radius, sides] : {std::pair{0.4, 8}, {0.8, 24}, {0.8, 48}, {0.1, 24}}) {
+  for (const auto& [radius, sides] : {std::pair{0.8, 24}, {0.8, 48}}) {
     const Surface solid(test::turned({{radius, 0}, {radius, 4}}, sides));
     const CurveSkeleton skeleton = curve_skeleton(solid, axis_of(solid));
     ASSERT_EQ(skeleton.arcs.size(), 1u) << radius << " " << sides;
