@@ -85,6 +85,8 @@ void add_skeleton(CLI::App& app, Request& request) {
   command.callback([&request, &command] {
     request.skeleton.axis.output.run = invocation_of(command, request.typed);
     request.skeleton.axis.given = given_of(command);
+    // The erosion of curves, not that of axes.
+    std::erase(request.skeleton.axis.given, "prune erosion");
     request.run = [&request] { request.exit_code = orchard::apps::skeleton(request.skeleton); };
   });
 }

@@ -63,6 +63,7 @@ TEST(SkeletonCommand, TakesTheAxisOfAFileInPlaceOfItsOwn) {
     return test::without_provenance(here.files("out").at("torus-skeleton.csv"));
   };
   EXPECT_EQ(curves({"--axis", axis}), curves({"--samples", "500"}));
+  EXPECT_EQ(curves({"--axis", axis, "--prune", "erosion=1"}), curves({"--axis", axis}));
   const Finished parts = here.run({"segment", mesh, "-o", (here / "out").string(), "--axis", axis, "--json"});
   ASSERT_EQ(parts.exit_code, 0) << parts.err;
   EXPECT_EQ(json::parse(parts.out)["axis"]["file"], axis);
