@@ -15,9 +15,10 @@ constexpr double kResolution = 3;
 // Of the significance that is asked for: the least part that a curve itself has to gain from its end on. The rest may
 // come from where it ends.
 constexpr double kOwn = 0.7;
-// Where no branch is significant yet, the largest one is taken for the end of the curve if the second one is smaller
-// than this fraction of it; of equal branches, none is.
-constexpr double kRival = 0.5;
+// Where no branch is significant yet, the largest one is taken for the end of the curve. If another one is at least as
+// long as the first fraction of it, of its significance the second fraction has to be beyond what the ratio asks for:
+// so none of the ridges that come to the tip of a cone or into the corners of a plate is taken for the end.
+constexpr double kRival = 0.5, kSure = 0.25;
 
 // The length of the mean front up to which fires meet at a place, and from which one fire passes.
 constexpr double kFiresMeet = 0.3, kFirePasses = 0.7;
@@ -49,6 +50,7 @@ class CurveBurner {
   };
   // The end of a curve up to some place of it.
   struct End {
+    double reach = 0;          // the length of the longest way to it from where a fire of curves began
     double gain = 0;           // its significance there
     double surplus = 0;        // beyond what the options' ratio asks of its length; the end is where this was least
     bool of_axis = false;      // whether the last edge is a curve of the axis
@@ -130,12 +132,13 @@ class CurveBurner {
   // sheets runs along with the curve rather than across it. It also starts again where a curve of the axis begins.
   End extended(End end, Index edge, Index from) const {
     if (end.significant) return end;
+    const double own = duration(edge, from), gain = std::max(0.0, own - delay(edge)), reach = end.reach + own;
     if (is_bare(edge) && !end.of_axis) end = {.of_axis = true};
-    const double own = duration(edge, from), gain = std::max(0.0, own - delay(edge));
+    end.reach = reach;
     end.gain += gain;
     end.surplus += gain - ratio_ * own;
     end.of_axis = is_bare(edge);
-    if (!(end.surplus > 0)) return {.of_axis = end.of_axis};
+    if (!(end.surplus > 0)) return {.reach = reach, .of_axis = end.of_axis};
     end.significant =
         significance(edge) >= ratio_ * removed_at_[edge] && is_long(end.gain) && end.gain >= own_part(edge);
     return end;
@@ -152,9 +155,14 @@ class CurveBurner {
       return {.significant = true};
     }
     sort_by_gain(ends);
-    const auto& [edge, largest] = ends.front();
-    if (!(largest.surplus > 0)) return {};
-    if (ends.size() > 1 && !(ends[1].second.gain < kRival * largest.gain)) return {};
+    auto [edge, largest] = ends.front();
+    bool has_rival = false;
+    const double own_reach = largest.reach;
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+      has_rival = has_rival || !(ends[i].second.reach < kRival * own_reach);
+      largest.reach = std::max(largest.reach, ends[i].second.reach);
+    }
+    if (!(largest.surplus > (has_rival ? kSure * largest.gain : 0))) return {.reach = largest.reach};
     stays_[edge] = 1;
     return largest;
   }

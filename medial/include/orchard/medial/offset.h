@@ -49,7 +49,7 @@ struct OffsetMesh {
 //    vanish are nowhere deeper than that.
 // An edge of the offset is cut off within the tolerance. Throws InputError unless the options are in range, and
 // surface.solid() if the offset has a side, or if nothing is left of the solid at that depth. Deterministic; parallel.
-// About ten microseconds of one core for each triangle of the result.
+// About four microseconds of one core for each triangle of the result.
 OffsetMesh offset_mesh(const Surface& surface, const OffsetOptions& options, const Progress& progress = {});
 
 // A solid with a cavity inside it.
