@@ -27,21 +27,21 @@ namespace {
 
 using namespace orchard::apps;
 
-// In one line, whatever a file may be called.
+// Prints a message in one line, even if the name of a file contains line breaks.
 int fail(int code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   fmt::print(stderr, "orchard: {}\n", message);
   return code;
 }
 
-// What was printed has arrived, or the program has failed.
+// Returns the code if everything that was printed has been written, and otherwise that of a failure.
 int printed(int code) {
   if (flush_standard_output()) return code;
   const std::string reason = errno != 0 ? std::strerror(errno) : "it could not be written to";
   return code == kSucceeded || code == kPromiseNotKept ? fail(kFailed, "standard output: " + reason) : code;
 }
 
-// Without the program's name, the last first, as the parser takes them.
+// Without the program's name and in reverse order, as the parser expects.
 std::vector<std::string> reversed_arguments(const std::vector<std::string>& words) {
   return {words.rbegin(), words.empty() ? words.rend() : words.rend() - 1};
 }

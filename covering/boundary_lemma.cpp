@@ -23,9 +23,9 @@ namespace orchard {
 namespace detail {
 namespace {
 
-// Far more than the roundings of a distance.
+// a margin that is much larger than the rounding error of a distance
 constexpr double kSurelyInside = 1 - 0x1p-40;
-// From this many balls at one triangle on, circles meet their neighbours through a grid. Below, looking at all is
+// If a triangle has at least this many balls, circles find their neighbours by a grid. Below that, testing all is
 // faster.
 constexpr std::size_t kManyBalls = 16;
 
@@ -70,8 +70,8 @@ TriangleCover LemmaCheck::run() {
   return result;
 }
 
-// Drops what is empty, doubtful, apart from the triangle or without a leaf. Returns true if one path region certainly
-// holds the whole region, which is convex.
+// Drops balls that are empty, doubtful, outside the triangle or without a leaf. Returns true if a single path region
+// certainly contains the whole region, which is convex.
 bool LemmaCheck::find_useful(TriangleCover& result) {
   own_.useful.assign(balls_.size(), 0);
   std::vector<char>&sound = own_.sound, &holds = own_.holds;
@@ -129,7 +129,8 @@ bool LemmaCheck::check_circle(Index ball) {
   return own_.needed.empty();
 }
 
-// Subtracts from what is needed of a circle what path regions that avoid it cover.
+// Subtracts from the part of a circle that is still to be covered what the path regions that the ball does not bound
+// cover.
 void LemmaCheck::subtract_covered(Index ball) {
   for (Index i : candidates(ball)) {
     if (i == ball || !own_.useful[i]) continue;
@@ -176,8 +177,8 @@ TriangleCover check(const TrianglePlane& plane, std::span<const PathBall> balls,
   return LemmaCheck(plane, balls, own.pointers, want).run();
 }
 
-// The first leaf with a path of balls that hold the triangle with room for all roundings; kNone without one. That is
-// how most triangles of a fine mesh are covered, and it needs no plane.
+// Returns the first leaf with a path of balls each of which contains the triangle with a margin for all rounding
+// errors; kNone if there is none. Most triangles of a fine mesh are covered in this way, and it needs no plane.
 Index leaf_around(const std::array<Point, 3>& triangle, std::span<const PathBall> balls) {
   std::vector<char>& holds = LemmaScratch::of_this_thread().holds;
   holds.assign(balls.size(), 0);

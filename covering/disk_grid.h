@@ -7,14 +7,14 @@
 
 namespace orchard::detail {
 
-// A grid over disks (dissertation, Appendix B: compare only shapes whose bounding rectangles meet). Made for one
-// triangle after the other: it keeps the room that its lists have.
+// A grid over disks (dissertation, Appendix B: compare only shapes whose bounding rectangles meet). It is rebuilt for
+// one triangle after another, and keeps the memory of its lists.
 class DiskGrid {
  public:
-  // Disks of radius <= 0 are left out. Only what lies in `box`, or next to nothing outside, will be asked for. O(n).
+  // Disks of radius <= 0 are left out. Queries are limited to `box`, plus rounding errors. O(n).
   void build(std::span<const Disk> disks, const Eigen::AlignedBox2d& box);
-  // The disks whose rectangles meet the disk's inside the box, ascending, and perhaps some that nearly do; `out` is
-  // cleared first.
+  // Finds the disks whose rectangles meet that of the disk inside the box, ascending, and possibly some that nearly do.
+  // Clears `out` first.
   void meeting(const Disk& disk, std::vector<Index>& out);
 
  private:
@@ -25,7 +25,7 @@ class DiskGrid {
     }
   };
   struct Cells {
-    std::size_t left, right, bottom, top;  // all of them inclusive
+    std::size_t left, right, bottom, top;  // the last rows and columns are included
     std::size_t count() const { return (right - left + 1) * (top - bottom + 1); }
   };
   static Rectangle around(const Disk& disk);
@@ -34,14 +34,16 @@ class DiskGrid {
   bool is_everywhere(const Cells& cells) const { return 2 * cells.count() > columns_ * rows_; }
   void mark(Index disk) { marks_[disk / 64] |= std::uint64_t{1} << disk % 64; }
 
-  Rectangle box_{};  // with room for roundings
+  Rectangle box_{};  // enlarged by a margin for rounding errors
   std::size_t columns_ = 1, rows_ = 1;
   double columns_per_length_ = 0, rows_per_length_ = 0;
-  std::vector<Rectangle> rectangles_;      // of all disks
-  std::vector<Cells> cells_;               // likewise
-  std::vector<Index> begin_, in_cell_;     // of each cell, and one more, row by row, into in_cell_
-  std::vector<std::uint64_t> everywhere_;  // a bit for each disk: in most cells, and so in no list
-  std::vector<std::uint64_t> marks_;       // likewise, of one question
+  std::vector<Rectangle> rectangles_;  // of all disks
+  std::vector<Cells> cells_;           // likewise
+  // In_cell_ has the disks of each cell, row by row; begin_ has where the list of each cell starts, and the end of the
+  // last.
+  std::vector<Index> begin_, in_cell_;
+  std::vector<std::uint64_t> everywhere_;  // a bit for each disk that is in most cells and therefore in no list
+  std::vector<std::uint64_t> marks_;       // the same bits for a single query
 };
 
 }  // namespace orchard::detail

@@ -4,19 +4,19 @@
 #include <vector>
 
 #include "half_angle.h"
-#include "inner_walls.h"
+#include "interior_surface.h"
 #include "orchard/covering/inaccuracy.h"
 #include "search_limits.h"
 
 namespace orchard {
 namespace {
 
-// A cube, with an upper bound on the signed distance over its part inside the ball.
+// A cube, with an upper bound on the signed distance over the part of it that is inside the ball.
 struct Cube {
   double upper;
   Point center;
-  double half;    // of the side
-  Point nearest;  // of the surface, to about the centre
+  double half;    // half of the side length
+  Point nearest;  // the place of the surface that is nearest to the centre
 
   static bool less_promising(const Cube& a, const Cube& b) { return a.upper < b.upper; }
 };
@@ -24,7 +24,7 @@ struct Cube {
 class CubeSearch {
  public:
   CubeSearch(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
-      : surface_(surface), walls_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
+      : surface_(surface), interior_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
   Bounds run(double at_least) {
     start();
@@ -33,7 +33,7 @@ class CubeSearch {
     return bounds();
   }
 
-  // Only as far as it takes to tell whether the limit holds.
+  // Runs only until it is known whether the limit holds.
   Bounds run_against(double limit) {
     limit_ = limit;
     start();
@@ -69,15 +69,16 @@ class CubeSearch {
     }
   }
 
-  // How far the bounds may be apart, given the lower one.
+  // Returns how far apart the bounds may be, given the lower bound.
   double width() const {
     return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, detail::kFinest * radius_});
   }
 
-  // `known`: a point of the surface; often it does.
+  // `known` is a place of the surface, which often suffices.
   void evaluate(const Point& center, double half, const Point& known) {
-    // The representative is the cube's centre, drawn into the ball: every point of the part inside the ball is as near
-    // to it as to the centre, since drawing points into a convex set brings them no farther from its points.
+    // The representative is the cube's centre, moved to the nearest point of the ball. Every point of the part inside
+    // the ball is at least as near to it as to the centre, because moving a point into a convex set brings it no
+    // farther from the points of the set.
     const Vector out = center - ball_.center;
     const double away = out.norm(), reach = half * kHalfDiagonal;
     if (away > ball_.radius + reach) return;
@@ -92,33 +93,34 @@ class CubeSearch {
                                    farthest(anchor_, center, half), everywhere_}) *
                          (1 + 1e-12);
     if (does_not_matter(upper)) return;
-    if (value <= walls_.depth() && walls_.fill({sample, reach}) && does_not_matter(walls_.depth())) return;
+    if (value <= interior_.depth() && interior_.fill({sample, reach}) && does_not_matter(interior_.depth())) return;
     cells_.push_back({upper, center, half, nearest.position});
     std::push_heap(cells_.begin(), cells_.end(), Cube::less_promising);
   }
 
-  // A cell that cannot matter is dropped, but its bound counts towards the answer's.
+  // A cell that cannot change the result is dropped, but its bound is part of the result's upper bound.
   bool does_not_matter(double upper) {
     if (upper > limit_ && (limit_ >= 0 || upper > best_ + 0.5 * width())) return false;
     dropped_ = std::max(dropped_, upper);
     return true;
   }
 
-  // The largest distance from y to a point of both the cube and the ball, or more.
+  // Returns at least the largest distance from y to a point that is in both the cube and the ball.
   double farthest(const Point& y, const Point& center, double half) const {
     const Vector corner = (y - center).cwiseAbs() + Vector::Constant(half);
     return std::min({corner.norm(), (y - ball_.center).norm() + ball_.radius, farthest_in_cone(y, center, half)});
   }
 
-  // The same over the part of the ball that a cone around the cube leaves between two spheres. Where the cube lies at
-  // the ball's rim across from y, this is above the truth by the square of the cube's size only.
+  // The same over the part of the ball that lies in a cone around the cube and between two spheres. If the cube is at
+  // the rim of the ball opposite to y, this is too large only by the square of the cube's size.
   double farthest_in_cone(const Point& y, const Point& center, double half) const {
     const Vector out = center - ball_.center, to_y = y - ball_.center;
     const double away = out.norm(), reach = half * kHalfDiagonal, length = to_y.norm();
     if (away <= reach) return std::numeric_limits<double>::infinity();
     const double half_chord =
         detail::HalfAngle::between(out, away, to_y, length).half_chord_with(detail::HalfAngle::of_sine(reach / away));
-    // The squared distance is convex in the distance from the ball's centre: the ends suffice.
+    // The squared distance is a convex function of the distance from the ball's centre, so it is largest at one of the
+    // ends.
     const auto squared = [&](double r) {
       return (r - length) * (r - length) + 4 * r * length * half_chord * half_chord;
     };
@@ -126,14 +128,15 @@ class CubeSearch {
     return std::sqrt(std::max(squared(nearest), squared(farthest))) + kRounding * (away + reach + length);
   }
 
-  static constexpr double kRounding = 1e-13;  // of the lengths in a bound: a few hundred times what they are off by
+  // As a fraction of the lengths in a bound: a few hundred times their rounding error.
+  static constexpr double kRounding = 1e-13;
   static constexpr double kHalfDiagonal = 1.7320508075688774;
   const Surface& surface_;
-  const detail::InnerWalls walls_;
+  const detail::InteriorSurface interior_;
   const Sphere ball_;
-  const double radius_;  // R
+  const double radius_;  // the bounding radius R
   const DistanceTolerance tolerance_;
-  double limit_ = -1;  // < 0: none
+  double limit_ = -1;  // below 0 if there is no limit
   Point anchor_ = Point::Zero(), at_ = Point::Zero();
   double everywhere_ = 0, best_ = 0, dropped_ = 0;
   int evaluations_ = 0;

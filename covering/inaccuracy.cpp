@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "half_angle.h"
-#include "inner_walls.h"
+#include "interior_surface.h"
 #include "search_limits.h"
 
 namespace orchard {
@@ -28,13 +28,13 @@ struct SphericalTriangle {
 //   sd(p) + |q - p|, since sd is 1-Lipschitz;
 //   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre; and
 //   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two points y and z of the surface, and t from 0 to 1.
-// The greatest value of each over the cap bounds the cell. Walls inside the solid do not count as its border
-// (inner_walls.h).
+// The greatest value of each over the cap bounds the cell. Parts of the surface inside the solid do not count as its
+// border (interior_surface.h).
 class SphereSearch {
  public:
   SphereSearch(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
       : surface_(surface),
-        walls_(surface),
+        interior_(surface),
         sphere_(sphere),
         radius_(surface.bounding_radius()),
         tolerance_(tolerance) {}
@@ -113,8 +113,9 @@ class SphereSearch {
                   farthest_of_both(here, known[0], middle, chord), farthest(anchor_, middle, chord), by_known}) *
         (1 + 1e-12);
     if (does_not_matter(upper)) return;
-    if (value <= walls_.depth() && walls_.fill({sphere_.center + sphere_.radius * middle, sphere_.radius * chord}) &&
-        does_not_matter(walls_.depth()))
+    if (value <= interior_.depth() &&
+        interior_.fill({sphere_.center + sphere_.radius * middle, sphere_.radius * chord}) &&
+        does_not_matter(interior_.depth()))
       return;
     push({upper, corners, {here, known[0]}});
   }
@@ -158,7 +159,7 @@ class SphereSearch {
   }
 
   const Surface& surface_;
-  const detail::InnerWalls walls_;
+  const detail::InteriorSurface interior_;
   const Sphere sphere_;
   const double radius_;  // R
   const DistanceTolerance tolerance_;

@@ -13,7 +13,7 @@ using detail::LemmaCheck;
 using detail::TrianglePlane;
 
 struct IncrementalCover::Data {
-  // A ball's circle in a triangle, as it was when the ball had this version.
+  // The circle of a ball in a triangle, as it was when the ball had this version.
   struct Cached {
     Index ball;
     std::uint64_t version;
@@ -22,26 +22,28 @@ struct IncrementalCover::Data {
 
   struct TriangleState {
     TrianglePlane plane;
-    std::vector<Cached> cache;    // ascending by ball
-    std::vector<Index> coverers;  // leaves that the certificate rests on, ascending; empty: not covered
+    std::vector<Cached> cache;  // ascending by ball
+    // The leaves that the certificate rests on, ascending; empty if the triangle is not covered.
+    std::vector<Index> coverers;
     bool covered() const { return !coverers.empty(); }
   };
 
-  // The outcome of a check, kept apart until it is known to stand.
+  // The result of a check, which is kept apart until it is accepted.
   struct Outcome {
     Index slot;
     std::vector<Index> coverers;
-    std::vector<Cached> fresh;  // circles that the cache did not have
+    std::vector<Cached> fresh;  // circles that were not in the cache
   };
 
   const Surface& surface;
   PathForest forest;
-  std::vector<Index> triangles;  // ascending; the other arrays of triangles are by place in this one
+  std::vector<Index> triangles;  // ascending; the other arrays of triangles use the positions in this one
   std::vector<TriangleState> states;
-  std::vector<std::uint64_t> versions;  // of balls
+  std::vector<std::uint64_t> versions;  // of each ball
   std::uint64_t next_version = 1;
-  std::vector<std::vector<Index>> resting_on;  // by leaf: slots whose coverers it is among, and some where it was
-  std::vector<Index> open;                     // uncovered slots, ascending
+  // Of each leaf: the slots whose coverers contain it, and possibly some that no longer do.
+  std::vector<std::vector<Index>> resting_on;
+  std::vector<Index> open;  // uncovered slots, ascending
   std::uint64_t checked = 0;
   NearBalls near;
 
@@ -106,7 +108,7 @@ struct IncrementalCover::Data {
     }
   }
 
-  // The slots whose certificate rests on a leaf below the ball, ascending.
+  // Returns the slots whose certificate rests on a leaf below the ball, ascending.
   std::vector<Index> slots_resting_on(Index ball) {
     std::vector<Index> slots, below{ball};
     for (std::size_t i = 0; i < below.size(); ++i) {

@@ -8,8 +8,8 @@
 namespace orchard::detail {
 namespace {
 
-// The sum of 12 doubles as an expansion of non-overlapping ones (Shewchuk 1997), of which the last that is not zero has
-// the sum's sign.
+// The sum of 12 doubles as an expansion of non-overlapping ones (Shewchuk 1997). The last one that is not zero has the
+// sign of the sum.
 class ExactSum {
  public:
   void add_product(double x, double y) {
@@ -39,7 +39,7 @@ class ExactSum {
 
 bool finite(std::span<const PlanePoint> points) {
   return std::all_of(points.begin(), points.end(), [](const PlanePoint& p) {
-    // Products of coordinates must neither overflow nor lose digits below.
+    // Products of coordinates must neither overflow nor underflow.
     const double size = p.cwiseAbs().maxCoeff();
     return std::isfinite(size) && size < 1e100;
   });
@@ -95,7 +95,7 @@ std::vector<PlanePoint> convex_corners(std::span<const PlanePoint> corners) {
   if (corners.size() < 3 || !finite(corners)) throw InputError("a polygon needs three or more finite corners");
   std::vector<PlanePoint> result(corners.begin(), corners.end());
   if (area_twice(corners) < 0) std::reverse(result.begin(), result.end());
-  // Every corner left of every edge that it is not on: strictly convex, and round once.
+  // The polygon is strictly convex and goes round once if every corner is left of every edge that it is not on.
   for (const Edge& edge : edges_of(result))
     for (const PlanePoint& p : result)
       if (p != edge.a && p != edge.b && edge.side_of(p) <= 0)
@@ -119,7 +119,7 @@ std::vector<std::array<PlanePoint, 3>> triangulated(std::span<const PlanePoint> 
       const PlanePoint &a = left[(ear + n - 1) % n], &b = left[ear], &c = left[(ear + 1) % n];
       const int turn = exact_orientation(a, b, c);
       if (turn < 0) continue;
-      if (turn == 0) break;  // a corner on a side, or a spike without area
+      if (turn == 0) break;  // it is a corner on a side, or a spike without area
       const bool empty = std::none_of(left.begin(), left.end(), [&](const PlanePoint& p) {
         return p != a && p != b && p != c && in_triangle(p, a, b, c);
       });

@@ -4,10 +4,10 @@
 
 namespace orchard::detail {
 
-// Evaluations of the signed distance. Far more than any sphere of a sensible tree needs: only adversarial input reaches
-// it, and then the bounds stay valid.
+// The maximum number of evaluations of the signed distance. Only artificial input needs so many. If a search reaches
+// the limit, its bounds are still valid.
 inline constexpr int kMaxEvaluations = 200'000;
-// Least width of the bounds, as a fraction of R: a thousand roundings of a coordinate in a float.
+// The smallest width of the bounds, as a fraction of R: a thousand times the rounding error of a coordinate in a float.
 inline constexpr double kFinest = 1e-6;
 
 }  // namespace orchard::detail

@@ -15,9 +15,9 @@ Vector unit_or(const Vector& v, const Vector& otherwise) {
   return length > 0 ? Vector(v / length) : otherwise;
 }
 
-// The arc of a circle of radius r inside a disk of radius s whose centre lies `apart` away. With t the half angle of
-// the arc, tan^2(t/2) = (s^2 - (D - r)^2) / ((D + r)^2 - s^2); in this form a rounding moves the arc's ends by no more
-// than the circles' distance there moves, also near tangency.
+// Returns the arc of a circle of radius r inside a disk of radius s whose centre is `apart` away. If t is half the
+// angle of the arc, then tan^2(t/2) = (s^2 - (D - r)^2) / ((D + r)^2 - s^2). In this form, a rounding error moves the
+// ends of the arc by no more than it moves the distance of the circles there, even near tangency.
 Arc arc_inside(const Point2& apart, double r, double s) {
   const double distance = apart.norm();
   const double above = (s - (distance - r)) * (s + (distance - r));
@@ -49,7 +49,8 @@ void TrianglePlane::make_frame(const std::array<Point, 3>& triangle) {
   }
   origin_ = corner(triangle, longest);
   x_axis_ = unit_or(corner(triangle, longest + 1) - origin_, Vector::UnitX());
-  // Orthogonalised twice: a needle's third corner is almost along the first axis, and once would leave a slanted frame.
+  // The vector is made orthogonal twice. The third corner of a needle is almost along the first axis, so a single pass
+  // would leave a slanted frame.
   Vector across = corner(triangle, longest + 2) - origin_;
   across -= across.dot(x_axis_) * x_axis_;
   across -= across.dot(x_axis_) * x_axis_;
@@ -86,8 +87,8 @@ Eigen::AlignedBox2d TrianglePlane::box() const {
   return box;
 }
 
-// The clipping disk is larger than the ball's by more than all roundings, so that the region holds all that is asked
-// for. The named point is the one of the triangle nearest to the ball's centre.
+// The clipping disk is larger than that of the ball by a margin for all rounding errors, so the region contains
+// everything that is needed. The named point is the point of the triangle nearest to the ball's centre.
 void TrianglePlane::clip_to_ball(const std::array<Point, 3>& triangle, const Sphere& clip) {
   const ClosestPoint nearest = closest_point_of_triangle(clip.center, triangle[0], triangle[1], triangle[2]);
   const Vector offset = clip.center - origin_;
@@ -98,14 +99,14 @@ void TrianglePlane::clip_to_ball(const std::array<Point, 3>& triangle, const Sph
   const double height = std::max(0.0, std::abs(offset.dot(normal_)) - grown);
   clip_.center = {offset.dot(x_axis_), offset.dot(y_axis_)};
   clip_.radius = std::sqrt(std::max(0.0, (radius - height) * (radius + height))) + grown;
-  // Where the triangle lies inside, the clipping changes nothing; and then its middle is the better named point.
+  // If the triangle lies inside, clipping changes nothing, and the middle of the triangle is the better named point.
   const bool idle = std::all_of(corners_.begin(), corners_.end(),
                                 [&](const Point2& c) { return (c - clip_.center).norm() <= clip_.radius; });
   if (idle) clip_ = {}, named_ = centroid_;
 }
 
-// The ball is shrunk by more than all roundings of the frame, of the projection and of the triangle's distance from the
-// plane through the frame's axes: whatever of the triangle is inside the disk is inside the ball.
+// The ball is shrunk by a margin for the rounding errors of the frame, of the projection and of the triangle's distance
+// from the plane of the frame. So every point of the triangle in the disk is in the ball.
 Disk TrianglePlane::project(const Point& center, double ball_radius) const {
   Disk disk;
   const Vector offset = center - origin_;

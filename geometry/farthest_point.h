@@ -5,7 +5,8 @@
 
 namespace orchard::detail {
 
-// The point that is farthest from a place, the first of several. Precondition: there is a point. O(n).
+// Returns the point that is farthest from a place, and the first one if several are. Precondition: there is a point.
+// O(n).
 inline Index farthest_from(const Point& place, std::span<const Point> points) {
   Index farthest = 0;
   double max = -1;

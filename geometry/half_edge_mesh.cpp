@@ -15,7 +15,9 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh) {
     std::array<HalfEdgeMesh::VertexHandle, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = HalfEdgeMesh::VertexHandle(static_cast<int>(mesh.triangles[t][i]));
     if (!result.add_face(corners.data(), corners.size()).is_valid()) {
-      throw Error("triangle " + std::to_string(t) + " has no place in an oriented manifold");
+      throw Error("triangle " + std::to_string(t) +
+                  " does not fit into an oriented manifold: one of its edges has two triangles already, or one in the "
+                  "same direction");
     }
   }
   return result;

@@ -16,7 +16,7 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
       }
     }
   };
-  // A counting sort by the low vertex leaves buckets that are tiny in any ordinary mesh.
+  // A counting sort by the lower vertex leaves buckets that are very small in any ordinary mesh.
   std::vector<std::size_t> ends(mesh.vertices.size() + 1, 0);
   for_each_half_edge([&](const EdgeUse& use) { ++ends[use.low + 1]; });
   for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];

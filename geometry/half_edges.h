@@ -13,8 +13,9 @@ struct EdgeUse {
   Index half_edge = 0;
 };
 
-// All half-edges, those of an edge side by side and in ascending order; edges in lexicographic order. Triangles with a
-// repeated corner have no part in it. Any triangles with valid indices will do. O(n) but for vertices of high degree.
+// Returns all half-edges, with those of an edge next to each other in ascending order, and the edges in lexicographic
+// order. Triangles with a repeated corner are left out. The triangles may be any with valid indices. O(n) except for
+// vertices of high degree.
 std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
 
 // Calls visit(std::span<const EdgeUse>) for each edge, in order.
@@ -26,10 +27,10 @@ void for_each_edge(std::span<const EdgeUse> uses, const Visit& visit) {
   }
 }
 
-// Across edge i of each triangle: the other triangle, or kNone at a boundary and where more than two triangles meet.
+// Returns the triangle across edge i of each triangle; kNone at a boundary and where more than two triangles meet.
 std::vector<std::array<Index, 3>> triangle_neighbors(const TriangleMesh& mesh);
 
-// The triangles at each vertex, ascending; one with a repeated corner once.
+// Returns the triangles at each vertex, ascending. A triangle with a repeated corner is listed once.
 Rows triangles_around_vertices(const TriangleMesh& mesh);
 
 }  // namespace orchard

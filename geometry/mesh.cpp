@@ -34,10 +34,10 @@ void require_usable_size(const TriangleMesh& mesh) {
 
 void validate(const TriangleMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size();
-  if (mesh.triangles.empty()) throw InputError("mesh has no triangles");
-  // Half-edges, three to a triangle, are numbered by an Index too.
+  if (mesh.triangles.empty()) throw InputError("the mesh has no triangles");
+  // An Index also has to number half-edges, of which each triangle has three.
   if (vertices >= kNone || mesh.triangles.size() > kNone / 3) {
-    throw InputError("mesh is too large: " + std::to_string(vertices) + " vertices and " +
+    throw InputError("the mesh is too large: " + std::to_string(vertices) + " vertices and " +
                      std::to_string(mesh.triangles.size()) + " triangles do not fit 32-bit indices");
   }
   for (std::size_t i = 0; i < vertices; ++i) {

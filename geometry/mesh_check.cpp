@@ -212,7 +212,7 @@ bool require_solid(TriangleMesh& mesh) {
   const bool inside_out = report.volume < 0;
   report.volume = std::abs(report.volume);
   if (!report.solid()) {
-    throw InputError("mesh is not a closed, consistently oriented manifold: " + report.faults() +
+    throw InputError("the mesh is not a closed, consistently oriented manifold: " + report.faults() +
                      " (numbers count from 0); repair it in a mesh editor or remesh it");
   }
   if (inside_out) {

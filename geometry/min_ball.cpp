@@ -11,7 +11,7 @@ namespace orchard {
 double radius_around(const Point& center, std::span<const Point> points) {
   double max = 0;
   for (const Point& p : points) max = std::max(max, (p - center).squaredNorm());
-  // A difference, three squares, two sums and a root: each is off by at most half a unit in the last place.
+  // A difference, three squares, two sums and a root each have an error of at most half a unit in the last place.
   return std::sqrt(max) * (1 + 4 * std::numeric_limits<double>::epsilon());
 }
 

@@ -10,10 +10,11 @@
 namespace orchard {
 namespace {
 
-// CGAL's double version can return a ball that is too small; by more than this, and it is not just rounding.
+// CGAL's version with doubles may return a ball that is too small. If it is too small by more than this, the cause is
+// not just rounding.
 constexpr double kBallRounding = 1e-12;
 
-// Points as spheres of radius zero, which is how CGAL wants to see them.
+// Spheres of radius zero, as CGAL needs them.
 template <class Number>
 struct PointTraits {
   using FT = Number;
@@ -38,8 +39,9 @@ Sphere ball_in_doubles(std::span<const Point> points) {
   return {Point(center[0], center[1], center[2]), min_sphere.radius()};
 }
 
-// The minimal ball of few points, exactly but for the final rounding of the centre. In exact arithmetic CGAL gives each
-// number as a pair (a, b) that stands for a + b * sqrt(discriminant); without radii the root is rational or absent.
+// Returns the centre of the smallest ball around a few points, exact except for the final rounding. In exact
+// arithmetic, CGAL returns each number as a pair (a, b), which means a + b * sqrt(discriminant). For spheres of radius
+// 0, the root is rational or absent.
 Point exact_center(const std::vector<Point>& points) {
   using Number = CGAL::Exact_rational;
   std::vector<std::array<Number, 3>> spheres;
@@ -54,7 +56,7 @@ Point exact_center(const std::vector<Point>& points) {
   return center;
 }
 
-// Grows a small set of points whose minimal ball holds all of them: add the farthest one outside until there is none.
+// Extends a small set of points by the farthest point outside its smallest ball, until there is none.
 Point center_of_active_set(std::span<const Point> points) {
   std::vector<Point> active{points[detail::farthest_from(points[0], points)]};
   active.push_back(points[detail::farthest_from(active[0], points)]);

@@ -58,7 +58,7 @@ TriangleMesh outside_solid(const Surface& solid, double radius) {
   if (!solid.solid())
     throw InputError("the surface has no outside: " + solid.report().faults() + "; repair the mesh first");
   if (!(radius >= kMinRadius) || !std::isfinite(radius))
-    throw InputError("the sphere around a solid: a radius of 1.1 bounding radii at least");
+    throw InputError("the sphere around a solid needs a radius of at least 1.1 bounding radii");
   TriangleMesh mesh = solid.mesh();
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   TriangleMesh sphere = icosahedron();

@@ -7,13 +7,14 @@
 
 namespace orchard {
 
-// For each vertex the lowest one at the same place.
+// Returns for each vertex the lowest vertex at the same place.
 std::vector<Index> first_at_place(const TriangleMesh& mesh);
 
-// The corners from the lowest one on, and whether the other two had to be swapped to be in order.
+// Returns the corners rotated so that the lowest comes first, in ascending order, and whether the other two had to be
+// swapped for that.
 std::pair<std::array<Index, 3>, bool> canonical(std::array<Index, 3> corners);
 
-// Triangles on the same three corners, in lists of ascending number. Needs no vertices.
+// Returns lists, in ascending order, of triangles with the same three corners. It does not need the vertices.
 std::vector<std::vector<Index>> same_corners(const TriangleMesh& mesh);
 
 }  // namespace orchard

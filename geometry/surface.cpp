@@ -9,19 +9,19 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/min_ball.h"
 #include "orchard/geometry/tolerance.h"
-#include "query/sheets.h"
 #include "query/triangle_tree.h"
+#include "query/uncut_parts.h"
 #include "repair/self_intersections_of_tree.h"
 
 namespace orchard {
 namespace {
 
-// Twice the area vector, from the two shortest edges: that is where rounding harms it least. Zero if it is all
-// rounding, by the same measure as check_mesh.
+// Returns twice the area vector, computed from the two shortest edges, where rounding errors are smallest. It is zero
+// if it consists of rounding errors only, by the criterion of check_mesh().
 Vector area_vector(const std::array<Point, 3>& p) {
-  std::array<Vector, 3> edges;  // opposite the corners
+  std::array<Vector, 3> edges;  // opposite to the corners
   std::array<double, 3> lengths{};
-  std::size_t apex = 0;  // opposite the longest edge
+  std::size_t apex = 0;  // opposite to the longest edge
   for (std::size_t i = 0; i < 3; ++i) {
     edges[i] = p[(i + 2) % 3] - p[(i + 1) % 3];
     lengths[i] = edges[i].norm();
@@ -75,14 +75,14 @@ struct Surface::Data {
   }
   Data(const Data&) = delete;
 
-  // Many surfaces are never asked for either.
+  // These are computed on demand, because many applications need neither.
   const std::vector<std::array<Index, 2>>& self_intersections() const {
     std::call_once(cuts_found_, [&] { cuts_ = detail::self_intersections(mesh, tree); });
     return cuts_;
   }
-  const detail::Sheets& sheets() const {
-    std::call_once(sheets_found_, [&] { sheets_.emplace(mesh, tree, self_intersections()); });
-    return *sheets_;
+  const detail::UncutParts& uncut_parts() const {
+    std::call_once(parts_found_, [&] { parts_.emplace(mesh, tree, self_intersections()); });
+    return *parts_;
   }
 
   void find_normals() {
@@ -104,9 +104,9 @@ struct Surface::Data {
   }
 
  private:
-  mutable std::once_flag cuts_found_, sheets_found_;
+  mutable std::once_flag cuts_found_, parts_found_;
   mutable std::vector<std::array<Index, 2>> cuts_;
-  mutable std::optional<detail::Sheets> sheets_;
+  mutable std::optional<detail::UncutParts> parts_;
 };
 
 Surface::Surface(TriangleMesh mesh, BoundingBall kind) : data_(std::make_unique<const Data>(std::move(mesh), kind)) {}
@@ -167,7 +167,7 @@ double Surface::signed_distance(const Point& query, ClosestPoint& nearest) const
   nearest = data_->tree.closest(query, triangles);
   if (nearest.distance == 0 || !std::isfinite(nearest.distance) || !bounding_box().contains(query))
     return nearest.distance;
-  return data_->sheets().inside(query, triangles) ? -nearest.distance : nearest.distance;
+  return data_->uncut_parts().inside(query, triangles) ? -nearest.distance : nearest.distance;
 }
 
 int Surface::winding_number(const Point& query) const {

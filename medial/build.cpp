@@ -1,6 +1,7 @@
 #include "orchard/medial/build.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -12,10 +13,12 @@
 namespace orchard {
 namespace {
 
-// Of the points: where fewer are added by gap repair and for open places, hardly any part is thinner than the spacing,
-// and reaching closes such places nearly as well as points, in a fraction of the time.
+// As a fraction of the points. If gap repair and open places add fewer points, hardly any part is thinner than the
+// point spacing. Reaching then closes open places nearly as well as points do, in a fraction of the time.
 constexpr double kFewAdded = 1.0 / 32;
-constexpr double kAlmost = 3;  // border losses: where no less is reached for, points are needed
+constexpr double kOnFeature = 1e-6;  // diagonals: a ball of radius 0 that is this near to an edge lies on it
+// In border losses: if sheets cannot reach a place that is open by more, points have to be added there.
+constexpr double kAlmost = 3;
 
 class MedialBuilder {
  public:
@@ -25,7 +28,7 @@ class MedialBuilder {
   MedialBuild run(MedialBuildInput input) {
     if (input.mesh) {
       import(*input.mesh);
-      finish_axis();
+      prune_axis();
       return std::move(build_);
     }
     const int rounds = input.sampling || input.diagram ? 0 : options_.open_rounds;
@@ -38,6 +41,7 @@ class MedialBuilder {
     }
     make_axis();
     if (options_.refine) refine(rounds);
+    prune_axis();
     if (options_.check_promise) check_promise();
     return std::move(build_);
   }
@@ -46,7 +50,7 @@ class MedialBuilder {
   template <class Function>
   void stage(const char* name, Function&& function) {
     time_stage(build_.seconds, name, std::forward<Function>(function));
-    // Of all rounds together.
+    // Stages of the same name are added up over all rounds.
     const auto last = std::prev(build_.seconds.end());
     const auto first =
         std::find_if(build_.seconds.begin(), last, [&](const auto& stage) { return stage.first == name; });
@@ -94,11 +98,30 @@ class MedialBuilder {
   void make_axis() {
     stage("medial axis",
           [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, options_.axis, progress_); });
-    finish_axis();
   }
-  void finish_axis() {
+
+  // The last step: refining would reach again for what pruning takes away.
+  void prune_axis() {
     build_.unpruned_vertices = build_.axis.size();
-    stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
+    if (options_.prune.removes_nothing()) return;
+    stage("pruning", [&] { build_.axis = prune(surface_, build_.axis, options_.prune, progress_); });
+    keep_reached_features();
+  }
+
+  // Keeps those edges of the mesh on which a sheet still ends in balls of radius 0.
+  void keep_reached_features() {
+    const double near = kOnFeature * surface_.bounding_box().diagonal().norm();
+    const std::vector<Point>& at = surface_.mesh().vertices;
+    std::erase_if(build_.features, [&](const std::array<Index, 2>& edge) {
+      const Point &a = at[edge[0]], along = at[edge[1]] - a;
+      for (Index v = 0; v < build_.axis.size(); ++v) {
+        if (build_.axis.radii[v] > 0) continue;
+        const Vector apart = build_.axis.centers[v] - a;
+        const double t = std::clamp(apart.dot(along) / along.squaredNorm(), 0.0, 1.0);
+        if ((apart - t * along).norm() <= near) return false;
+      }
+      return true;
+    });
   }
 
   void check_promise() {
@@ -108,7 +131,8 @@ class MedialBuilder {
     });
   }
 
-  // Before sheets reach for places left open, such places become points in so many rounds.
+  // Refines the axis. In this many rounds, places that it leaves open become surface points before sheets are extended
+  // to those that remain.
   void refine(int rounds) {
     std::optional<detail::Refiner> refiner;
     detail::FoundBalls found;
@@ -128,8 +152,8 @@ class MedialBuilder {
     });
   }
 
-  // Those that a refined axis leaves open; and rebuilds the diagram. False if they are so few that they are left to
-  // reaching.
+  // Adds the places that a refined axis leaves open as points, and rebuilds the diagram. Returns false if they are so
+  // few that reaching deals with them.
   bool add_open_places(const detail::Refiner& refiner) {
     SurfaceSampling added;
     const double limit = options_.refine->border_loss * surface_.bounding_box().diagonal().norm();
@@ -167,9 +191,11 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
                               MedialBuildInput input) {
   if (!surface.solid())
     throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
-  if (options.open_rounds < 0) throw InputError("rounds of adding points at open places: not negative");
+  if (options.open_rounds < 0)
+    throw InputError("the number of rounds that add points at open places must be at least 0");
   if (input.sampling.has_value() + input.diagram.has_value() + input.mesh.has_value() > 1)
-    throw InputError("a medial axis is built from own points, an own diagram or an own axis, not from several");
+    throw InputError(
+        "a medial axis is built from given points, a given diagram or a given axis, but not from several of these");
   return MedialBuilder(surface, options, progress).run(std::move(input));
 }
 
@@ -178,8 +204,8 @@ AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& optio
   if (!options.refine) return promise;
   const RefineOptions& refine = *options.refine;
   promise.protrusion = detail::kMaxStickingOut * refine.tolerance;
-  const bool prunes = options.prune.angle > 0 || options.prune.scale > 1;
-  if (refine.reach_rounds > 0 && !prunes) promise.open = detail::left_open(surface, refine, points) + refine.tolerance;
+  if (refine.reach_rounds > 0 && options.prune.removes_nothing())
+    promise.open = detail::left_open(surface, refine, points) + refine.tolerance;
   return promise;
 }
 
@@ -189,7 +215,7 @@ std::vector<int> repair_passes(const MedialBuild& build) {
     if (build.sampling.origins[i] == PointOrigin::repair) pass_of_point[i] = -1;
   }
   if (build.gap_repair.points_removed > 0) return pass_of_point;
-  // The last passes' points are the last ones of the sampling, in their order.
+  // The points of the last passes are the last points of the sampling, in the same order.
   const std::vector<GapRepairPass>& passes = build.gap_repair.passes;
   auto at = pass_of_point.rbegin();
   for (std::size_t pass = passes.size(); pass > 0; --pass) {

@@ -11,8 +11,8 @@ namespace {
 template <std::size_t kCorners>
 using Cells = std::vector<std::array<Index, kCorners>>;
 
-// Sorts cells, and of those that are repeated keeps the first that is not deleted, or else the first. Returns the new
-// number of each.
+// Sorts cells and removes repeated ones. Of these, the first that is not deleted stays, or else the first. Returns the
+// new number of each cell.
 template <std::size_t kCorners>
 std::vector<Index> sort_and_deduplicate(Cells<kCorners>& cells, std::vector<CellFlags>& flags) {
   std::vector<Index> order(cells.size());
@@ -40,10 +40,11 @@ class MaReader {
   explicit MaReader(TextLines lines) : lines_(std::move(lines)) {}
 
   FlaggedMedialMesh run() {
-    if (!lines_.next()) lines_.fail("is empty; a .ma file starts with its numbers of vertices, edges and faces");
+    if (!lines_.next())
+      lines_.fail("the file is empty; a .ma file starts with its numbers of vertices, edges and faces");
     vertices_ = lines_.index();
     const Index edges = lines_.index(), faces = lines_.index(), tetrahedra = fourth_count();
-    if (vertices_ == 0) lines_.fail("promises no vertices");
+    if (vertices_ == 0) lines_.fail("the file promises no vertices");
     for (Index i = 0; i < vertices_; ++i) read_vertex();
     if (std::all_of(flagged_.vertices.begin(), flagged_.vertices.end(),
                     [](const CellFlags& own) { return own.deleted; }))
@@ -68,19 +69,19 @@ class MaReader {
   }
 
  private:
-  // MATTopo counts tetrahedra as well.
+  // Reads the fourth number of the header, which MATTopo uses for its tetrahedra.
   Index fourth_count() {
     std::array<std::int64_t, 1> number{};
     if (lines_.whole_numbers_to_the_end(number) == 0) return 0;
     has_copies_ = true;
     if (number[0] < 0 || number[0] > std::numeric_limits<Index>::max())
-      lines_.fail("a number of tetrahedra that is none");
+      lines_.fail("the number of tetrahedra is not a whole number of 0 or more");
     return static_cast<Index>(number[0]);
   }
   void read_vertex() {
     lines_.expect("v");
     const double x = lines_.real(), y = lines_.real(), z = lines_.real(), radius = lines_.real();
-    if (radius < 0) lines_.fail("a negative radius");
+    if (radius < 0) lines_.fail("the radius is negative; it must be 0 or more");
     flagged_.mesh.centers.emplace_back(x, y, z);
     flagged_.mesh.radii.push_back(radius);
     flagged_.vertices.push_back(flags_with_type());
@@ -91,24 +92,25 @@ class MaReader {
     std::array<Index, kCorners> result;
     for (std::size_t k = 0; k < kCorners; ++k) {
       result[k] = lines_.index();
-      if (result[k] >= vertices_) lines_.fail("a vertex number beyond the last vertex (they count from 0)");
+      if (result[k] >= vertices_) lines_.fail("a vertex number is beyond the last vertex (they count from 0)");
       for (std::size_t before = 0; before < k; ++before) {
-        if (result[before] == result[k]) lines_.fail("a vertex number twice");
+        if (result[before] == result[k]) lines_.fail("the cell names a vertex twice");
       }
     }
     std::sort(result.begin(), result.end());
     return result;
   }
-  // "type", "type deleted", of MATTopo "type deleted copies", or none; anything else at the end of a line is not meant
-  // for us.
+  // Reads the flags at the end of a line: "type", "type deleted", MATTopo's "type deleted copies", or none. Other text
+  // at the end of a line is ignored.
   CellFlags flags_with_type() {
     std::array<std::int64_t, 3> numbers{};
     const std::size_t count = lines_.whole_numbers_to_the_end(numbers);
     if (count == 0 || (count == 3 && !has_copies_)) return {};
-    if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("a type that is beyond 32-bit numbers");
+    if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("the type does not fit into 32 bits");
     return {static_cast<int>(numbers[0]), deleted(numbers[1])};
   }
-  // "deleted" or none; of MATTopo "importance deleted [copies]", of its tetrahedra "deleted [copies]".
+  // Reads the flags of a line without a type: "deleted" or none; from MATTopo "importance deleted [copies]", and for
+  // its tetrahedra "deleted [copies]".
   CellFlags flag_without_type() {
     std::array<std::int64_t, 2> numbers{};
     std::size_t count = lines_.whole_numbers_to_the_end(numbers);
@@ -122,21 +124,21 @@ class MaReader {
     return count == 0 ? CellFlags() : CellFlags{0, deleted(numbers[0])};
   }
   bool deleted(std::int64_t flag) {
-    if (flag != 0 && flag != 1) lines_.fail("a flag \"deleted\" that is neither 0 nor 1");
+    if (flag != 0 && flag != 1) lines_.fail("the flag \"deleted\" is neither 0 nor 1");
     any_flags_ = true;
     return flag == 1;
   }
 
-  // MATStruct's section, if what follows is a number of parts alone; other text is not meant for us.
+  // Reads MATStruct's section if the next line is just the number of parts. Other text is ignored.
   void read_structure() {
     std::array<std::int64_t, 1> parts{};
     if (!lines_.next() || lines_.whole_numbers_to_the_end(parts) == 0) return;
-    if (parts[0] < 0) lines_.fail("a number of parts of the structure below 0");
+    if (parts[0] < 0) lines_.fail("the number of parts of the structure is negative");
     for (std::int64_t i = 0; i < parts[0]; ++i) {
       StructurePart part;
       part.number = lines_.index_on_any_line("the number of a part of the structure");
       part.kind = lines_.index_on_any_line("the kind of a part of the structure");
-      if (part.kind > 4) lines_.fail("a kind of part that is none of 0 sheet, 1 seam, 2 border, 3 junction, 4 curve");
+      if (part.kind > 4) lines_.fail("the kind of the part is none of 0 sheet, 1 seam, 2 border, 3 junction, 4 curve");
       const std::size_t cells = part.kind == 0   ? flagged_.mesh.triangles.size()
                                 : part.kind == 3 ? flagged_.mesh.centers.size()
                                                  : flagged_.mesh.edges.size();
@@ -149,7 +151,7 @@ class MaReader {
     }
   }
 
-  // Parts by the new numbers of cells, ascending, each once.
+  // Renumbers the cells of the parts, sorts them and removes repeated ones.
   void renumber(const std::vector<Index>& edges, const std::vector<Index>& triangles) {
     for (StructurePart& part : flagged_.structure) {
       if (part.kind != 3) {
@@ -164,7 +166,7 @@ class MaReader {
     MedialMesh& mesh = flagged_.mesh;
     std::vector<Index> edges = sort_and_deduplicate(mesh.edges, flagged_.edges);
     const std::vector<Index> triangles = sort_and_deduplicate(mesh.triangles, flagged_.triangles);
-    // What is missing is there for the sake of its triangles: deleted if all of these are.
+    // Adds the missing edges of triangles. Such an edge counts as deleted if all of its triangles are deleted.
     const std::size_t listed = mesh.edges.size();
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       const auto& [a, b, c] = mesh.triangles[i];
@@ -183,11 +185,11 @@ class MaReader {
   TextLines lines_;
   Index vertices_ = 0;
   bool any_flags_ = false, in_tetrahedra_ = false;
-  bool has_copies_ = false;  // a file of MATTopo, with its columns
+  bool has_copies_ = false;  // whether it is a file of MATTopo with its extra columns
   FlaggedMedialMesh flagged_;
 };
 
-// Whether a cell counts as far as its own flag goes.
+// Whether a cell is not deleted, as far as its own flag says.
 bool kept(const std::vector<CellFlags>& flags, std::size_t i) { return flags.empty() || !flags[i].deleted; }
 
 bool any_deleted(const std::vector<CellFlags>& flags) {

@@ -4,7 +4,8 @@
 
 namespace orchard::detail {
 
-// The reader behind read_ma() and read_flagged_ma(), on any text. Time and memory grow with the text (n log n).
+// Parses the text of a .ma file for read_ma() and read_flagged_ma(). Time and memory are O(n log n) in the size of the
+// text.
 FlaggedMedialMesh parse_ma(TextLines lines);
 
 }  // namespace orchard::detail

@@ -32,7 +32,8 @@ class Triangulator {
 
   detail::AxisTriangles run() {
     for (; face_ < axis_.faces.size(); ++face_) cut(axis_.faces[face_], axis_.face_points[face_]);
-    for (Index wall = 0; wall < axis_.walls.size(); ++wall, ++face_) cut(axis_.walls[wall], axis_.wall_points[wall]);
+    for (Index i = 0; i < axis_.topology_faces.size(); ++i, ++face_)
+      cut(axis_.topology_faces[i], axis_.topology_face_points[i]);
     std::sort(pieces_.begin(), pieces_.end());
     detail::AxisTriangles result;
     for (const auto& [triangle, face] : pieces_) {
@@ -113,11 +114,12 @@ MedialMesh medial_mesh(const MedialAxis& axis) { return detail::axis_triangles(a
 void complete(MedialMesh& mesh) { detail::complete_cells(mesh.edges, mesh.triangles); }
 
 void validate(const MedialMesh& mesh) {
-  if (mesh.centers.empty()) throw InputError("medial mesh: no vertices");
-  if (mesh.radii.size() != mesh.centers.size()) throw InputError("medial mesh: as many radii as vertices are needed");
+  if (mesh.centers.empty()) throw InputError("a medial mesh needs at least one vertex");
+  if (mesh.radii.size() != mesh.centers.size()) throw InputError("a medial mesh needs as many radii as vertices");
   for (std::size_t i = 0; i < mesh.centers.size(); ++i) {
-    if (!mesh.centers[i].allFinite()) fail("vertex", i, "is not at a finite place");
-    if (!(mesh.radii[i] >= 0) || !std::isfinite(mesh.radii[i])) fail("vertex", i, "has no radius of zero or more");
+    if (!mesh.centers[i].allFinite()) fail("vertex", i, "has a coordinate that is not finite");
+    if (!(mesh.radii[i] >= 0) || !std::isfinite(mesh.radii[i]))
+      fail("vertex", i, "has a radius that is negative or not a number");
   }
   validate_cells(mesh.edges, mesh.size(), "edge");
   validate_cells(mesh.triangles, mesh.size(), "triangle");

@@ -12,7 +12,7 @@
 namespace orchard {
 namespace {
 
-// A complex that is taken apart by elementary collapses, which leave its homotopy type alone.
+// A complex that is reduced by elementary collapses, which keep its homotopy type.
 class Complex {
  public:
   explicit Complex(const MedialMesh& mesh) : mesh_(mesh), at_(mesh.edges, mesh.triangles, mesh.size()) {
@@ -77,8 +77,9 @@ class Complex {
     return count;
   }
 
-  // The dimension of the space of 2-cycles. Where two triangles meet at an edge, a cycle holds both or neither, so the
-  // unknowns are sheets of such triangles, few; the edges where more of them meet give the equations.
+  // Returns the dimension of the space of 2-cycles. Where exactly two triangles meet at an edge, a cycle contains both
+  // or neither. So the unknowns are sets of such triangles, of which there are few, and the edges where more of them
+  // meet give the equations.
   std::int64_t count_cavities() const {
     DisjointSets sheet(mesh_.triangles.size());
     std::vector<std::vector<Index>> equations;
@@ -103,7 +104,7 @@ class Complex {
     for (Index t = 0; t < mesh_.triangles.size(); ++t) sheets += triangle_alive_[t] && sheet.root(t) == t ? 1 : 0;
     return sheets - rank(std::move(equations));
   }
-  // The items that occur an odd number of times, ascending.
+  // Returns the items that occur an odd number of times, ascending.
   static std::vector<Index> odd(std::vector<Index> items) {
     std::sort(items.begin(), items.end());
     std::vector<Index> result;

@@ -10,11 +10,12 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kDualSteps = 24;
-// A predicted gain below this part of the looseness is not worth another query.
+// A predicted gain that is a smaller share of the looseness than this is not worth another query.
 constexpr double kWorthwhileGain = 2e-4;
-// Steps below this part of the radius change nothing that matters.
+// As a share of the radius: smaller steps do not matter.
 constexpr double kMinFitStep = 1e-4;
-// What a known point of the surface may be off by, as a fraction of its distance; if it is by more, we look again.
+// The factor by which the distance to a known point of the surface may exceed the distance to the surface. If it may be
+// larger, the nearest point is searched again.
 constexpr double kKnownPointFactor = 1 + 1e-9;
 
 }  // namespace
@@ -52,13 +53,14 @@ Vector BallFitter::Terms<kRoom>::start_weights() {
   return gradient(top);
 }
 
-// One step of maximising sum w_i value_i - t/2 |sum w_i gradient_i|^2 + .. over weights that sum to one: weight moves
-// from the least to the most wanted term. Returns how far apart these were; `sum` is over the terms of both kinds.
+// Takes one step of maximising sum w_i value_i - t/2 |sum w_i gradient_i|^2 over weights that sum to one: it moves
+// weight from the term that wants it least to the one that wants it most. Returns how far apart these two are. The sum
+// is over the terms of both kinds.
 template <std::size_t kRoom>
 double BallFitter::Terms<kRoom>::shift_weight(Vector& sum, double t) {
   const double tx = t * sum.x(), ty = t * sum.y(), tz = t * sum.z();
   double scores[kRoom];
-  // The highest of each lane, and its block: the first, if there are several.
+  // The highest value of each lane, and its block, which is the first one if several have that value.
   Lanes lane_highest = Lanes{} - kInfinity, lane_block{};
   for (std::size_t b = 0; b * kLanes < count; ++b) {
     const Lanes score = value[b] - (tx * x[b] + ty * y[b] + tz * z[b]);
@@ -106,7 +108,7 @@ double BallFitter::Terms<kRoom>::max_after(const Vector& step) const {
   return max;
 }
 
-// The surface is no farther than the point of it that was nearest to the last centre.
+// The surface is at most as far away as the point of it that was nearest to the last centre, which bounds the search.
 ClosestPoint BallFitter::closest(const Point& center) const {
   const Cut& last = cuts_.back();
   const Point known = last.at - last.value * last.gradient;
@@ -114,7 +116,7 @@ ClosestPoint BallFitter::closest(const Point& center) const {
   return nearest.triangle == kNone ? surface_.closest(center) : nearest;
 }
 
-// Within the distance of a centre whose side is known, the side is the same: that spares the question.
+// Closer to a centre than its distance from the surface, the side is the same as the centre's. That saves the query.
 BallFitter::Cut BallFitter::cut_at(const Point& center) const {
   if (measure_ == BallMeasure::radius) return {center, 0, Vector::Zero()};
   ClosestPoint nearest;
@@ -151,7 +153,7 @@ void BallFitter::take_points(std::span<const Point> points) {
   }
 }
 
-// The radius that holds all points.
+// Returns the radius that contains all points.
 double BallFitter::measure(const Point& center) {
   Lanes max{};
   for (std::size_t b = 0; b < points_.size(); ++b) {
@@ -179,7 +181,7 @@ void BallFitter::linearise_points(const FittedBall& ball, double reach) {
 
 void BallFitter::linearise(const FittedBall& ball, double reach) {
   linearise_points(ball, reach);
-  // A cut that claims more than the distance known here does not hold here: the surface is not convex.
+  // The surface is not convex, so a cut may claim a larger value than is known here. Such a cut does not hold here.
   const auto value_here = [&](const Cut& cut) { return cut.value + cut.gradient.dot(ball.center - cut.at); };
   std::erase_if(cuts_, [&](const Cut& cut) { return value_here(cut) > ball.center_distance + 1e-9 * ball.radius; });
   near_.count = 0;
@@ -188,7 +190,7 @@ void BallFitter::linearise(const FittedBall& ball, double reach) {
   near_.fill_up();
 }
 
-// Minimises max far + max near + |step|^2 / (2 t) over the step, through the dual.
+// Finds the step that minimises max far + max near + |step|^2 / (2 t), by the dual problem.
 Vector BallFitter::best_step(double t) {
   Vector sum = far_.start_weights() + near_.start_weights();
   for (int k = 0; k < kDualSteps; ++k)
@@ -219,7 +221,7 @@ FittedBall BallFitter::fit_here(std::span<const Point> points, const FittedBall&
     if (predicted <= 0 || length < kMinFitStep * kWorthwhileGain * best.radius) break;
     FittedBall next{best.center + step, 0, 0, Vector::Zero()};
     next.radius = measure(next.center);
-    // The distance changes by no more than the step: no need to look where even that would not help.
+    // The distance changes by at most the length of the step. If even that would not help, no query is needed.
     if (next.radius + best.center_distance - length >= best.looseness()) {
       t /= 4;
       continue;

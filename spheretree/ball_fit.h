@@ -7,41 +7,43 @@
 
 namespace orchard::detail {
 
-// What a ball is fitted by. Its reach, radius + signed distance of the centre, bounds the inaccuracy wherever the solid
-// is. It is far above it for a ball that holds much surface on all sides of its centre, as of a lattice or of many
-// parts: there the smallest ball is mostly the tightest.
+// By what a ball is fitted. Its reach, radius + signed distance of the centre, is an upper bound on the inaccuracy for
+// every solid. It is far above the inaccuracy for a ball that contains a lot of surface on all sides of its centre,
+// such as one around a lattice or around many parts. For such a ball, the smallest radius is usually the tightest
+// choice.
 enum class BallMeasure { reach, radius };
 
-// A ball with the signed distance of its centre, or 0 for it if balls are measured by their radius. Its looseness,
-// radius + center_distance, bounds Hubbard's inaccuracy from above, equals it where the object is convex, and is never
-// negative for a ball that holds a point of the surface.
+// A ball with the signed distance of its centre, or 0 in place of that if balls are measured by their radius. Its
+// looseness, radius + center_distance, bounds Hubbard's inaccuracy from above, equals it if the object is convex, and
+// is never negative for a ball that contains a point of the surface.
 struct FittedBall {
   Point center = Point::Zero();
   double radius = 0;
-  double center_distance = 0;     // signed distance of the centre, negative inside
-  Vector slope = Vector::Zero();  // its gradient there, of length one; zero: not known
+  double center_distance = 0;  // signed distance of the centre, negative inside
+  // The gradient of the signed distance at the centre, of length one; zero if it is not known.
+  Vector slope = Vector::Zero();
   double looseness() const { return radius + center_distance; }
-  // With the radius that the ball needs to reach the point, whatever it has now.
+  // Returns the looseness with the radius that the ball needs to reach the point.
   double looseness_with(const Point& point) const { return (point - center).norm() + center_distance; }
 };
 
-// Fits one ball to points: minimises the looseness max |p - c| + sd(c) over the centre c by a bundle method. The first
-// term is linearised at the points that are farthest or may become so within the step, the second by the gradients of
-// sd at the centres visited; a step that does not help shrinks the next one. Finds a local minimum. Keeps scratch: one
-// fitter per thread.
-// Hidden: what a shared library could replace is not inlined.
+// Fits a ball to points: it minimises the looseness max |p - c| + sd(c) over the centre c by a bundle method. The first
+// term is linearised at the points that are farthest or may become so within the step, and the second by the gradients
+// of sd at the centres visited. A step that does not help shrinks the next one. Finds a local minimum. A fitter keeps
+// memory between calls, so each thread needs its own.
+// Its visibility is hidden, because functions that a shared library may replace are not inlined.
 class [[gnu::visibility("hidden")]] BallFitter {
  public:
   explicit BallFitter(const Surface& surface, BallMeasure measure = BallMeasure::reach)
       : surface_(surface), measure_(measure) {}
 
-  // The ball holds all points. Precondition: there is one. At most `evaluations` queries of the signed distance. A
-  // start whose slope is known must have the distance that belongs to it.
+  // Fits a ball that contains all points, of which there must be at least one, with at most `evaluations` queries of
+  // the signed distance. If the slope of `start` is known, its distance must belong to it.
   FittedBall fit(std::span<const Point> points, const FittedBall& start, int evaluations);
   FittedBall fit(std::span<const Point> points, const Point& start, int evaluations) {
     return fit(points, at(start), evaluations);
   }
-  // A ball of no size, with what is to be known of its centre.
+  // Returns a ball of radius 0 with the distance and slope at its centre.
   FittedBall at(const Point& center) const;
 
  private:
@@ -55,17 +57,17 @@ class [[gnu::visibility("hidden")]] BallFitter {
     double value;
     Vector gradient;
   };
-  // What the looseness is the largest of, as seen from the present centre: value + gradient . step. The weights are
-  // those of the dual.
+  // The terms whose largest value is the looseness, as seen from the present centre: value + gradient . step. The
+  // weights are those of the dual problem.
   template <std::size_t kRoom>
   struct Terms {
     Lanes value[kRoom / kLanes], x[kRoom / kLanes], y[kRoom / kLanes], z[kRoom / kLanes];
-    double weight[kRoom];         // of those in `weighted`; of all others 0
-    std::size_t weighted[kRoom];  // few of all terms
+    double weight[kRoom];         // the weights of the terms in `weighted`; those of all others are 0
+    std::size_t weighted[kRoom];  // the few terms that have a weight
     std::size_t count = 0, weighted_count = 0;
 
     void add(double term, const Vector& gradient);
-    void fill_up();  // the last four, so that they can be looked at together
+    void fill_up();  // fills up the last group of four, so that all groups can be processed alike
     Vector start_weights();
     double shift_weight(Vector& sum, double t);
     double max_after(const Vector& step) const;
@@ -92,7 +94,8 @@ class [[gnu::visibility("hidden")]] BallFitter {
   std::vector<Cut> cuts_;
   std::size_t point_count_ = 0;
   std::vector<FourPoints> points_;
-  std::vector<FourNumbers> squared_, measured_;  // distances of the points from the best centre, from the last one
+  // Squared distances of the points from the best centre, and from the last one.
+  std::vector<FourNumbers> squared_, measured_;
   FarPoints farthest_;
   Terms<kMaxFar> far_;
   Terms<kMaxCuts> near_;

@@ -21,6 +21,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // which Clang does not deduce by itself before version 17
 
 const Refinement& refinement_of(const TreeOptions& options) {
   return std::visit([](const auto& of_method) -> const Refinement& { return of_method.refinement; }, options);

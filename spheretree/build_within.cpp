@@ -9,7 +9,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Builds one tree after the other and keeps the tightest, until the time is over.
+// Builds one tree after another and keeps the tightest, until the time is over.
 class Attempts {
  public:
   Attempts(double seconds, const Surface& surface, const SphereTreeOptions& options, const Progress& progress,
@@ -34,7 +34,7 @@ class Attempts {
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return elapsed() >= seconds_; }
 
-  // Of the steps that follow the builder, too.
+  // Also changes the seed of the steps that follow the builder.
   void next_seed() {
     ++tightening_.seed;
     if (options_.anneal) ++options_.anneal->seed;
@@ -52,11 +52,12 @@ class Attempts {
     try {
       keep_if_tighter(build_sphere_tree(surface_, options_, until_over, input_));
     } catch (const Cancelled&) {
-      if (stopped_) throw;  // by who waits, not by the clock
+      if (stopped_) throw;  // the application stopped it, not the clock
     }
   }
 
-  // A tree that has fewer levels than asked for, as where spheres ran out of surface points, is judged by those it has.
+  // A tree with fewer levels than asked for, which happens if there are more spheres than surface points, is judged by
+  // the levels that it has.
   void keep_if_tighter(SphereTreeBuild next) {
     const bool first = best_->tightening.levels.empty();
     if (first || overall_inaccuracy(next.tree) < overall_inaccuracy(best_->tree)) best_ = std::move(next);
@@ -77,7 +78,7 @@ class Attempts {
 
 SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options,
                                          const Progress& progress, const MedialBuildInput& input) {
-  if (!(seconds >= 0)) throw InputError("the time for a tree: a number of seconds, at least 0");
+  if (!(seconds >= 0)) throw InputError("the time for a tree must be a finite number of seconds, at least 0");
   if (method_of(options.tree) != TreeMethod::tightened)
     throw InputError("a tree within a time limit is a tightened one: give the options of that method");
   return Attempts(seconds, surface, options, progress, input).run();

@@ -14,23 +14,24 @@ namespace orchard {
 namespace {
 
 constexpr int kMaxCoverRounds = 60;
-constexpr double kMarginGrowth = 2;  // from one round to the next
-constexpr int kKeepingRounds = 30;   // in which balls that are not to grow do not
+constexpr double kMarginGrowth = 2;  // factor from one round to the next
+constexpr int kKeepingRounds = 30;   // the number of rounds in which balls that should not grow do not
 using detail::kInfinity;
 
-// What one path should take in: points of an uncovered region. The path region then holds their convex hull as well.
+// Points of an uncovered region that one path should contain. The path region then contains their convex hull as well.
 using Points = std::vector<Point>;
 
-// Finds the path that takes points in for the least growth. Growth counts relative to each ball's radius: a per cent
-// of a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
+// Finds the path that contains given points at the smallest growth. Growth is measured relative to each ball's radius:
+// one per cent of a large ball near the root adds as much looseness to its level as one per cent of a leaf adds to its
+// own.
 class PathGrower {
  public:
-  // Balls of levels above `first_level` are not to grow: what they hold is enough.
+  // Balls of levels above `first_level` do not grow.
   PathGrower(SphereTree& tree, double margin, Index first_level)
       : tree_(tree), margin_(margin), first_level_(first_level) {}
 
-  // The first of those that cost least. None costs more than the path that is cheapest at every step: most others are
-  // told by that. Infinite if there is no path that holds them.
+  // Returns the cost of the cheapest path, and stores the first path with that cost. A greedy descent gives an upper
+  // bound, which excludes most other paths. Returns infinity if no path can contain the points.
   double cost_of_best_path(const Points& points) {
     best_cost_ = std::nextafter(cost_of_greedy_path(points), kInfinity);
     best_leaf_ = kNone;
@@ -38,7 +39,7 @@ class PathGrower {
     return best_cost_;
   }
 
-  // Grows the path found last so that it holds the points. Returns the largest growth of a radius.
+  // Enlarges the balls of the stored path until it contains the points. Returns the largest growth of a radius.
   double grow_best_path(const Points& points) {
     double max = 0;
     for (Index node = best_leaf_; node != kNone; node = tree_.nodes[node].parent) {
@@ -100,7 +101,7 @@ class PathGrower {
   Index best_leaf_ = kNone;
 };
 
-// One path for the whole uncovered region, or one for each of its points, whichever grows less.
+// Grows one path for the whole uncovered region, or one for each of its points, whichever grows less.
 double grow_over(PathGrower& grower, const detail::UncoveredRegion& uncovered) {
   Points all = uncovered.corners;
   if (all.empty()) all.push_back(uncovered.farthest);
@@ -146,7 +147,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
       triangles.push_back(uncovered.triangle);
       for (const Point& corner : surface.corners(uncovered.triangle)) take({{}, corner, 0});
     }
-    // What is uncovered shrinks with every round; a slowly widening margin puts an end to the last of it.
+    // Uncovered regions shrink with every round, and the margin is widened a little so that the rounds end.
     margin *= kMarginGrowth;
   }
   throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
@@ -155,7 +156,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
 
 namespace {
 
-// The leaf whose path needs to grow least to hold the point.
+// Returns the leaf whose path needs to grow least to contain the point.
 Index nearest_leaf(const SphereTree& tree, const Point& point) {
   Index best = kNone;
   double min = kInfinity;

@@ -5,7 +5,8 @@
 namespace orchard::detail {
 namespace {
 
-// An uncovered region is taken in whole unless that costs so many times what its farthest point does.
+// A single ball covers an uncovered region as a whole unless that costs this many times as much as covering its
+// farthest point.
 constexpr double kDearer = 8;
 
 }  // namespace
@@ -15,7 +16,8 @@ std::vector<Taking> find_cover_candidates(const std::vector<UncoveredRegion>& un
   std::vector<Taking> takings(uncovered.size());
   tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
     const auto [whole, farthest] = cheapest(uncovered[i]);
-    const bool together = whole.rise <= kDearer * farthest.rise;  // true if both are infinite, too: none takes it
+    // This is also true if both are infinite, in which case no ball covers it.
+    const bool together = whole.rise <= kDearer * farthest.rise;
     takings[i] = {together ? whole.ball : farthest.ball, together};
   });
   return takings;

@@ -9,8 +9,9 @@
 namespace orchard {
 namespace {
 
-constexpr std::uint64_t kDescentStage = 300;  // of the random numbers
-// Steps as fractions of the ball's looseness: where they start, how they change, and where a ball has had enough.
+constexpr std::uint64_t kDescentStage = 300;  // the stream of random numbers
+// Sizes of steps over the looseness of the ball: the first one, and the one below which a ball is finished; then the
+// factors by which a step is changed.
 constexpr double kFirstDescentStep = 0.2, kMinDescentStep = 2e-4;
 constexpr double kLongerDescent = 1.6, kShorterDescent = 0.85;
 
@@ -56,7 +57,7 @@ class Descent {
     Sphere next = ball;
     next.center += random.uniform() * size * random_direction(random);
     const double center_distance = surface_.signed_distance(next.center);
-    // Less loose by some part of the step, whatever the centre's move did to its distance.
+    // The new ball is less loose by a random part of the step, whatever the move of its centre does to the distance.
     next.radius = looseness - 0.5 * random.uniform() * size - center_distance;
     if (!(next.radius > 0) || !cover_.try_change(node, next)) return false;
     ball = next;

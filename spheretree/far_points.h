@@ -8,20 +8,21 @@
 
 namespace orchard::detail {
 
-// Side by side (a GCC and Clang extension). The alignment is that of code for SSE: see wide.h.
+// Four numbers in a vector (a GCC and Clang extension). The alignment is that of code for SSE (see wide.h).
 struct FourNumbers {
   static constexpr std::size_t kLanes = 4;
   using Lanes = double __attribute__((vector_size(32), aligned(16)));
   Lanes numbers;
 };
 
-// Those of many points that are farthest from a place. All is here, to be inlined where it is compiled for AVX2.
+// The points that are farthest from a place, among many. All functions are in this header, so that they are inlined
+// into code that is compiled for AVX2.
 class [[gnu::visibility("hidden")]] FarPoints {
  public:
-  static constexpr std::size_t kMax = 40;  // that are kept
+  static constexpr std::size_t kMax = 40;  // the number of points that are kept
 
-  // squared: the distances of so many points. Takes those that are at least at squared_min, above 0, and no farther
-  // than squared_max, or the kMax farthest of them.
+  // `squared` has the squared distances of the points. Keeps those of at least squared_min, which is above 0, and at
+  // most squared_max, but only the kMax farthest of them.
   void take(const std::vector<FourNumbers>& squared, std::size_t points, double squared_min, double squared_max) {
     gather(squared, points, squared_min);
     if (count_ > kMax && !keep_by_counting(squared_min, squared_max)) keep_by_order();
@@ -43,7 +44,7 @@ class [[gnu::visibility("hidden")]] FarPoints {
       const FourNumbers::Lanes& four = squared[b].numbers;
       if (std::max(std::max(four[0], four[1]), std::max(four[2], four[3])) < squared_min) continue;
       const std::size_t end = std::min(kLanes, points - kLanes * b);
-      for (std::size_t k = 0; k < end; ++k) {  // without a branch: what is not far is written over
+      for (std::size_t k = 0; k < end; ++k) {  // without a branch: entries that are not far enough are overwritten
         squared_[count_] = four[k];
         points_[count_] = static_cast<Index>(kLanes * b + k);
         count_ += static_cast<std::size_t>((four[k] >= squared_min) & (four[k] > 0));
@@ -51,8 +52,8 @@ class [[gnu::visibility("hidden")]] FarPoints {
     }
   }
 
-  // Finds a distance that kMax points are beyond, by counting, in less time than it takes to put them in order. False:
-  // there is none, or it was not found.
+  // Finds a distance beyond which kMax points lie, by counting, which is faster than sorting. Returns false if there is
+  // no such distance, or if it was not found.
   bool keep_by_counting(double low, double high) {
     for (std::size_t i = count_; i % kLanes != 0; ++i) squared_[i] = 0;
     double beyond_low = static_cast<double>(count_), beyond_high = 0;
@@ -92,7 +93,7 @@ class [[gnu::visibility("hidden")]] FarPoints {
     count_ = kept;
   }
 
-  // Where several are equally far, those with the highest numbers.
+  // Of points that are equally far, those with the highest numbers are kept.
   void keep_by_order() {
     struct Far {
       double squared;
@@ -111,7 +112,7 @@ class [[gnu::visibility("hidden")]] FarPoints {
     }
   }
 
-  // In the order of the points. There is room for one group more.
+  // In the order of the points, with room for one more group.
   std::vector<double> squared_;
   std::vector<Index> points_;
   std::size_t count_ = 0;

@@ -24,7 +24,7 @@ double length_inside(std::span<const Crossing> crossings, double begin, double e
   return length;
 }
 
-// What of the chords' union is outside.
+// Returns the length of the part of the chords' union that is outside.
 double length_outside(std::span<const Interval> chords, std::span<const Crossing> crossings) {
   double length = 0;
   for (std::size_t i = 0; i < chords.size();) {

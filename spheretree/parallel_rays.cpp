@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kRaysPerCell = 2;
 
-// Twice the area that a point spans with an edge, positive on its left. Both triangles at an edge get the same number,
-// but for its sign, so no ray slips between them.
+// Returns twice the area of the triangle of a point and an edge, positive on the left of the edge. Both triangles at an
+// edge get the same number with opposite signs, so no ray passes between them.
 double left_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
   const bool turned = b.x() < a.x() || (b.x() == a.x() && b.y() < a.y());
   const Eigen::Vector2d &from = turned ? b : a, &to = turned ? a : b;
   double area = (to.x() - from.x()) * (p.y() - from.y()) - (to.y() - from.y()) * (p.x() - from.x());
-  if (area == 0) area = std::numeric_limits<double>::denorm_min();  // on the edge: taken for its left
+  if (area == 0) area = std::numeric_limits<double>::denorm_min();  // a point on the edge counts as left of it
   return turned ? -area : area;
 }
 
@@ -61,7 +61,7 @@ void find_crossings(const Surface& surface, const ParallelRays& rays, ByRay<Cros
       if ((a > 0) != (b > 0) || (a > 0) != (c > 0)) return;
       const double at =
           (a * rays.along(corners[0]) + b * rays.along(corners[1]) + c * rays.along(corners[2])) / (a + b + c);
-      // Counter-clockwise from above is a triangle that faces up: the ray leaves there.
+      // A triangle that is counter-clockwise from above faces up, so the ray leaves the solid there.
       found.add(ray, {at, a > 0 ? -1 : 1});
     });
   }

@@ -10,8 +10,8 @@
 
 #include "orchard/geometry/surface.h"
 
-// Volumes by parallel rays: what a ray has of a solid, or of a union of balls, is known exactly along it, so only the
-// two directions across are sampled.
+// Computes volumes by parallel rays. The part of a ray inside a solid, or inside a union of balls, is known exactly, so
+// only the two directions across the rays are sampled.
 namespace orchard::detail {
 
 // A part of a ray.
@@ -24,7 +24,7 @@ struct Crossing {
   int rise;
 };
 
-// What each ray meets.
+// The items that each ray meets.
 template <class Item>
 class ByRay {
  public:
@@ -34,7 +34,7 @@ class ByRay {
     ++begin_[ray + 1];
   }
 
-  // Once, when all is there: then rows can be looked at.
+  // Sorts the items. Call it once, after all have been added and before rows are read.
   template <class Before>
   void sort(const Before& before) {
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
@@ -57,7 +57,7 @@ class ByRay {
 // Rays along the z axis of a frame whose z axis is the longest of a box, sorted into cells across it.
 class ParallelRays {
  public:
-  // `shift`: of the sequence, in [0, 1) along each axis; others make independent estimates.
+  // `shift` is the offset of the sequence, in [0, 1) along each axis. Different offsets give independent estimates.
   ParallelRays(const Box& box, std::uint64_t count, const Eigen::Vector2d& shift = {0.5, 0.5});
 
   std::size_t size() const { return places_.size(); }
@@ -65,10 +65,10 @@ class ParallelRays {
   double area() const { return area_; }
   Eigen::Vector2d across(const Point& p) const { return {p[(along_ + 1) % 3], p[(along_ + 2) % 3]}; }
   double along(const Point& p) const { return p[along_]; }
-  // The axes across, in the order of across(), and the one along.
+  // Returns the two axes across the rays, in the order of across(), and the one along them.
   std::array<int, 3> axes() const { return {(along_ + 1) % 3, (along_ + 2) % 3, along_}; }
 
-  // Calls visit(ray) for every ray in the rectangle, and some near it.
+  // Calls visit(ray) for every ray in the rectangle, and for some near it.
   template <class Visit>
   void for_each_near(const Eigen::Vector2d& lower, const Eigen::Vector2d& upper, const Visit& visit) const {
     const auto [x0, y0] = cell_of(lower);
@@ -97,10 +97,10 @@ class ParallelRays {
   double area_ = 0;
   Eigen::Vector2d min_, cell_;
   std::vector<Eigen::Vector2d> places_;
-  std::vector<Index> begin_;  // of each cell among the rays
+  std::vector<Index> begin_;  // where the rays of each cell begin
 };
 
-// What each ray meets of the surface and of the balls, sorted along it.
+// Finds the crossings of each ray with the surface and with the balls, sorted along the ray.
 void find_crossings(const Surface& surface, const ParallelRays& rays, ByRay<Crossing>& found);
 void find_chords(std::span<const Sphere> balls, const ParallelRays& rays, ByRay<Interval>& found);
 

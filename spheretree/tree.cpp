@@ -30,11 +30,11 @@ void validate_node(const SphereTree& tree, Index i, Index& expected_child) {
 }  // namespace
 
 void validate(const SphereTree& tree) {
-  if (tree.nodes.empty()) throw Error("sphere-tree: no root");
+  if (tree.nodes.empty()) throw Error("the sphere-tree has no root");
   require(tree.nodes[0].parent == kNone && tree.nodes[0].level == 0, 0, "is no root");
   Index expected_child = 1;
   for (Index i = 0; i < tree.nodes.size(); ++i) validate_node(tree, i, expected_child);
-  if (expected_child != tree.nodes.size()) throw Error("sphere-tree: nodes without a parent");
+  if (expected_child != tree.nodes.size()) throw Error("the sphere-tree has nodes without a parent");
 }
 
 std::vector<PathBall> path_balls(const SphereTree& tree) {

@@ -10,7 +10,7 @@
 namespace orchard {
 namespace {
 
-// A complete tree grows as branching^depth: beyond this many nodes the text format is the wrong one.
+// A complete tree has about branching^depth nodes. Beyond this limit, the text format is not suitable.
 constexpr std::uint64_t kMaxNodes = 20'000'000;
 
 std::uint64_t complete_size(std::uint64_t levels, std::uint64_t branching) {
@@ -35,10 +35,10 @@ void append_node(std::string& text, const SphereNode* node) {
   text.append(line, static_cast<std::size_t>(length));
 }
 
-// The levels, which count the root, and the branching.
+// Reads the number of levels, which includes the root, and the branching.
 std::array<Index, 2> read_header(TextLines& lines) {
   constexpr const char* kExpected = "\"levels branching\", two whole numbers,";
-  if (!lines.next()) lines.fail("is empty; a .sph file starts with \"levels branching\"");
+  if (!lines.next()) lines.fail("the file is empty; a .sph file starts with \"levels branching\"");
   const double levels = lines.real(kExpected), branching = lines.real(kExpected);
   const auto whole = [](double value, double max) { return value >= 1 && value <= max && value == std::floor(value); };
   if (!whole(levels, 64) || !whole(branching, 4096))
@@ -52,7 +52,7 @@ Sphere read_place(TextLines& lines) {
   return {Point(x, y, z), lines.real(kExpected)};
 }
 
-// Places of used nodes in the complete tree, breadth-first, become the nodes of a compact one.
+// Turns the used places of the complete tree, in breadth-first order, into the nodes of a compact one.
 SphereTree compact(const std::vector<Sphere>& places, Index branching) {
   SphereTree tree;
   tree.branching = branching;
@@ -95,8 +95,8 @@ SphereTree read_sph(const std::filesystem::path& file) {
   TextLines lines(file);
   const auto [levels, branching] = read_header(lines);
   const std::uint64_t size = complete_size(levels, branching);
-  if (size > kMaxNodes) lines.fail("promises more than " + std::to_string(kMaxNodes) + " nodes");
-  // Missing nodes at the end count as unused, so memory follows the file, not the header.
+  if (size > kMaxNodes) lines.fail("the file promises more than " + std::to_string(kMaxNodes) + " nodes");
+  // Nodes missing at the end count as unused, so the memory depends on the length of the file and not on its header.
   std::vector<Sphere> places;
   while (places.size() < size && lines.next()) places.push_back(read_place(lines));
   if (places.empty() || places[0].radius <= 0) lines.fail("the first node, the root, must be in use");

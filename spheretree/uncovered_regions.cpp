@@ -11,19 +11,20 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
-// What is known of distances by other distances may be wrong by a few roundings.
+// The number of places that are tried outward from the middle of an arc, each twice as far as the one before.
+constexpr int kProbes = 14;
+// A margin for distances that are derived from other distances, which may be off by a few rounding errors.
 constexpr double kRegionDistanceFactor = 1 + 1e-6;
-// Uncovered regions below this part of the last growth are left to it.
+// Over the last growth: shallower uncovered regions are left to it.
 constexpr double kLeftToGrowth = 0.4;
 
 struct ArcGroup {
   std::vector<const UncoveredArc*> arcs;
   std::vector<Point> corners;
-  Box box;  // of the corners
+  Box box;  // the box of the corners
 };
 
-// Most groups are told apart by their boxes, and mostly by one side.
+// The boxes exclude most groups, and usually by one side.
 bool bounds_same(const ArcGroup& group, const UncoveredArc& arc, double near) {
   const double limit = near * (1 + 1e-9);
   const auto apart = [&](const Point& end) {
@@ -76,14 +77,14 @@ class Prober {
     region.farthest = inside;
   }
 
-  // An uncovered region between an arc and an edge of the triangle has no corner off its border: look outward from the
-  // arc.
+  // An uncovered region between an arc and an edge of the triangle has no corner off its border. So places outward from
+  // the arc are tried.
   void try_outward(const UncoveredArc& arc, UncoveredRegion& region) {
     Vector out = arc.middle - balls_[arc.ball].center;
     out -= out.dot(normal_) * normal_;
     const double length = out.norm();
     if (!(length > 0)) return;
-    // The distance grows by no more than the way.
+    // The distance grows by at most the length of the path.
     const double here = distance_bound(arc);
     double step = step_;
     for (int probe = 0; probe < kProbes; ++probe, step *= 2)
@@ -96,7 +97,8 @@ class Prober {
     Index first, count;
   };
 
-  // path_distance() from the balls near the triangle; where that is not above `limit`, anything that is not.
+  // Returns path_distance() from the balls near the triangle, or any value of at most `limit` if it is not above
+  // `limit`.
   double distance_beyond(const Point& point, double limit) {
     double min = std::numeric_limits<double>::infinity();
     if (last_ != kNone) {
@@ -108,7 +110,8 @@ class Prober {
     return min;
   }
 
-  // What path_distance() at the middle of an arc does not exceed: that of the path that ends there, if one does.
+  // Returns an upper bound on path_distance() at the middle of an arc: the distance of the path that ends there, if one
+  // does.
   double distance_bound(const UncoveredArc& arc) const {
     if (!balls_[arc.ball].leaf) return std::numeric_limits<double>::infinity();
     double bound = 0;
@@ -121,7 +124,8 @@ class Prober {
     return (point - near_.balls[ball].center).norm() - near_.balls[ball].radius;
   }
 
-  // A path's excess only grows downwards: what is not below the least found so far can be left out.
+  // The excess of a path only grows downwards, so a branch whose excess is not below the smallest one so far is
+  // skipped.
   void descend(Index ball, const Point& point, double above, double limit, double& min) {
     const double here = std::max(above, excess(ball, point));
     if (here >= min) return;
@@ -137,13 +141,14 @@ class Prober {
   Vector normal_;
   std::span<const PathBall> balls_;
   const double step_;
-  NearBalls near_;                  // roots first, children of one ball side by side
-  std::vector<Children> children_;  // of each
+  NearBalls near_;                  // roots first, and the children of a ball next to each other
+  std::vector<Children> children_;  // the children of each ball
   Index roots_ = 0;
-  Index last_ = kNone;  // the leaf that decided the last distance: it is near the next point as well
+  Index last_ = kNone;  // the leaf that decided the last distance, which is probably near the next point as well
 };
 
-// Of those whose distance is not above `beyond`, it stays at that, and where they are farthest is not known.
+// For regions with a distance of at most `beyond`, that distance is reported as it is, and the farthest point is not
+// searched.
 std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, Prober prober, double near,
                                                   double beyond) {
   std::vector<UncoveredRegion> regions;

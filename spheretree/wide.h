@@ -1,10 +1,10 @@
 #pragma once
 
-// Loops over arrays of doubles are compiled a second time for processors with AVX2, by a function that is marked so and
-// into which all that it calls in its file is inlined. Both do the same operations in the same order, and the build
-// fuses none (-ffp-contract=off), so both give the same bits. The choice is ordinary code: no resolver runs before
-// main(), where sanitizers are not ready. Vector types that both share need an alignment that is spelled out: GCC's own
-// is 16 bytes for one and 32 for the other.
+// Loops over arrays of doubles are compiled a second time for processors with AVX2. A function that is marked for that
+// inlines everything that it calls in its file. Both versions do the same operations in the same order, and the build
+// does not fuse any (-ffp-contract=off), so both give the same bits. The choice is made by ordinary code, because a
+// resolver would run before main(), when sanitizers are not ready. Vector types that both versions share need an
+// explicit alignment: GCC's own is 16 bytes in one and 32 in the other.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
 #define ORCHARD_FOR_AVX2 [[gnu::target("avx2"), gnu::flatten]]
 #else
@@ -13,7 +13,7 @@
 
 namespace orchard::detail {
 
-// Whether this processor runs what is marked.
+// Whether this processor can run the code that is marked.
 inline bool wide() {
 #if defined(__x86_64__) && defined(__GNUC__)
   static const bool has = __builtin_cpu_supports("avx2") != 0;

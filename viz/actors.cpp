@@ -17,7 +17,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr vtkIdType kTrianglesOutlined = 20000;  // more would turn the mesh black
+constexpr vtkIdType kTrianglesOutlined = 20000;  // with more triangles, their outlines would turn the mesh black
 
 }  // namespace
 

@@ -42,7 +42,7 @@ Data as_poly_data(vtkUnstructuredGrid* grid) {
   result->GetPointData()->ShallowCopy(grid->GetPointData());
   vtkNew<vtkCellArray> lines, polygons;
   vtkNew<vtkIdList> corners;
-  std::vector<vtkIdType> order;  // lines are the first cells of PolyData
+  std::vector<vtkIdType> order;  // in PolyData, lines come before other cells
   const auto add = [&](bool line, vtkCellArray* cells) {
     for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
       const int type = grid->GetCellType(i);

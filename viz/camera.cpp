@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMargin = 1.06;  // around what is drawn
+constexpr double kMargin = 1.06;  // the size of the view over that of the model
 
-// The length of a pixel.
+// Returns the length of a pixel.
 double unit_of(const View& view, int width, int height, int caption_height) {
   return kMargin * std::max(view.height / (height - caption_height), view.width / width);
 }
@@ -22,7 +22,7 @@ double unit_of(const View& view, int width, int height, int caption_height) {
 View looking(const Direction& request) {
   const int axis = request.up - 'x';
   const Vector3d up = Vector3d::Unit(axis);
-  // z up: the front is -y, as CAD has it; y up: the front is z.
+  // If z is up, the front is -y, as in CAD; if y is up, the front is z.
   const Vector3d front = axis == 2 ? Vector3d(-Vector3d::UnitY()) : Vector3d(Vector3d::Unit((axis + 1) % 3));
   const Vector3d side = up.cross(front);
   constexpr double kDegree = std::numbers::pi / 180;
@@ -44,7 +44,7 @@ View make_view(const Direction& request, const std::vector<Extent>& extents) {
     box.extend(seen - Vector3d::Constant(extent.radius));
     box.extend(seen + Vector3d::Constant(extent.radius));
   }
-  if (box.isEmpty() || !(box.sizes().norm() > 0)) throw std::runtime_error("nothing to draw");
+  if (box.isEmpty() || !(box.sizes().norm() > 0)) throw std::runtime_error("the files contain nothing to draw");
   const Vector3d middle = box.center();
   view.center = middle.x() * view.right + middle.y() * view.up + middle.z() * view.backward;
   view.width = std::max(box.sizes().x(), 0.01 * box.sizes().norm());

@@ -6,7 +6,7 @@
 
 #include "panels.h"
 
-// From where a model is seen.
+// The direction from which a model is seen, and the part of it that is seen.
 namespace orchard::detail {
 
 struct Direction {
@@ -15,34 +15,35 @@ struct Direction {
 };
 
 struct View {
-  Eigen::Vector3d right, up, backward;  // the picture's axes; backward: towards the eye
+  Eigen::Vector3d right, up, backward;  // the axes of the picture; `backward` points towards the eye
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double width = 1, height = 1;  // of what must be seen
-  double depth = 1;              // half of it
+  double width = 1, height = 1;  // of what has to be in view
+  double depth = 1;              // half of its depth
 };
 
-// Which way the axes point, without a centre and a size.
+// Returns the axes of a view, without centre and size.
 View looking(const Direction& direction);
-// Everything in view. Throws std::runtime_error if there is nothing.
+// Returns a view of everything. Throws std::runtime_error if there is nothing.
 View make_view(const Direction& direction, const std::vector<Extent>& extents);
 
-// The same direction, at a part of what there is: `span` wide and high.
+// Returns a view in the same direction that is `span` wide and high.
 View look_at(View view, const Eigen::Vector3d& center, double span);
-// The same direction, with room for everything from all directions: for pictures that are shown one after the other.
+// Returns a view in the same direction that has room for everything seen from any direction, for pictures that are
+// shown one after another.
 View steady(View view, const std::vector<Extent>& extents);
 
-// Places in a picture: x to the right and y upward in pixels from its lower left corner, z towards the eye.
+// Maps places to a picture: x to the right and y upward, in pixels from the lower left corner, and z towards the eye.
 struct Projection {
-  Eigen::Vector3d right, up, backward, center;       // as of a View
+  Eigen::Vector3d right, up, backward, center;       // those of the View
   double unit = 1;                                   // the length of a pixel
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // where the centre is
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // the position of the centre in the picture
 
   Eigen::Vector3d operator()(const Eigen::Vector3d& place) const;
 };
-// That of aim().
+// Returns the projection that aim() sets up.
 Projection projection_of(const View& view, int width, int height, int caption_height);
 
-// The model in a rectangle of pixels, above its lowest `caption_height`.
+// Aims a camera so that the model fills a rectangle of pixels above the lowest `caption_height`.
 void aim(vtkCamera* camera, const View& view, int width, int height, int caption_height);
 
 }  // namespace orchard::detail

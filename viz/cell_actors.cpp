@@ -13,8 +13,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of the diagonal
-constexpr double kShrink = 0.93;    // of a cell, so that one sees where it ends
+constexpr double kRounding = 1e-6;  // of the diagonal: inaccuracy up to this counts as rounding
+constexpr double kShrink = 0.93;    // the drawn size of a cell over its size, so that gaps show where it ends
 
 Eigen::Vector3d corner(vtkDataSet* data, vtkIdType point) {
   Eigen::Vector3d result;
@@ -22,7 +22,7 @@ Eigen::Vector3d corner(vtkDataSet* data, vtkIdType point) {
   return result;
 }
 
-// Neighbours should differ, whatever their numbers.
+// Consecutive numbers get different colours.
 Color cell_color(vtkIdType cell) {
   const auto mixed = static_cast<std::uint64_t>(cell) * 0x9e3779b97f4a7c15U;
   Color color = kBranchColors.at((mixed >> 40) % kBranchColors.size());
@@ -30,7 +30,7 @@ Color cell_color(vtkIdType cell) {
   return color;
 }
 
-// The polyhedra of the half that is away from the eye, or all of them, each drawn in towards its middle.
+// Returns the polyhedra of the half that is away from the eye, or all of them, each shrunk towards its middle.
 Data parted(vtkUnstructuredGrid* grid, const Backward& backward) {
   const Eigen::Vector3d to_eye = backward ? Eigen::Vector3d(backward->data()) : Eigen::Vector3d::Zero();
   const double middle = Eigen::Vector3d(grid->GetCenter()).dot(to_eye);
@@ -84,7 +84,7 @@ vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Backward& 
   mapper->SelectColorArray("color");
   vtkProperty* property = actor->GetProperty();
   property->SetInterpolationToFlat();
-  property->SetDiffuse(0.72);  // pale colours stay colours where the light is brightest
+  property->SetDiffuse(0.72);  // so that pale colours do not turn white in bright light
   property->EdgeVisibilityOn();
   property->SetEdgeColor(kInk[0], kInk[1], kInk[2]);
   property->SetLineWidth(static_cast<float>(0.5 * line_width));

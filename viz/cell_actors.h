@@ -6,7 +6,7 @@
 
 #include "actors.h"
 
-// Voronoi cells, as write_voronoi_cells() writes them.
+// Draws Voronoi cells that write_voronoi_cells() has written.
 namespace orchard::detail {
 
 using Backward = std::optional<std::array<double, 3>>;
@@ -14,8 +14,8 @@ using Backward = std::optional<std::array<double, 3>>;
 // Whether cells are more inaccurate than rounding makes them.
 bool is_inaccurate(vtkUnstructuredGrid* grid);
 
-// The polyhedra of the half that is away from the eye, or all of them, drawn apart: each in a colour of its own, or by
-// inaccuracy where there is any.
+// Draws the polyhedra of the half that is away from the eye, or all of them, with gaps between them. Each has a colour
+// of its own, or the colours show the inaccuracy if there is any.
 vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Backward& backward, double line_width);
 
 }  // namespace orchard::detail

@@ -22,7 +22,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{5};
-constexpr std::chrono::seconds kPatienceAtEnd{2};  // between asking a program to end and killing it
+constexpr std::chrono::seconds kPatienceAtEnd{2};  // the time between asking a program to end and killing it
 
 std::vector<std::string> environment_with(const std::string& display) {
   std::vector<std::string> variables;
@@ -83,7 +83,7 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// One line without its end; what came until then if the other side closes or the deadline passes.
+// Returns one line without its end, or a part of it if the other side closes the pipe or the deadline passes.
 std::string read_line(int descriptor, Clock::time_point deadline, const Progress& progress) {
   std::string line;
   for (;;) {
@@ -124,7 +124,7 @@ std::optional<int> ChildProcess::wait_until(Clock::time_point deadline, const Pr
     int status = 0;
     const pid_t result = waitpid(pid_, &status, WNOHANG);
     if (result == pid_ ||
-        (result < 0 && errno == ECHILD)) {  // ECHILD: the host ignores SIGCHLD, so it is not known how
+        (result < 0 && errno == ECHILD)) {  // ECHILD: this process ignores SIGCHLD, so the exit status is not known
       ended_ = result == pid_ ? status : 0;
     } else if (Clock::now() >= deadline) {
       break;
@@ -150,7 +150,7 @@ std::filesystem::path find_in_path(const std::string& name) {
 VirtualDisplay::VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log,
                                Clock::duration patience, const Progress& progress) {
   Pipe pipe;
-  // -terminate: should this process be killed, the server follows its last client.
+  // -terminate ends the server after its last client, in case this process is killed.
   server_.emplace(
       Launch{.program = xvfb,
              .arguments = {"-displayfd", "3", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-terminate", "5"},

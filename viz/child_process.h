@@ -9,7 +9,7 @@
 
 #include "orchard/geometry/progress.h"
 
-// Other programs, run with deadlines (POSIX).
+// Runs other programs with deadlines (POSIX).
 namespace orchard::detail {
 
 using Clock = std::chrono::steady_clock;
@@ -17,12 +17,12 @@ using Clock = std::chrono::steady_clock;
 struct Launch {
   std::filesystem::path program;
   std::vector<std::string> arguments;  // without the program's name
-  std::string display;                 // $DISPLAY of the child; empty: as here
-  std::filesystem::path log;           // takes standard output and error; empty: they go where this one's go
-  int passed_descriptor = -1;          // becomes descriptor 3 of the child
+  std::string display;                 // $DISPLAY of the child; empty for the value of this process
+  std::filesystem::path log;           // receives standard output and error; empty for those of this process
+  int passed_descriptor = -1;          // it becomes descriptor 3 of the child
 };
 
-// A running program; the destructor ends and reaps it.
+// A running program. The destructor ends it and waits for it.
 class ChildProcess {
  public:
   explicit ChildProcess(const Launch& launch);  // throws Error if it cannot be started
@@ -30,8 +30,8 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // How it ended, as waitpid() has it; nothing while it still runs at the deadline. Throws Cancelled if `progress`,
-  // which is asked every few milliseconds, wants no more.
+  // Returns the status of waitpid(), or nullopt if the program still runs at the deadline. Throws Cancelled if
+  // `progress`, which is called every few milliseconds, returns false.
   std::optional<int> wait_until(Clock::time_point deadline, const Progress& progress = {});
 
  private:
@@ -39,13 +39,13 @@ class ChildProcess {
   std::optional<int> ended_;
 };
 
-// A program in the folders of $PATH; empty if there is none.
+// Returns the path of a program in the folders of $PATH; empty if there is none.
 std::filesystem::path find_in_path(const std::string& name);
 
-// A virtual X server (Xvfb) that lives as long as this value.
+// A virtual X server (Xvfb) that runs until this object is destroyed.
 class VirtualDisplay {
  public:
-  // Returns once the server takes connections. Throws Error if that takes longer than `patience`, and Cancelled as
+  // Returns once the server accepts connections. Throws Error if that takes longer than `patience`, and Cancelled as
   // wait_until() does.
   VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log, Clock::duration patience,
                  const Progress& progress = {});

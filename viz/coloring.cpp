@@ -22,11 +22,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr Color kUndefined = rgb(0xb8b8b8);  // of values that are not defined
-const std::set<std::string> kCategories{"answer",         "body",    "branch", "carried",     "cluster", "component",
-                                        "kind",           "measure", "node",   "origin",      "parent",  "segment",
-                                        "part",           "region",  "curve",  "thin_region", "sheet",   "structure",
-                                        "structure_kind", "trunk",   "wall"};
+constexpr Color kUndefined = rgb(0xb8b8b8);  // for values that are not defined
+const std::set<std::string> kCategories{
+    "answer", "body",      "branch",         "carried", "cluster",       "component", "kind",  "measure",
+    "node",   "origin",    "parent",         "segment", "part",          "region",    "curve", "thin_region",
+    "sheet",  "structure", "structure_kind", "trunk",   "topology_face", "has_faces"};
 
 std::vector<vtkPolyData*> all_of(const ViewParts& parts) {
   std::vector<vtkPolyData*> all;
@@ -42,7 +42,7 @@ vtkDataArray* array_in(vtkDataSetAttributes* data, const std::string& name) {
   return array != nullptr && array->GetNumberOfComponents() == 1 ? array : nullptr;
 }
 
-// Numbers of things belong to cells rather than to the points between them.
+// Whether the colours are those of cells. Numbers of parts belong to cells rather than to the points between them.
 bool of_cells(const Coloring& coloring, vtkPolyData* data) {
   const bool cells = array_in(data->GetCellData(), coloring.array) != nullptr;
   return cells && (coloring.categories || array_in(data->GetPointData(), coloring.array) == nullptr);
@@ -89,12 +89,12 @@ void add_print(vtkRenderer* renderer, const std::string& text, double x, double 
   renderer->AddViewProp(actor);
 }
 
-// A short line on the right of the bar.
+// Adds a short line on the right of the bar.
 void add_mark(vtkRenderer* renderer, double left, double right, double y, double width) {
   add_screen_line(renderer, {left, y}, {right, y}, kInk, width);
 }
 
-// Rectangles one above the other.
+// Makes a bar of rectangles one above the other.
 vtkSmartPointer<vtkPolyData> bar(const Coloring& coloring, double left, double right, double low, double high) {
   constexpr int kSteps = 128;
   auto data = vtkSmartPointer<vtkPolyData>::New();
@@ -105,7 +105,8 @@ vtkSmartPointer<vtkPolyData> bar(const Coloring& coloring, double left, double r
     points->InsertNextPoint(left, y, 0);
     points->InsertNextPoint(right, y, 0);
     if (i == kSteps) break;
-    const std::array<vtkIdType, 4> corners{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2};
+    const vtkIdType first = vtkIdType{2} * i;
+    const std::array<vtkIdType, 4> corners{first, first + 1, first + 3, first + 2};
     quads->InsertNextCell(4, corners.data());
   }
   data->SetPoints(points);
@@ -181,7 +182,7 @@ void apply(const Coloring& coloring, vtkPolyData* data, vtkActor* actor) {
     mapper->UseLookupTableScalarRangeOn();
     mapper->InterpolateScalarsBeforeMappingOn();
   }
-  // Colours that stand for values are not to be changed much by light.
+  // Light should hardly change colours that represent values.
   actor->GetProperty()->SetAmbient(0.35);
   actor->GetProperty()->SetDiffuse(0.65);
   actor->GetProperty()->SetSpecular(0);
@@ -225,7 +226,7 @@ vtkSmartPointer<vtkRenderer> color_bar(const Coloring& coloring, int width, int 
     add_mark(renderer, right, right + 0.06 * width, place, std::max(1.0, print / 14.0));
     add_print(renderer, text, right + 0.09 * width, place, print, false);
   }
-  constexpr double kLetter = 0.5;  // width of a letter, of the size of print
+  constexpr double kLetter = 0.5;  // the width of a letter over the size of the print
   const double room = 0.98 * height / (kLetter * static_cast<double>(std::max<std::size_t>(coloring.title.size(), 1)));
   add_print(renderer, coloring.title, 0.16 * width, 0.5 * (low + high), std::min(print, static_cast<int>(room)), true);
   return renderer;

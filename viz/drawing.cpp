@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using detail::Clock;
 
 constexpr std::chrono::seconds kPatienceForDisplay{10};  // Xvfb takes 0.1 s on an idle machine
-constexpr const char* kPrefix = "picture";               // of what is drawn, in the temporary folder
+constexpr const char* kPrefix = "picture";               // the prefix of the temporary files
 
 class TemporaryFolder {
  public:
@@ -64,8 +64,8 @@ fs::path find_renderer(const PipelinePicture& picture) {
   return detail::find_in_path("orchard-render");
 }
 
-// The last line that a program wrote, if any, for a message; without the control sequences that VTK colours its log
-// with.
+// Returns the last line that a program wrote, if any, for a message, without the control sequences with which VTK
+// colours its log.
 std::string last_words(const fs::path& log) {
   const std::string text = std::regex_replace(content(log), std::regex("\\x1b\\[[0-9;]*m"), "");
   const std::size_t end = text.find_last_not_of(" \n");
@@ -102,7 +102,7 @@ std::vector<std::string> arguments_of(const Drawing& drawing) {
   return arguments;
 }
 
-// Why a program that ended so has failed, or nothing.
+// Returns why a program with this exit status failed, or nullopt if it did not fail.
 std::optional<std::string> failure_of(const std::string& where, int status, const fs::path& log) {
   if (WIFSIGNALED(status)) return where + " was ended by signal " + std::to_string(WTERMSIG(status)) + last_words(log);
   if (WEXITSTATUS(status) != 0) return where + " failed" + last_words(log);
@@ -111,7 +111,7 @@ std::optional<std::string> failure_of(const std::string& where, int status, cons
 
 bool is_vector_ending(const std::string& ending) { return ending == ".svg" || ending == ".pdf"; }
 
-// Runs orchard-render on one display; the reason why it failed, or nothing.
+// Runs orchard-render on one display. Returns why it failed, or nullopt.
 std::optional<std::string> run_renderer(const Drawing& drawing, const std::string& display) {
   const PipelinePicture& picture = drawing.picture;
   const fs::path log = drawing.folder / "render.log";
@@ -137,7 +137,7 @@ std::optional<std::string> run_on_virtual_display(const Drawing& drawing) {
   }
 }
 
-// Pictures of lines need no display. Where there is a display it is tried first.
+// Pictures of lines need no display. Otherwise, the present display is tried first if there is one.
 std::optional<std::string> run_somewhere(const Drawing& drawing) {
   if (is_vector_ending(drawing.png.extension().string())) return run_renderer(drawing, "");
   std::string reasons = "DISPLAY is not set";
@@ -151,7 +151,7 @@ std::optional<std::string> run_somewhere(const Drawing& drawing) {
   return reasons + ", and " + *failure;
 }
 
-// What `work` says, or why it could not.
+// Returns the result of `work`, or the reason why it failed.
 template <class Work>
 PictureStatus tried(const Work& work) {
   try {

@@ -6,16 +6,18 @@
 
 #include "orchard/viz/render.h"
 
-// How orchard-render is run: with files in a folder that is gone afterwards.
+// Runs orchard-render with files in a temporary folder.
 namespace orchard::detail {
 
-using WriteScene = std::function<void(const std::filesystem::path& prefix)>;  // files, and prefix.vtm to open them
+// Writes files, and prefix.vtm, which opens them.
+using WriteScene = std::function<void(const std::filesystem::path& prefix)>;
 
-// A picture; `more`: further options of orchard-render.
+// Draws a picture. `more` has further options of orchard-render.
 PictureStatus draw(const std::filesystem::path& png, const PipelinePicture& picture,
                    const std::vector<std::string>& more, const WriteScene& write);
 
-// A window on $DISPLAY, until it is closed. What it prints goes where this program's output goes.
+// Opens a window on $DISPLAY and returns when it is closed. Output of the window's program goes to this program's
+// output.
 PictureStatus show(const std::filesystem::path& png, const PipelinePicture& picture,
                    const std::vector<std::string>& more, const WriteScene& write);
 

@@ -16,7 +16,7 @@
 namespace orchard::detail {
 namespace {
 
-// The places of one measure, numbered, which numbers they have, and the largest value there: %, as arrays have it.
+// The places of one measure with their numbers, and the largest value among them, in % as in the arrays.
 struct Worst {
   std::vector<Label> labels;
   std::string span;
@@ -44,10 +44,10 @@ Worst worst_of(vtkPolyData* places, int measure) {
   return worst;
 }
 
-// What a panel says below its caption, and its labels. `max`: of the values that are drawn, which need not be at the
-// worst places.
+// Writes the text below a panel's caption, and adds its labels. `max` is the largest of the values that are drawn,
+// which may be elsewhere than at the worst places.
 void describe(Panel& panel, Worst worst, double max) {
-  constexpr double kNothing = 5e-5;  // %: what is less is rounding
+  constexpr double kNothing = 5e-5;  // in %: smaller values are rounding errors
   max = std::max(max, worst.max);
   if (max < kNothing) {
     panel.detail = "none above 0.0001 % of the diagonal";
@@ -59,7 +59,7 @@ void describe(Panel& panel, Worst worst, double max) {
   panel.labels = std::move(worst.labels);
 }
 
-// A dent is of the reconstruction, below the surface: it is numbered where the surface is drawn.
+// A dent is a place of the reconstruction below the surface, so it is numbered in the panel that shows the surface.
 void add_dents(Panel& panel, const Worst& dents) {
   for (const Label& label : dents.labels) {
     panel.detail += "; deepest dent: " + label.text;
@@ -67,9 +67,9 @@ void add_dents(Panel& panel, const Worst& dents) {
   }
 }
 
-// An axis, and where it is bad.
+// An axis and the places where it is worst.
 struct JudgedAxis {
-  std::string name;  // empty: the only one
+  std::string name;  // empty if there is only one axis
   Data points, medial, places;
 
   double max_coverage() const { return max_of(points, "coverage"); }
@@ -85,7 +85,7 @@ std::string captioned(const JudgedAxis& axis, const char* caption) {
   return axis.name.empty() ? caption : axis.name + ": " + caption;
 }
 
-// The colours reach to `max`, which is that of all axes.
+// The colours have the range up to `max`, which is the largest value of all axes.
 Panel coverage_panel(vtkPolyData* mesh, const JudgedAxis& axis, double max, double size, double line_width) {
   Panel panel{make_renderer(size), captioned(axis, "surface left uncovered"), {}};
   const vtkIdType count = axis.points->GetNumberOfPoints();
@@ -121,7 +121,7 @@ Panel protrusion_panel(vtkPolyData* mesh, const JudgedAxis& axis, double max, do
   return panel;
 }
 
-// The first axis, and those beside it: the blocks "medial mesh 2: NAME" and so on.
+// Returns the first axis, and those in the blocks "medial mesh 2: NAME" and so on.
 std::vector<JudgedAxis> axes_of(const Blocks& blocks) {
   std::vector<JudgedAxis> axes{{"", blocks["surface points"], blocks["medial mesh"], blocks["worst places"]}};
   for (const auto& [block, data] : blocks.all()) {

@@ -4,7 +4,7 @@
 
 namespace orchard::detail {
 
-// Where a medial axis is bad, from the blocks of draw_medial_errors(), which must be there.
+// Draws where a medial axis is worst, from the blocks of draw_medial_errors(), which must exist.
 Panels error_panels(const Blocks& blocks, double line_width);
 
 }  // namespace orchard::detail

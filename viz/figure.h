@@ -5,14 +5,14 @@
 
 namespace orchard::detail {
 
-// What is asked of the picture of a scene (Figure in view.h).
+// The options of a picture of a scene (Figure in view.h).
 struct FigureOptions {
-  std::string color = {};                           // an array; empty: each thing in its own colours
-  std::string bar_title = {};                       // beside the bar of its colours; empty: the array's name
+  std::string color = {};                           // an array; empty for a colour of its own for each part
+  std::string bar_title = {};                       // the title of the colour bar; empty for the name of the array
   std::string map = "viridis";                      // of kColorMaps
-  std::optional<std::array<double, 2>> range = {};  // of its values; nothing: of all that are finite
-  std::optional<std::array<double, 4>> clip = {};   // a, b, c, d: what has a x + b y + c z > d is cut away
-  std::optional<std::array<double, 6>> room = {};   // two corners of a box that must fit in, beside what is there
+  std::optional<std::array<double, 2>> range = {};  // of the array's values; nullopt for all finite ones
+  std::optional<std::array<double, 4>> clip = {};   // a, b, c, d: the part with a x + b y + c z > d is cut away
+  std::optional<std::array<double, 6>> room = {};   // two corners of a box that has to be in view, too
   bool edges = false, balls = false, beside = false;
 };
 

@@ -12,13 +12,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSphereSlack = 0.002;  // of the radius
+constexpr double kSphereSlack = 0.002;  // of the radius: lines nearer than this to a sphere are not hidden by it
 constexpr int kMostCells = 1024;        // along each side
 constexpr int kMostPieces = 4096;       // of a segment
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Cuts [begin, end] down to where from + t (to - from) >= 0. Whether something is left.
+// Limits [begin, end] to the part where from + t (to - from) >= 0. Returns whether anything is left.
 bool cut(double from, double to, double& begin, double& end) {
   if (from == to) return from >= 0;
   const double zero = from / (from - to);
@@ -29,7 +29,7 @@ bool cut(double from, double to, double& begin, double& end) {
   return begin < end;
 }
 
-// Where |p + t d| < radius.
+// Returns the range of t with |p + t d| < radius.
 std::optional<std::pair<double, double>> inside(double dd, double pd, double pp, double radius) {
   if (dd == 0) return pp < radius * radius ? std::optional(std::pair(0.0, 1.0)) : std::nullopt;
   const double root = pd * pd - dd * (pp - radius * radius);
@@ -42,7 +42,7 @@ std::optional<std::pair<double, double>> inside(double dd, double pd, double pp,
 
 void Occluders::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const double area = cross((b - a).head<2>(), (c - a).head<2>());
-  if (area == 0) return;  // edge-on
+  if (area == 0) return;  // the triangle is seen edge-on
   if (area > 0)
     triangles_.push_back({a, b, c});
   else
@@ -84,10 +84,10 @@ void Occluders::sort(const std::vector<std::pair<Vector2d, Vector2d>>& boxes) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const auto [x0, y0, x1, y1] = cells_of(boxes[i].first, boxes[i].second);
       for (int y = y0; y <= y1; ++y)
-        for (int x = x0; x <= x1; ++x) put(static_cast<std::size_t>(y * columns_ + x), static_cast<int>(i));
+        for (int x = x0; x <= x1; ++x) put(cell_at(x, y), static_cast<int>(i));
     }
   };
-  begin_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  begin_.assign(cell_at(0, rows_) + 1, 0);
   visit([&](std::size_t cell, int) { ++begin_[cell + 1]; });
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   sorted_.resize(static_cast<std::size_t>(begin_.back()));
@@ -111,12 +111,12 @@ void Occluders::hide_by(const std::array<Vector3d, 3>& triangle, const Vector3d&
     if (!cut(cross(side, a.head<2>() - from), cross(side, b.head<2>() - from), begin, end)) return;
   }
   const Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);  // z > 0
-  // How far the triangle is in front of the line, less the slack.
+  // Returns how far the triangle is in front of the line, minus the slack.
   const auto before = [&](const Vector3d& p) { return normal.dot(triangle[0] - p) / normal.z() - slack_; };
   if (cut(before(a), before(b), begin, end)) hidden.emplace_back(begin, end);
 }
 
-// Behind the front half of a sphere is what is inside it, and what is behind its middle within its outline.
+// A sphere hides what is inside it, and what is behind its middle within its outline.
 void Occluders::hide_by(const Sphere& sphere, const Vector3d& a, const Vector3d& b, Hidden& hidden) {
   const double radius = (1 - kSphereSlack) * sphere.radius;
   const Vector3d p = a - sphere.center, d = b - a;
@@ -142,7 +142,7 @@ std::vector<std::pair<double, double>> Occluders::visible(const Vector3d& a, con
     const auto [x0, y0, x1, y1] = cells_of(from.cwiseMin(to), from.cwiseMax(to));
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {
-        const auto cell = static_cast<std::size_t>(y * columns_ + x);
+        const auto cell = cell_at(x, y);
         near.insert(near.end(), sorted_.begin() + begin_[cell], sorted_.begin() + begin_[cell + 1]);
       }
     }

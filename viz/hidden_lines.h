@@ -6,11 +6,12 @@
 
 namespace orchard::detail {
 
-// What hides lines in a picture. Coordinates are those of the picture: x to the right, y upward, z towards the eye,
-// which is infinitely far away.
+// Finds the parts of lines in a picture that triangles and spheres hide. Coordinates are those of the picture: x to the
+// right, y upward, and z towards the eye, which is infinitely far away.
 class Occluders {
  public:
-  // Nothing hides a line that is nearer to it than `slack`, along z: lines lie on the surfaces that they belong to.
+  // A line that is nearer than `slack` to a surface, along z, is not hidden by it, because lines lie on the surfaces
+  // that they belong to.
   explicit Occluders(double slack) : slack_(slack) {}
 
   void add_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
@@ -29,7 +30,7 @@ class Occluders {
     double radius;
   };
   using Hidden = std::vector<std::pair<double, double>>;
-  using Box = std::array<int, 4>;  // of cells: from x, y to x, y, both included
+  using Box = std::array<int, 4>;  // of cells: from x, y to x, y inclusive
 
   Box cells_of(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const;
   void sort(const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& boxes);
@@ -38,13 +39,18 @@ class Occluders {
                Hidden& hidden) const;
   static void hide_by(const Sphere& sphere, const Eigen::Vector3d& a, const Eigen::Vector3d& b, Hidden& hidden);
 
+  std::size_t cell_at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+  }
+
   double slack_;
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
   std::vector<Sphere> spheres_;
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
   double cell_ = 1;
   int columns_ = 0, rows_ = 0;
-  std::vector<int> begin_, sorted_;  // of each cell; numbers of triangles, then of spheres
+  // Where the list of each cell begins; the lists have numbers of triangles, then of spheres.
+  std::vector<int> begin_, sorted_;
 };
 
 }  // namespace orchard::detail

@@ -36,7 +36,7 @@ bool meets(const Vector2d& a, const Vector2d& b, const WordBox& box) {
   return begin <= end;
 }
 
-// What a place of a word costs: 0 where it covers nothing.
+// Returns a cost for the position of a word, which is 0 if it covers nothing.
 double cost_of(const PlacedWord& word, const std::vector<PlacedWord>& words, std::size_t placed, const WordBox& room) {
   const double margin = 0.15 * word.size.y(), area = word.size.prod();
   const WordBox own = box_of(word, margin);

@@ -58,13 +58,14 @@ void add_word(vtkRenderer* renderer, const std::string& text, const Vector2d& mi
 
 void add_labels(vtkRenderer* renderer, const std::vector<Label>& labels, const View& view, const View& other,
                 const LabelRoom& room) {
-  constexpr double kLetter = 0.62, kHeight = 1.25;  // of a word in bold print, of the size of print
+  // The width and height of a letter in bold print, over the size of the print.
+  constexpr double kLetter = 0.62, kHeight = 1.25;
   const Projection projection = projection_of(view, room.width, room.height, room.below);
   std::vector<PlacedWord> words;
   std::vector<std::string> texts;
   for (const Label& label : labels) {
     if (Vector3d(label.outward.data()).dot(view.backward - other.backward) < 0) continue;
-    const double letters = static_cast<double>(label.text.size()) + 1;  // and a blank, half as wide, on both sides
+    const double letters = static_cast<double>(label.text.size()) + 1;  // half a blank is added on both sides
     words.push_back({.anchor = projection(Vector3d(label.position.data())).head<2>(),
                      .size = room.print * Vector2d(kLetter * letters, kHeight)});
     texts.push_back(label.text);

@@ -14,8 +14,8 @@ struct LabelRoom {
   double print;
 };
 
-// Adds the labels whose places face this eye more than the other one: each a word beside its place, with a dot there
-// and a line from the one to the other. No word covers another one.
+// Adds the labels whose places face this eye rather than the opposite one. Each is a word next to its place, with a dot
+// on the place and a line between both. No word covers another one.
 void add_labels(vtkRenderer* renderer, const std::vector<Label>& labels, const View& view, const View& other,
                 const LabelRoom& room);
 

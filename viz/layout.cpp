@@ -7,9 +7,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kWidestPanel = 1.3;  // of its height
+constexpr double kWidestPanel = 1.3;  // over its height
 constexpr int kWidestBar = 160;       // pixels
-constexpr int kRowHeight = 560;       // pixels, where no height is asked for
+constexpr int kRowHeight = 560;       // in pixels, if no height is asked for
 
 }  // namespace
 
@@ -62,7 +62,7 @@ Views views_of(const Request& request, const std::vector<Extent>& extents, bool 
 }
 
 double fitting(const std::string& text, double pixels, double width) {
-  constexpr double kLetter = 0.54;  // width of a letter, of the size of print: on the safe side
+  constexpr double kLetter = 0.54;  // the width of a letter over the size of the print, estimated generously
   return std::min(pixels, width / kLetter / static_cast<double>(std::max<std::size_t>(text.size(), 1)));
 }
 

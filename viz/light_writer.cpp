@@ -20,10 +20,10 @@ namespace {
 
 constexpr double kSharpDegrees = 40;
 
-// Segments between points of their own.
+// Segments, each with two points of its own.
 struct OutlineSegments {
   std::vector<Point> points;
-  std::vector<int> kinds;  // of each two points
+  std::vector<int> kinds;  // of each segment
 
   void add(const Point& a, const Point& b, int kind) {
     points.push_back(a);
@@ -77,7 +77,7 @@ void add_section(const TriangleMesh& mesh, int axis, double place, OutlineSegmen
 void write_outline(const std::filesystem::path& vtp, const Surface& surface, int sections) {
   OutlineSegments lines;
   add_sharp_edges(surface.mesh(), lines);
-  const Box box = surface.bounding_box();
+  const Box& box = surface.bounding_box();
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < sections; ++i)
       add_section(surface.mesh(), axis, box.min()[axis] + (i + 0.5) / sections * box.sizes()[axis], lines);

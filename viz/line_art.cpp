@@ -23,13 +23,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSlack = 2e-4;  // of the larger side of the panel: how near a line is to what it lies on
-constexpr int kCircle = 72;      // sides of a circle: its chords are within Occluders' slack for spheres
+constexpr double kSlack = 2e-4;  // of the larger side of the panel: lines nearer to a surface than this lie on it
+// The number of sides of a circle, chosen so that chords are within Occluders' slack for spheres.
+constexpr int kCircle = 72;
 constexpr std::size_t kMostMeetings = 20'000;
 
-// Without doubled points, cut by the plane.
+// Returns the surface without repeated points, cut by the plane.
 Data prepared(vtkPolyData* surface, const std::optional<std::array<double, 4>>& plane) {
-  vtkNew<vtkTriangleFilter> triangles;  // strips, too
+  vtkNew<vtkTriangleFilter> triangles;  // also divides strips into triangles
   triangles->SetInputData(surface);
   triangles->PassVertsOff();
   vtkNew<vtkCleanPolyData> clean;
@@ -72,8 +73,7 @@ std::vector<Side> sides_of(const std::vector<std::array<int, 3>>& triangles) {
   return sides;
 }
 
-// Whether both triangles are on one side of their common edge, as seen: one of them faces the eye and the other does
-// not.
+// Whether both triangles are seen on one side of their common edge, because only one of them faces the eye.
 bool is_outline(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
   const auto side = [&](const Vector3d& p) {
     return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());

@@ -11,21 +11,21 @@
 
 namespace orchard::detail {
 
-// The visible lines of what one panel of a picture of lines shows: outlines, sharp edges, and the borders, seams and
-// curves of medial axes. Add everything, then ask for the lines.
+// Finds the visible lines of one panel of a line drawing: outlines, sharp edges, and the borders, seams and curves of
+// medial axes. Call lines() after everything has been added.
 class LineArt {
  public:
-  // `projection` gives places in points from the lower left corner of a panel of this size; lines end at its sides.
+  // `projection` maps to points from the lower left corner of a panel of this size. Lines end at its sides.
   LineArt(const Projection& projection, double width, double height)
       : projection_(projection), sides_(Eigen::Vector2d::Zero(), Eigen::Vector2d(width, height)) {}
 
-  // What has a x + b y + c z > d is left out of surfaces that are added from now on.
+  // Surfaces that are added after this are cut: the part with a x + b y + c z > d is left out.
   void clip(const std::array<double, 4>& plane) { plane_ = plane; }
 
   enum class Surface {
     axis,   // sheets: outlines, borders, seams; lines are curves
     solid,  // outlines, sharp edges and borders
-    glass   // likewise, in grey: it hides nothing but its own lines
+    glass   // the same in grey; it hides only its own lines
   };
   void add_surface(vtkPolyData* surface, Surface kind);
   // Outlines of spheres with their radii from the point array `radius`, and the circles where they meet if these are
@@ -33,7 +33,7 @@ class LineArt {
   void add_spheres(vtkPolyData* spheres);
   void add_points(vtkPolyData* points);
 
-  // From the lower left corner, in the order in which they are drawn.
+  // Returns the lines in the order in which they are drawn, from the lower left corner.
   std::vector<VectorLine> lines() const;
 
  private:
@@ -58,9 +58,9 @@ class LineArt {
   Eigen::AlignedBox2d sides_;
   std::optional<std::array<double, 4>> plane_;
   std::vector<Eigen::Vector3d> places_;  // in the picture
-  std::vector<bool> cut_;                // of each place: it lies on the plane that cuts
+  std::vector<bool> cut_;                // of each place: whether it lies on the cutting plane
   std::vector<Edge> edges_;
-  std::vector<std::array<int, 3>> solid_, glass_;  // triangles that hide
+  std::vector<std::array<int, 3>> solid_, glass_;  // the triangles that hide lines
   std::vector<Ball> balls_;                        // in the picture
 };
 

@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kStraight = 0.1;  // points of the picture: too little to be seen on a page
+constexpr double kStraight = 0.1;  // in points of the picture: smaller deviations cannot be seen on a page
 
-// Of a + t d, the part that is in the rectangle; begin >= end: none.
+// Limits begin and end to the part of a + t d that is in the rectangle. If begin >= end, there is none.
 void clip_to(const Eigen::AlignedBox2d& sides, const Vector2d& a, const Vector2d& d, double& begin, double& end) {
   for (int k = 0; k < 2; ++k) {
     const double low = sides.min()[k] - a[k], high = sides.max()[k] - a[k];
@@ -30,7 +30,7 @@ double distance_to(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
   return (p - a - t * d).norm();
 }
 
-// Douglas and Peucker's selection of points, without recursion.
+// Simplifies a line by the algorithm of Douglas and Peucker, without recursion.
 std::vector<Vector2d> simplified(const std::vector<Vector2d>& line) {
   std::vector<bool> kept(line.size(), false);
   kept.front() = kept.back() = true;
@@ -73,7 +73,7 @@ void LineChains::add(std::pair<int, int> ends, const Vector2d& a, const Vector2d
 }
 
 std::vector<std::vector<double>> LineChains::joined() const {
-  std::map<int, std::vector<std::size_t>> at;  // the pieces that end at a place
+  std::map<int, std::vector<std::size_t>> at;  // the pieces that end at each place
   for (std::size_t i = 0; i < pieces_.size(); ++i)
     for (const int end : pieces_[i].ends)
       if (end >= 0) at[end].push_back(i);
@@ -84,7 +84,7 @@ std::vector<std::vector<double>> LineChains::joined() const {
     return here[0] == piece ? here[1] : here[0];
   };
   std::vector<bool> done(pieces_.size(), false);
-  // From a piece out of its end `side`, as far as the line goes.
+  // Follows the line from a piece through its end `side` as far as possible.
   const auto follow = [&](std::size_t piece, int side, std::vector<Vector2d>& line) {
     for (;;) {
       line.push_back(pieces_[piece].places[side]);

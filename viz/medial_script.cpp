@@ -10,7 +10,7 @@ using namespace detail;
 
 namespace {
 
-// The script as it is for every model, behind its beginning and the lines that differ.
+// The part of the script that is the same for every model. It follows the lines that differ.
 constexpr const char* kMedialScript = R"PY(
 PRESETS = {
     "radius": "the axis by radius in its transparent solid",
@@ -163,7 +163,7 @@ void write_medial_script(const std::filesystem::path& py, const MedialScript& sc
   text += "TO_EYE, UP = " + python_list(to_eye) + ", " + python_list(up) + "\n";
   text += "BALLS, LIGHT_BALLS = " + std::to_string(script.balls) + ", " + std::to_string(script.light_balls) + "\n";
   text += "DISTINCT = " + python_colors(kDistinct) + "\n";
-  // Of arcs: 0 curve, 1 border, 2 seam.
+  // The kinds of arcs: 0 curve, 1 border, 2 seam.
   text += "KINDS = " + python_colors(std::array{kCurveColor, kBorderColor, kSeamColor}) + "\n";
   write_file(py, text + kScriptBegin + kMedialScript);
 }

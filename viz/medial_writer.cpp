@@ -21,12 +21,12 @@ namespace {
 struct Cell {
   std::vector<Index> corners;
   Index segment = kNone, part = kNone, point_a = kNone, point_b = kNone;
-  bool wall = false;
+  bool for_topology = false;
   double angle = kNoValue;
 };
 
 void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& points, const std::vector<Index>& segments,
-               std::span<const Index> parts, bool wall, const MedialAxis& axis, std::vector<Cell>& cells) {
+               std::span<const Index> parts, bool for_topology, const MedialAxis& axis, std::vector<Cell>& cells) {
   for (Index face = 0; face < faces.size(); ++face) {
     const auto corners = faces[face];
     cells.push_back({.corners = {corners.begin(), corners.end()},
@@ -34,7 +34,7 @@ void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& point
                      .part = parts[face],
                      .point_a = points[face][0],
                      .point_b = points[face][1],
-                     .wall = wall,
+                     .for_topology = for_topology,
                      .angle = separation_angle(axis, corners, points[face])});
   }
 }
@@ -43,7 +43,8 @@ std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segment
   std::vector<Cell> cells;
   const std::span<const Index> sheets = structure.of_face;
   add_faces(axis.faces, axis.face_points, segments.of_face, sheets, false, axis, cells);
-  add_faces(axis.walls, axis.wall_points, segments.of_wall, sheets.subspan(axis.faces.size()), true, axis, cells);
+  add_faces(axis.topology_faces, axis.topology_face_points, segments.of_topology_face,
+            sheets.subspan(axis.faces.size()), true, axis, cells);
   std::size_t edge = 0;
   for (Index i = 0; i < axis.size(); ++i) {
     for (const Index next : axis.neighbors[i]) {
@@ -56,7 +57,7 @@ std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segment
   return cells;
 }
 
-// Of which part of the structure each is, and what kind of part that is.
+// Adds the part of the structure that each point or cell belongs to, and the kind of that part.
 template <class PartOf>
 void add_structure(const MedialStructure& structure, std::size_t count, const PartOf& part_of, vtkFieldData* data) {
   add_ints(data, "structure", count, [&](std::size_t i) { return as_int(part_of(i)); });
@@ -110,9 +111,10 @@ void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, con
                      const std::vector<Cell>& cells, vtkCellData* data) {
   const std::size_t count = cells.size();
   add_ints(data, "segment", count, [&](std::size_t i) { return as_int(cells[i].segment); });
-  add_ints(data, "sheet", count, [&](std::size_t i) { return segments.segments[cells[i].segment].sheet ? 1 : 0; });
+  add_ints(data, "has_faces", count,
+           [&](std::size_t i) { return segments.segments[cells[i].segment].has_faces ? 1 : 0; });
   add_ints(data, "trunk", count, [&](std::size_t i) { return segments.segments[cells[i].segment].trunk ? 1 : 0; });
-  add_ints(data, "wall", count, [&](std::size_t i) { return cells[i].wall ? 1 : 0; });
+  add_ints(data, "topology_face", count, [&](std::size_t i) { return cells[i].for_topology ? 1 : 0; });
   add_doubles(data, "contact_angle", count, [&](std::size_t i) { return in_degrees(cells[i].angle); });
   add_ints(data, "point_a", count, [&](std::size_t i) { return as_int(cells[i].point_a); });
   add_ints(data, "point_b", count, [&](std::size_t i) { return as_int(cells[i].point_b); });
@@ -167,7 +169,7 @@ void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh,
   set_points(data, mesh.centers.size(), [&](std::size_t i) { return mesh.centers[i]; });
   const MedialStructure structure = medial_structure(mesh);
   vtkNew<vtkCellArray> triangles, lines;
-  std::vector<Index> parts;  // of each cell: lines come first
+  std::vector<Index> parts;  // of each cell, where lines come first
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     if (!structure.on_curve(e)) continue;
     add_cell(lines, mesh.edges[e]);

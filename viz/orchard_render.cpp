@@ -1,15 +1,15 @@
-// Draws the files of write_pipeline() on the display of $DISPLAY. A program of its own because VTK aborts where there
-// is none (see orchard/viz/render.h). Pictures of lines need no display.
+// Draws the files of write_pipeline() on the display of $DISPLAY. This is a separate program because VTK aborts if
+// there is no display (see orchard/viz/render.h). Pictures of lines need no display.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
 
 #include "camera.h"
+#include "canvas.h"
 #include "layout.h"
 #include "panels.h"
 #include "render_request.h"
-#include "sheet.h"
 #include "vector_picture.h"
 #include "window.h"
 
@@ -32,11 +32,11 @@ void render(const Request& request) {
                                      .columns = content.columns,
                                      .color_bar = static_cast<bool>(content.color_bar)},
                                     views.front);
-  Sheet sheet(request, layout);
-  sheet.add_title();
-  sheet.add_panels(content.panels, views);
-  sheet.add_bar(content);
-  sheet.save();
+  Canvas canvas(request, layout);
+  canvas.add_title();
+  canvas.add_panels(content.panels, views);
+  canvas.add_bar(content);
+  canvas.save();
 }
 
 void show(const Request& request) {

@@ -4,22 +4,22 @@
 #include <cstddef>
 #include <string_view>
 
-// The colours that stand for values: in pictures and in ParaView's states alike.
+// The colours that represent values, both in pictures and in ParaView's states.
 namespace orchard::detail {
 
 using Color = std::array<double, 3>;  // red, green, blue, 0 to 1
 
 constexpr Color rgb(int hex) { return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0}; }
 
-// A map from values to colours at even steps, whose lightness rises or falls all the way, also for colour-blind eyes
+// A map from values to colours at even steps. Its lightness rises or falls monotonically, also for colour-blind viewers
 // (tests/viz/color_maps_test.cpp).
 struct ColorMap {
   std::string_view name;
   std::array<Color, 9> colors;
-  Color seams;  // of lines on surfaces that are coloured by the map
+  Color seams;  // the colour of lines on surfaces with this map
 };
 
-inline constexpr Color kBorderColor = rgb(0x000000);  // where sheets end, on every map
+inline constexpr Color kBorderColor = rgb(0x000000);  // the colour of the borders of sheets, with every map
 inline constexpr Color kSeamColor = rgb(0xd55e00), kCurveColor = rgb(0x0072b2);
 
 inline constexpr std::array kColorMaps{
@@ -44,16 +44,16 @@ inline constexpr std::array kColorMaps{
               rgb(0xd6d6d6), rgb(0xebebeb)},
              kSeamColor}};
 inline constexpr const ColorMap& kViridis = kColorMaps[0];
-inline constexpr const ColorMap& kHeat = kColorMaps[3];  // of errors: pale where they are 0
+inline constexpr const ColorMap& kHeat = kColorMaps[3];  // the map of errors, which is pale for 0
 
-// Null if there is no map of this name.
+// Returns null if there is no map of this name.
 constexpr const ColorMap* color_map(std::string_view name) {
   for (const ColorMap& map : kColorMaps)
     if (map.name == name) return &map;
   return nullptr;
 }
 
-// The colour at t in [0, 1], between its neighbours.
+// Returns the colour at t in [0, 1], interpolated between its neighbours.
 inline Color color_at(const ColorMap& map, double t) {
   const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(map.colors.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(place), map.colors.size() - 2);
@@ -64,7 +64,7 @@ inline Color color_at(const ColorMap& map, double t) {
   return color;
 }
 
-// Of Okabe and Ito, which colour-blind people can tell apart: for numbers of things.
+// The colours of Okabe and Ito, which colour-blind viewers can distinguish, for numbers of parts.
 inline constexpr std::array kDistinct{rgb(0x0072b2), rgb(0xe69f00), rgb(0x009e73), rgb(0xcc79a7),
                                       rgb(0x56b4e9), rgb(0xd55e00), rgb(0xf0e442), rgb(0x808080)};
 

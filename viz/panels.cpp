@@ -67,7 +67,7 @@ Panels make_panels(const std::filesystem::path& vtm, const PanelOptions& options
   if (const ViewParts parts = view_parts(blocks); parts.any()) return view_panels(parts, options);
   const Data mesh = blocks["mesh"], points = blocks["surface points"], faces = blocks["medial faces"];
   if (blocks["medial mesh"] != nullptr && mesh != nullptr && points != nullptr) return error_panels(blocks, line_width);
-  std::vector<Data> levels;  // from the root on
+  std::vector<Data> levels;  // beginning at the root
   for (;;) {
     const Data level = blocks["tree level " + std::to_string(levels.size())];
     if (level == nullptr) break;

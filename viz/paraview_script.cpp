@@ -11,7 +11,7 @@
 namespace orchard::detail {
 namespace {
 
-// The script as it is for every model; what differs is set in lines before it.
+// The part of the script that is the same for every model. The lines before it set what differs.
 constexpr const char* kScript = R"PY(
 def arguments():
     parser = argparse.ArgumentParser(description="A level of the sphere-tree around the mesh.")

@@ -60,7 +60,7 @@ class SceneWriter {
 
   std::vector<std::string> color_points(const StateRange& range, bool categories) const {
     const double begin = range.range[0];
-    // Two colours at one place are none.
+    // Two colours at the same value would be invalid.
     const double end = std::max(range.range[1], begin + 1e-9 * std::max(std::abs(begin), scene_.radius));
     std::vector<std::string> points;
     const auto add = [&](double value, const Color& color) {
@@ -88,7 +88,7 @@ class SceneWriter {
     objects_.set("RGBPoints", color_points(range, categories));
     objects_.set("ColorSpace", categories ? 5 : 0);  // steps; red, green, blue
     if (categories) objects_.set("Discretize", 0);
-    objects_.set("AutomaticRescaleRangeMode", scene_.last_step ? 3 : -1);  // to each step's range; never
+    objects_.set("AutomaticRescaleRangeMode", scene_.last_step ? 3 : -1);  // 3: to the range of each step; -1: never
     objects_.set("ScalarRangeInitialized", 1);
     objects_.link("ScalarOpacityFunction", {opacities});
     objects_.end();
@@ -102,7 +102,7 @@ class SceneWriter {
     return object;
   }
 
-  // The sphere, and the other shapes that ParaView's list of glyphs would miss.
+  // Adds the sphere, and the other shapes, because ParaView's list of glyphs would be incomplete without them.
   std::vector<Object> add_glyphs() {
     std::vector<Object> glyphs;
     for (const char* shape :
@@ -120,7 +120,7 @@ class SceneWriter {
     objects_.link("GlyphType", {glyphs.front()}, glyphs);
     objects_.set("Scaling", 1);
     const bool fixed = layer.sphere_radius > 0;
-    objects_.set("ScaleMode", fixed ? 0 : 1);  // none; by magnitude
+    objects_.set("ScaleMode", fixed ? 0 : 1);  // 0: not scaled; 1: by magnitude
     if (!fixed) objects_.set("SelectScaleArray", "radius");
     objects_.set("ScaleFactor", fixed ? 2 * layer.sphere_radius : 2);  // ParaView's sphere has radius 1/2
   }
@@ -174,13 +174,13 @@ class SceneWriter {
     const Object shown = add_representation("TextSourceRepresentation");
     objects_.link("Input", {text});
     objects_.set("Color", texts(kInk));
-    objects_.set("WindowLocation", 6);  // above, in the middle
+    objects_.set("WindowLocation", 6);  // at the top, in the middle
     objects_.set("FontSize", 11);
     objects_.end();
     return shown;
   }
 
-  // One legend is enough for all views, whose colours are the same.
+  // All views have the same colours, so a single legend suffices.
   bool is_last_with(const StateView& view, const std::string& array) const {
     const StateView* last = nullptr;
     for (const StateView& other : scene_.views) {
@@ -201,7 +201,7 @@ class SceneWriter {
     const Object object = objects_.begin("views", "RenderView");
     objects_.link("Representations", shown);
     objects_.set("UseColorPaletteForBackground", 0);
-    objects_.set("BackgroundColorMode", 0);  // one colour
+    objects_.set("BackgroundColorMode", 0);  // a single colour
     objects_.set("Background", StateObjects::texts({1, 1, 1}));
     objects_.set("OrientationAxesLabelColor", texts(kInk));
     set_camera();
@@ -213,7 +213,7 @@ class SceneWriter {
 
   void set_camera() {
     objects_.set("CameraParallelProjection", 1);
-    // Half of the height: where several are side by side, they are narrower than high.
+    // This is half of the height. Several views next to each other are narrower than high.
     const double narrow = scene_.views.size() > 1 ? 1.35 : 1;
     objects_.set("CameraParallelScale", narrow * kParaViewRoom * scene_.radius);
     for (const char* property : {"CameraFocalPoint", "CenterOfRotation"})
@@ -234,7 +234,7 @@ class SceneWriter {
     const Object animation = objects_.begin("animation", "AnimationScene");
     objects_.set("AnimationTime", last);
     objects_.set("EndTime", last);
-    objects_.set("PlayMode", 2);  // from step to step
+    objects_.set("PlayMode", 2);  // one step after another
     objects_.link("TimeKeeper", {times});
     objects_.link("ViewModules", views_);
     objects_.end();
@@ -249,7 +249,7 @@ class SceneWriter {
   int shown_count_ = 0, legend_count_ = 0;
 };
 
-// Of what the colours stand for, among the spheres that the last level shows.
+// Returns the range of the values that the colours represent, over the spheres that the last level shows.
 std::array<double, 2> range_of(const SphereTree& tree, bool inaccuracy) {
   std::array<double, 2> result{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const SphereNode& node : tree.nodes) {

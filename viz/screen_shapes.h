@@ -6,10 +6,10 @@
 
 #include "palette.h"
 
-// Shapes that lie on the picture, in pixels of its panel, in front of everything.
+// Shapes on the picture, in pixels of its panel, in front of everything.
 namespace orchard::detail {
 
-// Lines are so many pixels wide.
+// `width` is that of lines, in pixels.
 void add_screen_shape(vtkRenderer* renderer, vtkPolyData* shape, const Color& color, double width);
 void add_screen_line(vtkRenderer* renderer, const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Color& color,
                      double width);

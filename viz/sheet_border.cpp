@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSpeck = 0.02;      // of the diagonal
-constexpr double kOnSurface = 1e-6;  // of the diagonal: radii below
-constexpr int kSmoothings = 10;      // of a border; each moves a point half way between its neighbours
+constexpr double kOnSurface = 1e-6;  // of the diagonal: balls with a smaller radius are on the surface
+constexpr int kSmoothings = 10;      // of a border; each moves a point halfway to the middle of its neighbours
 
 class Sheets {
  public:
@@ -84,7 +84,7 @@ class Sheets {
   }
 
  private:
-  // A refined axis ends there, on the mesh's sharp edges: such a border is right as it is.
+  // A refined axis ends there, on sharp edges of the mesh, so the border is not smoothed.
   bool on_surface(vtkIdType point) const { return radii_->GetComponent(point, 0) < kOnSurface * faces_->GetLength(); }
   Vector3d& place(vtkIdType point) { return places_[static_cast<std::size_t>(point)]; }
   std::size_t root(vtkIdType point) {
@@ -97,7 +97,7 @@ class Sheets {
   vtkDataArray* radii_;
   std::vector<std::vector<vtkIdType>> polygons_;
   std::vector<Vector3d> places_;
-  std::vector<std::size_t> parent_;  // of the points, in the forest of what hangs together
+  std::vector<std::size_t> parent_;  // of the points, in a forest of connected parts
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ void add_skeleton_points(const CurveSkeleton& skeleton, vtkPolyData* data) {
   });
 }
 
-// Cells come in VTK's order: `first` vertices, the curves, then the rest.
+// In VTK's order of cells, `first` vertices come before the curves and the rest.
 void add_skeleton_cells(const CurveSkeleton& skeleton, std::size_t first, vtkCellData* cells) {
   const std::size_t count = first + skeleton.arcs.size() + skeleton.sheets.size();
   const auto arc_at = [&](std::size_t i) -> const CurveSkeleton::Arc* {

@@ -7,9 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-// ParaView's tree of splits, in which the item i has the items 2 i + 1 and 2 i + 2.
+// ParaView's tree of splits, in which item i has the children 2 i + 1 and 2 i + 2.
 struct Split {
-  int direction = 0;  // 0: a view, 1: one above the other, 2: side by side
+  int direction = 0;  // 0 for a view, 1 for one above the other, 2 for side by side
   double fraction = 0.5;
   int view = 0;
 };

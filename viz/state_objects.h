@@ -7,8 +7,8 @@
 
 namespace orchard::detail {
 
-// A state's text: ParaView's objects ("proxies") by number, each with the properties that differ from what ParaView
-// takes by itself, and then the names by which they are found.
+// The text of a state: ParaView's objects ("proxies") by number, each with the properties that differ from ParaView's
+// defaults, and then the names by which they are found.
 class StateObjects {
  public:
   using Object = int;
@@ -27,9 +27,9 @@ class StateObjects {
   void set(const char* property, const std::vector<std::string>& values);
   void set(const char* property, const std::string& value) { set(property, std::vector<std::string>{value}); }
   void set(const char* property, double value) { set(property, texts({value})); }
-  // `choices`: objects that the property offers in place of this one.
+  // `choices` has the objects that the property offers as alternatives.
   void link(const char* property, const std::vector<Object>& objects, const std::vector<Object>& choices = {});
-  // Of an object that is a layout: side by side, in rows.
+  // Sets the object to a layout of views side by side, in rows.
   void layout_of(const std::vector<Object>& views);
   void end() { text_ += "    </Proxy>\n"; }
 

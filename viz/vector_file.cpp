@@ -10,7 +10,7 @@
 namespace orchard::detail {
 namespace {
 
-// Numbers of an SVG file are hundredths, so that they need no point.
+// Numbers in an SVG file are hundredths of a point, so that they need no decimal point.
 constexpr double kUnits = 100;
 
 long rounded(double value) { return std::lround(kUnits * value); }
@@ -31,7 +31,7 @@ std::string short_number(double value) {
   return number == "-0" ? "0" : number;
 }
 
-// Lines of one look, in order: they share an element.
+// Calls visit for successive lines of the same look, which share an element.
 template <class Visit>
 void visit_looks(const std::vector<VectorLine>& lines, const Visit& visit) {
   for (std::size_t begin = 0; begin < lines.size();) {
@@ -72,7 +72,7 @@ std::string xml_text(const std::string& text) {
   return result;
 }
 
-// The characters of UTF-8 text in Latin-1.
+// Returns UTF-8 text in Latin-1.
 std::string latin(const std::string& text) {
   std::string result;
   for (std::size_t i = 0; i < text.size();) {
@@ -90,7 +90,7 @@ std::string latin(const std::string& text) {
   return result;
 }
 
-// Helvetica's widths of the characters from the blank to the tilde, in thousandths of the size.
+// The widths in Helvetica of the characters from the blank to the tilde, in thousandths of the size.
 constexpr std::array<int, 95> kWidths{278,  278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278,
                                       556,  556, 556, 556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556,
                                       1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,

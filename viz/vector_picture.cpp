@@ -42,7 +42,7 @@ std::vector<VectorLine> lines_of(const ViewParts& parts, int level, const Reques
   return art.lines();
 }
 
-// From the lower left corner of a panel to the upper left one of the picture.
+// Moves lines from the lower left corner of a panel to the upper left corner of the picture.
 void add_lines(std::vector<VectorLine> lines, double left, double bottom, VectorPicture& picture) {
   for (VectorLine& line : lines) {
     for (std::size_t i = 0; i + 1 < line.places.size(); i += 2) {
@@ -57,7 +57,7 @@ void write_text(const std::string& file, const std::string& bytes) {
   std::ofstream out(file, std::ios::binary);
   out << bytes;
   out.close();
-  if (!out) throw std::runtime_error("cannot write " + file);
+  if (!out) throw std::runtime_error(file + ": cannot be written; check that its folder exists and is writable");
 }
 
 }  // namespace
@@ -68,8 +68,10 @@ bool is_vector_file(const std::filesystem::path& picture) {
 
 void draw_vector_picture(const Request& request) {
   const ViewParts parts = view_parts(Blocks(request.vtm));
-  if (!parts.any()) throw std::runtime_error("pictures of lines are made of the scenes of orchard view only");
-  if (!parts.cells.empty()) throw std::runtime_error("Voronoi cells cannot be drawn as lines");
+  if (!parts.any())
+    throw std::runtime_error("only orchard view can write .svg and .pdf; give the picture a name that ends in .png");
+  if (!parts.cells.empty())
+    throw std::runtime_error("Voronoi cells cannot be drawn as lines; give the picture a name that ends in .png");
   const std::vector<PanelParts> panels = panel_parts(parts, request.figure);
   const int count = static_cast<int>(panels.size());
   const Views views = views_of(request, extents_of(parts, request.figure), false);
@@ -89,7 +91,7 @@ void draw_vector_picture(const Request& request) {
     add_lines(lines_of(seen, level, request, projection, layout), left, bottom, picture);
     if (!request.captions) continue;
     const double middle = left + span / 2, below = picture.height - bottom;
-    // Baselines are a third of the print below the middle of a line.
+    // The baseline is a third of the print size below the middle of a line.
     picture.texts.push_back(
         {caption_of(seen, level), middle, below - 0.70 * line + caption_print / 3, caption_print, true});
     picture.texts.push_back({detail_of(seen, level), middle, below - 0.28 * line + detail_print / 3, detail_print});

@@ -25,14 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The files of a scene, with names as view_parts() reads them.
+// Writes the files of a scene, with names that view_parts() can read.
 class SceneFiles {
  public:
   explicit SceneFiles(const fs::path& prefix) : prefix_(prefix) {}
 
   fs::path add(const std::string& name, const char* ending) {
     fs::path file = with_ending(prefix_, "-" + std::to_string(files_.size()) + ending);
-    // Two files of one name are two blocks.
+    // Two files of the same name become two blocks.
     std::string block = name;
     for (int i = 2; std::any_of(files_.begin(), files_.end(), [&](const NamedFile& f) { return f.name == block; }); ++i)
       block = name + " (" + std::to_string(i) + ")";

@@ -11,7 +11,7 @@ namespace orchard::detail {
 
 namespace {
 
-// Each thing with the meshes around it.
+// Returns each thing together with the meshes around it.
 std::vector<ViewParts> beside(const ViewParts& parts) {
   std::vector<ViewParts> all;
   const auto add = [&](auto member, const auto& thing) {
@@ -35,7 +35,7 @@ std::vector<ViewParts> beside(const ViewParts& parts) {
   return all;
 }
 
-// Two diagrams of the same points hide each other: a panel for each.
+// Two diagrams of the same points would hide each other, so each gets a panel.
 std::vector<ViewParts> one_diagram_each(const ViewParts& parts) {
   if (parts.cells.size() < 2) return {parts};
   std::vector<ViewParts> all;
@@ -46,7 +46,7 @@ std::vector<ViewParts> one_diagram_each(const ViewParts& parts) {
   return all;
 }
 
-// Cuts away what has a x + b y + c z > d.
+// Cuts away the part with a x + b y + c z > d.
 void clip(vtkRenderer* renderer, const std::array<double, 4>& plane) {
   const auto& [a, b, c, d] = plane;
   const double square = a * a + b * b + c * c;

@@ -4,15 +4,15 @@
 
 namespace orchard::detail {
 
-// What one panel shows.
+// The contents of one panel.
 struct PanelParts {
   ViewParts parts;
-  int level = -1;  // of its trees; -1: there are none
+  int level = -1;  // the level of its trees; -1 if there are none
 };
 std::vector<PanelParts> panel_parts(const ViewParts& parts, const FigureOptions& figure);
 
-// A panel for each level of the trees, or one if there is no tree, and so for each Voronoi diagram; everything else is
-// in all of them.
+// Makes a panel for each level of the trees, or one if there is no tree, and so for each Voronoi diagram. Everything
+// else is in all of them.
 Panels view_panels(const ViewParts& parts, const PanelOptions& options);
 
 }  // namespace orchard::detail

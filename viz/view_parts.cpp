@@ -18,7 +18,7 @@
 namespace orchard::detail {
 namespace {
 
-// "view/KIND/NAME" or "view/level/K/NAME": what follows the kind, if it is this one.
+// Parses "view/KIND/NAME" or "view/level/K/NAME". Sets `rest` to what follows the kind if it is `kind`.
 bool named_as(const std::string& block, const std::string& kind, std::string& rest) {
   const std::string begin = "view/" + kind + "/";
   if (!block.starts_with(begin)) return false;
@@ -39,7 +39,7 @@ vtkSmartPointer<vtkActor> make_axis(vtkPolyData* axis, const PartLook& look) {
   return sheet;
 }
 
-// Edges of one triangle (borders), or those of three or more (seams).
+// Draws edges of one triangle (borders), or those of three or more (seams).
 vtkSmartPointer<vtkActor> axis_lines(vtkPolyData* axis, bool seams, const Color& color, double width) {
   vtkNew<vtkFeatureEdges> filter;
   filter->SetInputData(axis);
@@ -71,7 +71,7 @@ void add_axis(vtkRenderer* renderer, vtkPolyData* axis, const PartLook& look) {
   renderer->AddActor(axis_lines(axis, true, look.map->seams, 2 * look.line_width));
 }
 
-// Any .vtp: faces and lines; where it has points alone, spheres of their radii, or else dots.
+// Adds any .vtp file: its faces and lines, or, if it has only points, spheres of their radii or dots.
 void add_data(vtkRenderer* renderer, vtkPolyData* data, const PartLook& look) {
   const bool colored = look.coloring != nullptr && has_colors(*look.coloring, data);
   if (is_point_set(data)) {
@@ -106,13 +106,13 @@ vtkSmartPointer<vtkActor> in_one_color(vtkPolyData* spheres, const Color& color)
   return make_spheres(spheres);
 }
 
-// How far from the solid the spheres of a level reach at most, as far as the file knows.
+// Returns how far the spheres of a level protrude at most, if the file has that.
 std::string reach(vtkPolyData* spheres) {
   vtkDataArray* errors = require_array(spheres->GetPointData(), "error", spheres->GetNumberOfPoints());
   double max = 0;
   for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i) {
     const double error = errors->GetComponent(i, 0);
-    if (!std::isfinite(error)) return {};  // of this one nothing is known
+    if (!std::isfinite(error)) return {};  // it is not known for this one
     max = std::max(max, error);
   }
   if (max <= 0) return {};
@@ -123,7 +123,7 @@ std::string reach(vtkPolyData* spheres) {
 
 void append(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
 
-// A grid whose cells are polyhedra is a Voronoi diagram.
+// A grid of polyhedra is a Voronoi diagram.
 void add_data_block(const std::string& name, vtkDataObject* data, ViewParts& parts) {
   if (vtkPolyData* poly = vtkPolyData::SafeDownCast(data)) parts.data.emplace_back(name, poly);
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
@@ -207,7 +207,7 @@ double size_of(const ViewParts& parts) {
   for (const Extent& extent : extents_of(parts)) box.extend(Eigen::Vector3d(extent.center.data()));
   const double size = box.isEmpty() ? 0 : 0.5 * box.diagonal().norm();
   if (size > 0) return size;
-  // One sphere alone.
+  // The box of the centres is a single point if there is one sphere, so its radius is used.
   for (const auto& [level, trees] : parts.levels)
     return trees.front().second->GetPointData()->GetArray("radius")->GetRange()[1];
   return 1;

@@ -11,7 +11,7 @@
 #include "actors.h"
 #include "blocks.h"
 
-// What a scene of view.h holds, as its pictures and its window need it.
+// The contents of a scene of view.h, for its pictures and its window.
 namespace orchard::detail {
 
 template <class Value>
@@ -29,45 +29,46 @@ struct ViewParts {
   }
 };
 
-// Empty where the blocks are not those of a scene.
+// Returns no parts if the blocks are not those of a scene.
 ViewParts view_parts(const Blocks& blocks);
 
-// A length of the model's order, and everything that the camera must keep in view.
+// Returns a length of the order of the model's size, and everything that has to be in view.
 double size_of(const ViewParts& parts);
 std::vector<Extent> extents_of(const ViewParts& parts);
-// The same, and the room that the figure asks for.
+// Also returns the room that the figure asks for.
 std::vector<Extent> extents_of(const ViewParts& parts, const FigureOptions& figure);
 
-// Whether data has points alone; whether these have radii, so that they are spheres.
+// Whether the data has only points, and whether these have radii, so that they are spheres.
 bool is_point_set(vtkPolyData* data);
 bool is_sphere_set(vtkPolyData* data);
-// Whether these are the cubes of a simulation, which bound the motion of the bodies in them.
+// Whether the data are the cubes of a simulation, which bound the motion of its bodies.
 bool is_bound(vtkPolyData* data);
 
-// The smallest and the largest radius of all axes: one range for those beside each other.
+// Returns the smallest and the largest radius of all axes, because axes next to each other share one range.
 std::array<double, 2> radii_of_axes(const ViewParts& parts);
 
 struct Coloring;
 
-// How the parts are drawn.
+// How the parts of a scene are drawn.
 struct PartLook {
   double size = 1, line_width = 1;
-  double opacity = 0.16;                               // of meshes beside other things
-  std::optional<std::array<double, 3>> backward = {};  // cells are cut open towards it
-  bool edges = false;                                  // borders and seams of axes, feature edges of .vtp files
-  bool balls = false;                                  // the balls of axes
+  double opacity = 0.16;                               // of meshes next to other things
+  std::optional<std::array<double, 3>> backward = {};  // Voronoi cells are cut open towards it
+  bool edges = false;  // draw borders and seams of axes, and feature edges of .vtp files
+  bool balls = false;  // the balls of axes
   const ColorMap* map = &kViridis;
-  std::array<double, 2> radii{0, 1};   // at the ends of the map, where axes have their own colours
-  const Coloring* coloring = nullptr;  // null: each thing in its own colours
+  std::array<double, 2> radii{0, 1};   // at the ends of the map, for axes that are coloured by radius
+  const Coloring* coloring = nullptr;  // null for a colour of its own for each part
 };
 
-// What is seen whatever the level. Of meshes beside other things the faces' actors come back, for their opacity.
+// Adds what is the same for every level. Returns the actors of the faces of meshes next to other things, so that their
+// opacity can be changed.
 std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts,
                                                        const PartLook& look);
-// The spheres of a level: one tree's by branch, several trees' by tree.
+// Draws the spheres of a level, coloured by branch if there is one tree, and otherwise by tree.
 std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees, const Coloring* coloring = nullptr);
 
-// "lamp.obj, lamp.orchard, level 2", and the figures of what is seen. level < 0: there is none.
+// Return "lamp.obj, lamp.orchard, level 2", and the values of what is seen. A negative level means none.
 std::string caption_of(const ViewParts& parts, int level);
 std::string detail_of(const ViewParts& parts, int level);
 

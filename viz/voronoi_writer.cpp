@@ -52,7 +52,8 @@ class CellGrid {
   void add(const CellPolyhedron& cell, Index point, double inaccuracy) {
     const vtkIdType first = points_->GetNumberOfPoints();
     for (const Point& corner : cell.corners) points_->InsertNextPoint(corner.data());
-    vtkNew<vtkIdList> stream;  // number of faces, then for each the number of its corners and these
+    // The number of faces, then for each face the number of its corners followed by the corners.
+    vtkNew<vtkIdList> stream;
     stream->InsertNextId(cell.faces.size());
     for (Index face = 0; face < cell.faces.size(); ++face) {
       stream->InsertNextId(static_cast<vtkIdType>(cell.faces[face].size()));
@@ -109,7 +110,7 @@ Index write_voronoi_cells(const std::filesystem::path& vtu, const VoronoiDiagram
     if (!cell.corners.empty()) grid.add(cell, point, inaccuracy[point]);
   }
   const std::string xml = grid.xml();
-  if (xml.empty()) throw Error("cannot encode " + vtu.string());
+  if (xml.empty()) throw Error(vtu.string() + ": VTK cannot encode the data; the memory may be full");
   write_file(vtu, xml);
   return grid.size();
 }

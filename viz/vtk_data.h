@@ -23,19 +23,20 @@
 #include "orchard/geometry/mesh.h"
 #include "orchard/viz/vtk_writer.h"
 
-// What the writers share: values into VTK's containers, and those into files.
+// Functions that all writers share: they copy values into VTK's containers, and write these to files.
 namespace orchard::detail {
 
 // Files have angles in degrees, the library has them in radians.
 inline double in_degrees(double radians) { return radians * (180 / std::numbers::pi); }
 
-// No value, in arrays of numbers: colour scales leave it out, where -1 or infinity would spoil them.
+// The value for "not defined" in arrays of numbers. Colour scales leave it out, while -1 or infinity would change their
+// range.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 inline double finite_or_no_value(double value) { return std::isfinite(value) ? value : kNoValue; }
 
 inline int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
 
-// value(i) for i in [0, count) as an array of that name.
+// Makes an array of that name with value(i) for i in [0, count).
 template <typename Array, typename Value>
 vtkSmartPointer<Array> make_array(const char* name, std::size_t count, const Value& value) {
   auto array = vtkSmartPointer<Array>::New();
@@ -76,7 +77,7 @@ inline void set_mesh(vtkPolyData* data, const TriangleMesh& mesh) {
   data->SetPolys(triangles);
 }
 
-// The first `count` values of each array.
+// Adds the first `count` values of each array.
 inline void add_all(vtkFieldData* data, const ViewArrays& arrays, std::size_t count) {
   for (const ViewArray& array : arrays) {
     const char* const name = array.name.c_str();
@@ -88,30 +89,30 @@ inline void add_all(vtkFieldData* data, const ViewArrays& arrays, std::size_t co
   }
 }
 
-// One vertex cell per point, so that points are drawn without a filter.
+// Adds a vertex cell for each point, so that points are drawn without a filter.
 inline void set_vertex_cells(vtkPolyData* data) {
   vtkNew<vtkCellArray> cells;
   for (Index i = 0; i < data->GetNumberOfPoints(); ++i) add_cell(cells, {&i, 1});
   data->SetVerts(cells);
 }
 
-// Compressed, as text (base64) within each array's element. Data behind all elements is VTK's standard and a quarter
-// smaller, but VTK and ParaView up to 5.12 cannot read it where Expat is 2.6 or newer, or has its security fixes, as in
-// Debian 12 and Ubuntu 24.04: they learn too late where that data begins.
+// Stores data compressed, as text (base64) within each array's element. VTK's default, data after all elements, is a
+// quarter smaller. But VTK and ParaView up to 5.12 cannot read it if Expat is 2.6 or newer, or has its security fixes,
+// as in Debian 12 and Ubuntu 24.04, because they then learn too late where that data begins.
 inline void set_encoding(vtkXMLWriter* writer) {
   writer->SetDataModeToBinary();
   writer->SetCompressorTypeToZLib();
   writer->SetByteOrderToLittleEndian();
 }
 
-// Writer: vtkXMLPolyDataWriter, or the one of another kind of data.
+// `Writer` is vtkXMLPolyDataWriter, or the writer of another kind of data.
 template <typename Writer, typename Data>
 void write_with(const std::filesystem::path& file, Data* data) {
   vtkNew<Writer> writer;
   writer->SetInputData(data);
   set_encoding(writer);
   writer->WriteToOutputStringOn();
-  if (writer->Write() != 1) throw Error("cannot encode " + file.string());
+  if (writer->Write() != 1) throw Error(file.string() + ": VTK cannot encode the data; the memory may be full");
   write_file(file, writer->GetOutputString());
 }
 

@@ -57,7 +57,7 @@ vtkSmartPointer<vtkPolyData> with_topology_of(vtkPolyData* points) {
   return data;
 }
 
-// The child of the root that each node descends from, counted from 0.
+// Returns for each node the child of the root that it descends from, counted from 0.
 std::vector<int> branches(const SphereTree& tree) {
   std::vector<int> branch(tree.nodes.size(), -1);
   for (std::size_t i = 1; i < tree.nodes.size(); ++i) {

@@ -30,7 +30,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kOpacityStep = 0.1;
-constexpr int kStill = 3;  // pixels: a click that moves less turns nothing
+constexpr int kStill = 3;  // in pixels: a click that moves less is not a drag
 constexpr const char* kHelp =
     "up, down, 0-9: level    o, O: opacity    click: a sphere's record    r: all    s: save    q: quit";
 
@@ -39,11 +39,11 @@ struct Picked {
   vtkIdType sphere;
 };
 
-// A level of the trees at a time, and what is done with it.
+// Shows one level of the trees at a time, and handles the commands.
 class Scene {
  public:
   explicit Scene(const WindowRequest& request) : request_(request), parts_(view_parts(Blocks(request.vtm))) {
-    if (!parts_.any()) throw std::runtime_error(request.vtm.string() + " is no scene");
+    if (!parts_.any()) throw std::runtime_error(request.vtm.string() + ": this is no scene of orchard view");
     const View view = make_view(request.direction, extents_of(parts_));
     renderer_ = make_renderer(size_of(parts_));
     glass_ = add_still_parts(renderer_, parts_,
@@ -93,7 +93,7 @@ class Scene {
     say(text);
   }
 
-  // The sphere in front at these pixels.
+  // Picks the front sphere at these pixels.
   void pick(int x, int y) {
     const Vector3d from = world(x, y, 0), to = world(x, y, 1);
     const std::optional<Picked> picked = first_hit(from, (to - from).normalized());
@@ -161,7 +161,7 @@ class Scene {
                   value("radius"));
     std::string result = text;
     for (const auto& [array, words] : {std::pair{"error", "at most %.3g outside"}, {"inaccuracy", "inaccuracy %.3g"}}) {
-      if (!std::isfinite(value(array))) continue;  // the file does not know
+      if (!std::isfinite(value(array))) continue;  // the file does not have it
       std::snprintf(text, sizeof text, words, value(array));
       result += std::string(", ") + text;
     }
@@ -190,7 +190,7 @@ void save(vtkRenderWindow* window, const std::string& png) {
   std::fflush(stdout);
 }
 
-// VTK's trackball without its keys, and with ours.
+// VTK's trackball with keys of our own instead of VTK's.
 class Style : public vtkInteractorStyleTrackballCamera {
  public:
   static Style* New();

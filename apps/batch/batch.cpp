@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kMostNames = 10;  // in a message
+constexpr std::size_t kMostNames = 10;  // the number of names in one message
 
 bool is_given(const BatchCommand& command, const std::string& option) {
   return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
@@ -34,7 +34,7 @@ std::map<std::string, std::string> faults_of(const BatchCommand& command) {
   std::map<std::string, std::string> faults;
   for (const std::string& fault : command.faults) {
     const std::size_t equals = fault.find('=');
-    if (equals == std::string::npos) throw InputError("--fault " + fault + ": is not KIND=MESH");
+    if (equals == std::string::npos) throw InputError("--fault " + fault + ": expected KIND=MESH");
     faults[fault.substr(equals + 1)] = fault.substr(0, equals);
   }
   return faults;
@@ -84,7 +84,7 @@ ExitCode batch(const BatchCommand& command) {
     merge_batches(command);
     return kSucceeded;
   }
-  if (command.sources.size() > 1) throw InputError("batch: name one folder or manifest, and the command behind --");
+  if (command.sources.size() > 1) throw InputError("batch: name one folder or manifest, and the command after --");
   if (command.cost) refuse(command, {"output", "timeout", "memory", "resume"}, "--cost");
   if (!command.cost && command.folder.empty())
     throw InputError("batch: --output is required: the folder for the results");

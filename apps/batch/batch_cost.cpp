@@ -19,11 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kMargin = 2;  // of what is asked of Slurm, over what is expected: it kills what exceeds that
+// The time and memory to ask Slurm for, over those expected: Slurm kills what exceeds its limits.
+constexpr double kMargin = 2;
 constexpr double kLeastBytes = 64 * kMebibyte, kLeastSeconds = 60;
 
-// Of a raw axis (docs/results/growth.md), of a refined one (docs/results/medial-axes.md: 2 to 26 s there), and of a
-// set: seconds and bytes at least, for each surface point or sphere, and for each triangle.
+// Seconds and bytes of a raw axis (docs/results/growth.md), of a refined one (docs/results/medial-axes.md: 2 to 26 s
+// there), and of a set: a minimum, and an amount for each surface point or sphere, and for each triangle.
 struct MeshRates {
   double seconds, per_item, per_triangle;
   double bytes, bytes_per_item, bytes_per_triangle;
@@ -42,7 +43,7 @@ struct ShardCost {
   double seconds = 0, bytes = 0;
 };
 
-// `jobs` meshes at a time: the memory of the largest ones together.
+// Runs `jobs` meshes at a time; the memory is that of the largest ones together.
 ShardCost cost_of(const std::vector<MeshCost>& meshes, const std::vector<std::size_t>& positions, std::size_t jobs) {
   ShardCost cost{.meshes = positions.size()};
   std::vector<double> bytes;

@@ -28,7 +28,7 @@ constexpr const char* kCost = "cost.json";
 constexpr const char* kLog = "log.txt";
 constexpr std::chrono::milliseconds kBetweenTries{100};
 
-// Texts that are no UTF-8 must not keep a row from being written.
+// Text that is not valid UTF-8 must not prevent a row from being written.
 template <class Json>
 std::string line_of(const Json& value) {
   return value.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
@@ -40,7 +40,7 @@ void make_folder(const fs::path& folder) {
   if (error) throw Error(folder.string() + ": cannot be made: " + error.message());
 }
 
-// Whether `from` took the place `to`, which must not be there yet.
+// Moves a file to a place that must not exist yet. Returns whether that succeeded.
 bool moved(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::rename(from, to, error);
@@ -75,13 +75,14 @@ std::string result_key(const fs::path& mesh, const WorkerCommand& worker) {
   std::ifstream in(mesh, std::ios::binary);
   std::vector<char> piece(std::size_t{1} << 20);
   Sha256 hash;
-  // The name is part of what the results hold: their files, the links of robots, where they come from.
+  // The name is part of the key because results contain it, in the names of files, of robots' links and in the
+  // provenance.
   hash.add(line_of(json{batch_description(worker), mesh.filename().string()}));
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0) {
     hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
     throw_if_interrupted();
   }
-  if (in.bad() || !in.eof()) throw InputError(mesh.string() + ": cannot be read");
+  if (in.bad() || !in.eof()) throw InputError(mesh.string() + ": the file cannot be read; check its permissions");
   return hash.hexadecimal();
 }
 
@@ -93,7 +94,7 @@ BatchFolder::BatchFolder(fs::path folder, const Shard& shard, const WorkerComman
     : folder_(std::move(folder)), work_(folder_ / ".work" / stem_of(shard)), stem_(stem_of(shard)) {
   std::error_code ignored;
   if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored))
-    throw InputError(folder_.string() + ": is no folder; choose another place with -o");
+    throw InputError(folder_.string() + ": this is no folder; choose another place with -o");
   fs::create_directories(folder_ / "results", ignored);
   if (access((folder_ / "results").c_str(), W_OK | X_OK) != 0)
     throw InputError(folder_.string() + ": cannot be written to: " + std::generic_category().message(errno) +
@@ -108,15 +109,15 @@ BatchFolder::BatchFolder(fs::path folder, const Shard& shard, const WorkerComman
 BatchFolder::~BatchFolder() {
   std::error_code ignored;
   fs::remove_all(work_, ignored);
-  fs::remove(work_.parent_path(), ignored);  // if no other shard is at work
+  fs::remove(work_.parent_path(), ignored);  // succeeds only if no other shard is running
   close(lock_);
 }
 
 void BatchFolder::claim(bool resume) {
   const fs::path file = folder_ / "shards" / (stem_ + ".lock");
   if (!resume && fs::exists(file))
-    throw InputError(fmt::format("{}: shard {} was begun here before; --resume does what is missing of it",
-                                 folder_.string(), stem_));
+    throw InputError(
+        fmt::format("{}: shard {} was begun here before; give --resume to finish it", folder_.string(), stem_));
   lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) throw Error(file.string() + ": cannot be written: " + std::generic_category().message(errno));
   for (bool told = false; flock(lock_, LOCK_EX | LOCK_NB) != 0; told = true) {
@@ -149,7 +150,7 @@ void BatchFolder::finish(const std::string& key, const MeshResult& result, const
     fs::remove_all(made);
     return;
   }
-  // A worker that was killed leaves behind what it had begun.
+  // A worker that was killed leaves unfinished files behind.
   if (result.row["status"] == "failed")
     for (const auto& entry : fs::directory_iterator(made)) fs::remove_all(entry);
   write_file(made / kRow, line_of(result.row));
@@ -160,7 +161,7 @@ void BatchFolder::finish(const std::string& key, const MeshResult& result, const
   const std::optional<MeshResult> there = find(key);
   const bool better = !there || (there->row["status"] == "failed" && there->row["why"] != "refused");
   if (!better) {
-    fs::remove_all(made);  // another shard has the same mesh, and was faster
+    fs::remove_all(made);  // another shard has the same mesh and was faster
     return;
   }
   const fs::path older = work_ / (key + "-older");
@@ -171,7 +172,7 @@ void BatchFolder::finish(const std::string& key, const MeshResult& result, const
 
 void BatchFolder::publish(const Manifest& manifest, std::size_t rows) const {
   const fs::path shards = folder_ / "shards";
-  // The costs first, and last what says that all of it is there.
+  // The costs come first, and last the file that marks the shard as complete.
   fs::rename(costs_in_work(), shards / (stem_ + ".costs.jsonl"));
   write_file(shards / (stem_ + ".json"),
              json{{"manifest", manifest.checksum}, {"meshes", manifest.meshes.size()}, {"rows", rows}}.dump() + "\n");

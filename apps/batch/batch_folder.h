@@ -25,30 +25,30 @@ inline constexpr const char* kBatchFile = "batch.json";
 // once.
 std::string result_key(const std::filesystem::path& mesh, const WorkerCommand& worker);
 
-// What batch.json says.
+// Returns the contents of batch.json.
 nlohmann::json batch_description(const WorkerCommand& worker);
 
 class BatchFolder {
  public:
-  // Makes what is missing of the folder, waits for another process that runs the same shard to end, and removes what
-  // an earlier run left unfinished. Throws InputError if the folder has results of other options or of another version,
-  // or if the shard was begun before and `resume` is not set, Cancelled after a signal, Error if nothing can be
-  // written.
+  // Makes the folders that are missing, waits until another process with the same shard has ended, and removes
+  // unfinished files of an earlier run. Throws InputError if the folder has results of other options or of another
+  // version, or if the shard was begun before and `resume` is not set; Cancelled after a signal; Error if it cannot
+  // write.
   BatchFolder(std::filesystem::path folder, const Shard& shard, const WorkerCommand& worker, bool resume);
   ~BatchFolder();
   BatchFolder(const BatchFolder&) = delete;
   BatchFolder& operator=(const BatchFolder&) = delete;
 
-  // What is known of a mesh from before; nothing if its results are not there.
+  // Returns the stored result of a mesh; nullopt if there is none.
   std::optional<MeshResult> find(const std::string& key) const;
 
-  // An empty folder for a worker to write to.
+  // Returns an empty folder for a worker to write to.
   std::filesystem::path begin(const std::string& key) const;
-  // Makes the results of that folder those of the mesh, unless another shard was faster; or removes them if they do not
-  // last. log: what the worker said.
+  // Moves that folder to the results of the mesh, unless another shard was faster; or removes it if the result is not
+  // lasting. `log` is the output of the worker.
   void finish(const std::string& key, const MeshResult& result, const std::string& log) const;
 
-  // Files in `.work`, which have their place when publish() has been called.
+  // The files in `.work`, which publish() moves to their places.
   std::filesystem::path rows_in_work() const { return work_ / "rows.jsonl"; }
   std::filesystem::path costs_in_work() const { return work_ / "costs.jsonl"; }
   void publish(const Manifest& manifest, std::size_t rows) const;

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr const char* kSummary = "batch-summary.json";
 
-// Of the files of a merge: what the results were made with, not how or where they were merged.
+// The provenance of merged files: how the results were made, not how or where they were merged.
 Provenance provenance_of(const json& description) {
   const std::string command_line = description.value("command_line", "");
   return {.run = {.typed = command_line,
@@ -47,7 +47,8 @@ void merge_batches(const BatchCommand& command) {
   if (command.sources.size() < 2)
     throw InputError("batch merge: name the folders of the batch, such as \"orchard batch merge out -o out/table\"");
   if (command.folder.empty()) throw InputError("batch merge: --output is required: the folder for the table");
-  if (!command.worker.empty()) throw InputError("batch merge: takes no command behind --: the results are there");
+  if (!command.worker.empty())
+    throw InputError("batch merge: leave out the command after --, because the results exist already");
   const MergedRows rows = read_merged_rows({command.sources.begin() + 1, command.sources.end()});
   const Destination destination{
       .folder = command.folder, .report = kSummary, .provenance = provenance_of(rows.description), .force = true};

@@ -5,9 +5,8 @@
 
 namespace orchard::apps {
 
-// "412 of 10000 meshes, 9 failed, 3.4 a second, 47 min left" on one line of the standard error output, if that is a
-// terminal and `wanted`; else nothing. The rate is that of the meshes that were worked on, not of those that were
-// there.
+// Prints "412 of 10000 meshes, 9 failed, 3.4 a second, 47 min left" on one line of standard error if that is a terminal
+// and `wanted`; otherwise nothing. The rate counts only meshes that were processed, not those with stored results.
 class BatchProgress {
  public:
   BatchProgress(std::size_t meshes, bool wanted);

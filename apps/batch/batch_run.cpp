@@ -44,7 +44,7 @@ void BatchRun::start_next() {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(mesh.file, error);
   if (!error && options_.limits.bytes > 0 && size > options_.limits.bytes) {
-    // It is not even read, for it may take an hour.
+    // Such a file is not even read, because that may take an hour.
     const std::string key = fmt::format("unread {}", place);
     waiting_[key].push_back(place);
     return finish(key, refused_result("the file alone is larger than --memory allows", options_.limits), false);
@@ -52,17 +52,18 @@ void BatchRun::start_next() {
   std::string key;
   try {
     key = result_key(mesh.file, command_);
-  } catch (const InputError& fault) {  // removed since the batch began
+  } catch (const InputError& fault) {  // the file was removed after the batch began
     key = fmt::format("unread {}", place);
     waiting_[key].push_back(place);
-    MeshResult result = refused_result("the file cannot be read any more", options_.limits);
+    MeshResult result =
+        refused_result("the file cannot be read any more; it was removed or its permissions changed", options_.limits);
     result.row["why"] = "error";
     result.lasting = false;
     return finish(key, result, false);
   }
   std::vector<std::size_t>& places = waiting_[key];
   places.push_back(place);
-  if (places.size() > 1) return;  // the same file is at work
+  if (places.size() > 1) return;  // the same file is being processed for another place
   const std::optional<MeshResult> known = folder_.find(key);
   if (known && !outgrown(*known, options_.limits)) return finish(key, *known, true);
   start(key, mesh);
@@ -94,7 +95,7 @@ void BatchRun::look_at_workers() {
   }
 }
 
-// Rows of all places that wait for the key.
+// Writes the rows of all places that wait for the key.
 void BatchRun::finish(const std::string& key, const MeshResult& result, bool known_before) {
   const std::string status = result.row["status"];
   const bool read = key.find(' ') == std::string::npos;

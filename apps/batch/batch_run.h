@@ -13,13 +13,13 @@
 
 namespace orchard::apps {
 
-// What came of the meshes of one run.
+// The results of one run.
 struct BatchCounts {
   std::map<std::string, std::size_t> statuses;  // solid, repaired, wrapped, failed
   std::map<std::string, std::size_t> reasons;   // of failures
-  std::size_t known_before = 0;                 // whose results were there
+  std::size_t known_before = 0;                 // the number of meshes with stored results
   std::size_t broken_promises = 0;
-  std::vector<std::string> not_lasting;  // names of meshes that another run should try again
+  std::vector<std::string> not_lasting;  // names of meshes that should be tried again by another run
 };
 
 struct BatchRunOptions {
@@ -29,14 +29,14 @@ struct BatchRunOptions {
   std::map<std::string, std::string> faults;
 };
 
-// The meshes of one shard, each in a worker, `jobs` at a time, and their rows in order.
+// Runs the meshes of one shard, each in a worker and `jobs` at a time, and writes their rows in order.
 class BatchRun {
  public:
   BatchRun(const Manifest& manifest, const std::vector<std::size_t>& positions, const WorkerCommand& command,
            const BatchFolder& folder, const BatchRunOptions& options, BatchProgress& progress);
 
-  // Until all are done. Throws Cancelled after a signal, Error if something cannot be written; then the workers are
-  // killed, and what is done stays.
+  // Returns when all are done. Throws Cancelled after a signal, and Error if it cannot write. The workers are then
+  // killed, and finished results stay.
   BatchCounts run();
 
  private:
@@ -61,7 +61,8 @@ class BatchRun {
   OrderedRows rows_, costs_;
   std::size_t next_ = 0;
   std::vector<Job> jobs_;
-  std::map<std::string, std::vector<std::size_t>> waiting_;  // for each key at work, the places of its rows
+  // For each key that is being processed, the places of its rows.
+  std::map<std::string, std::vector<std::size_t>> waiting_;
   BatchCounts counts_;
 };
 

@@ -5,7 +5,7 @@
 
 namespace orchard::apps {
 
-// What a process prints, of which no more than the beginning and the end is kept: it may print for ever.
+// The output of a process, which may be infinite. Only its beginning and its end are kept.
 class BoundedText {
  public:
   // limit: bytes kept of the beginning, and as many of the end.
@@ -21,7 +21,7 @@ class BoundedText {
     tail_.erase(0, tail_.size() - limit_);
   }
   bool whole() const { return left_out_ == 0; }
-  // With a line in place of what was left out.
+  // Returns the text, with a line in place of the part that was dropped.
   std::string text() const {
     return whole() ? head_ + tail_ : head_ + "\n.. " + std::to_string(left_out_) + " bytes ..\n" + tail_;
   }

@@ -28,11 +28,11 @@ std::vector<BatchMesh> listed(const fs::path& manifest) {
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty() || line.front() == '#') continue;
     if (line.find('\0') != std::string::npos)
-      throw InputError(manifest.string() + ": is no list of files, a path a line: it holds a zero byte");
+      throw InputError(manifest.string() + ": this is no text with a path on each line, since it contains a zero byte");
     meshes.push_back({line, manifest.parent_path() / line});
   }
-  if (in.bad() || !in.eof()) throw InputError(manifest.string() + ": cannot be read");
-  if (meshes.empty()) throw InputError(manifest.string() + ": names no mesh; it is to have a path a line");
+  if (in.bad() || !in.eof()) throw InputError(manifest.string() + ": the file cannot be read; check its permissions");
+  if (meshes.empty()) throw InputError(manifest.string() + ": the file names no mesh; it needs a path on each line");
   return meshes;
 }
 
@@ -49,7 +49,8 @@ std::vector<BatchMesh> found_in(const fs::path& folder, const fs::path& skipped)
   }
   if (error) throw InputError(folder.string() + ": cannot be listed: " + error.message());
   if (meshes.empty())
-    throw InputError(folder.string() + ": holds no mesh " + input_formats_in_words() + ", nor do its folders");
+    throw InputError(folder.string() + ": the folder contains no mesh " + input_formats_in_words() +
+                     ", and neither do the folders in it");
   std::sort(meshes.begin(), meshes.end(), [](const BatchMesh& a, const BatchMesh& b) { return a.name < b.name; });
   return meshes;
 }
@@ -58,7 +59,7 @@ std::vector<BatchMesh> found_in(const fs::path& folder, const fs::path& skipped)
 std::string fault_of(const fs::path& file) {
   if (access(file.c_str(), R_OK) != 0) return std::generic_category().message(errno);
   std::error_code error;
-  // A device or a pipe may never end.
+  // Reading a device or a pipe might never end.
   if (!fs::is_regular_file(file, error)) return "it is no plain file";
   return is_mesh_name(file) ? "" : "its name is not that of a mesh " + input_formats_in_words();
 }
@@ -89,8 +90,10 @@ Manifest read_manifest(const fs::path& source, const fs::path& skipped) {
   } else {
     check_input(source);
     if (is_mesh_name(source))
-      throw InputError(source.string() + ": is a mesh; name a folder of meshes, or a file with a path a line");
-    if (!fs::is_regular_file(source, ignored)) throw InputError(source.string() + ": is neither a folder nor a file");
+      throw InputError(source.string() +
+                       ": this is a mesh; name a folder of meshes, or a file with a path on each line");
+    if (!fs::is_regular_file(source, ignored))
+      throw InputError(source.string() + ": this is neither a folder nor a file");
     manifest.meshes = listed(source);
   }
   require_all(source, manifest.meshes);
@@ -107,7 +110,7 @@ Shard parse_shard(const std::string& text) {
                        parse_count(std::string_view(text).substr(0, slash), shard.index) &&
                        parse_count(std::string_view(text).substr(slash + 1), shard.count);
   if (!numbers || shard.index > shard.count)
-    throw InputError("--shard " + text + ": is no shard; give i/n with i from 1 to n, such as 1/4, .., 4/4");
+    throw InputError("--shard " + text + ": expected i/n with i from 1 to n, such as 1/4");
   return shard;
 }
 

@@ -30,8 +30,7 @@ using ShardSets = std::map<std::pair<std::size_t, std::string>, std::map<std::si
 json object_in(const fs::path& file) {
   std::ifstream in(file);
   json found = json::parse(in, nullptr, false);
-  if (!found.is_object())
-    throw InputError(file.string() + ": cannot be read as what a batch wrote; run the shard again");
+  if (!found.is_object()) throw InputError(file.string() + ": this is not what a batch wrote; run the shard again");
   return found;
 }
 
@@ -75,7 +74,7 @@ ShardSets::const_iterator complete_set(const fs::path& folder, const ShardSets& 
         fmt::format("{}: cannot be merged: {}; run them with --resume", folder.string(), missing_in(sets)));
   if (manifests.size() > 1)
     throw InputError(folder.string() +
-                     ": holds shards of two manifests; run all shards of the present one with --resume, "
+                     ": the folder has shards of two manifests; run all shards of the present one with --resume, "
                      "and remove the others from the folder named shards");
   return chosen;
 }
@@ -110,7 +109,7 @@ MergedRows read_merged_rows(const std::vector<fs::path>& folders) {
   ShardSets sets;
   for (const fs::path& folder : folders) {
     if (!fs::exists(folder / kBatchFile))
-      throw InputError(folder.string() + ": is no folder that orchard batch made: there is no " + kBatchFile);
+      throw InputError(folder.string() + ": this is no folder of orchard batch, since it has no file " + kBatchFile);
     const json description = object_in(folder / kBatchFile);
     if (merged.description.is_null()) merged.description = description;
     if (merged.description != description)

@@ -15,13 +15,14 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kTightnessBins = 40, kMostMessages = 20;
-constexpr std::size_t kMostPoints = 5000;  // of a plot: more of them no program opens gladly, and no eye tells apart
+// The number of points of a plot: more of them are slow to open and hard to distinguish.
+constexpr std::size_t kMostPoints = 5000;
 
 ordered_json parsed(const std::string& line) { return ordered_json::parse(line); }
 
 std::string csv_cell(const json& value) {
   if (value.is_null()) return {};
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   return '"' + replaced(text, "\"", "\"\"") + '"';
 }
@@ -48,7 +49,7 @@ std::vector<std::string> figure_names(const MergedRows& rows) {
   return names;
 }
 
-// The most frequent messages of failures first, and of equally frequent ones that which comes first in the alphabet.
+// Sorts messages of failures by frequency, and equally frequent ones alphabetically.
 json by_frequency(const std::map<std::string, std::size_t>& messages) {
   std::vector<std::pair<std::string, std::size_t>> sorted(messages.begin(), messages.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });

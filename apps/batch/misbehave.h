@@ -3,8 +3,8 @@
 
 namespace orchard::apps {
 
-// What a batch must survive, for its tests: crash (SIGSEGV), killed (SIGKILL), hang, memory (takes more and more of
-// it), chatter (prints for ever). Does not return.
+// Simulates the faults that a batch has to survive, for its tests: crash (SIGSEGV), killed (SIGKILL), hang, memory
+// (allocates without end), chatter (prints without end). Does not return.
 [[noreturn]] void misbehave(const std::string& kind);
 
 }  // namespace orchard::apps

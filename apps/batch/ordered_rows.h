@@ -8,11 +8,11 @@
 
 namespace orchard::apps {
 
-// Writes rows to a file in the order of their places, 0, 1, .., whatever the order in which they come: one JSON object
-// a line. Rows that are ahead of their turn wait in memory.
+// Writes rows to a file in the order of their places, 0, 1, .., in whatever order they are added: one JSON object a
+// line. Rows that are too early wait in memory.
 class OrderedRows {
  public:
-  // Throws Error if the file cannot be written; so does everything else here.
+  // Throws Error if the file cannot be written, as do the other functions.
   explicit OrderedRows(std::filesystem::path file);
   void add(std::size_t place, const nlohmann::ordered_json& row);
   void close();  // precondition: all rows up to the last one were added

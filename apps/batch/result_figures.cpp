@@ -13,7 +13,8 @@ using nlohmann::ordered_json;
 
 constexpr double kFromPercent = 0.01;
 
-using FigureNames = std::vector<std::pair<const char*, const char*>>;  // of the row, and where the report has it
+// The name in the row, and the place in the report.
+using FigureNames = std::vector<std::pair<const char*, const char*>>;
 
 void copy(const json& report, const FigureNames& names, ordered_json& figures) {
   for (const auto& [name, place] : names) {

@@ -4,9 +4,9 @@
 
 namespace orchard::apps {
 
-// What a row says of the result, flat, by name: what every command has (triangles, volume, ..), then what the command
-// adds (of a build `level_2_mean_inaccuracy_over_radius`, ..). `tightness` is how far the result is from the surface:
-// the mean inaccuracy of a tree's last level over the bounding radius; of an axis the larger of its two proven
+// Returns the figures of a row, by name: first those of every command (triangles, volume, ..), then those of this
+// command (for a build `level_2_mean_inaccuracy_over_radius`, ..). `tightness` is how far the result is from the
+// surface: the mean inaccuracy of a tree's last level over the bounding radius; of an axis the larger of its two proven
 // distances over the diagonal; of a sphere set the mean two-sided distance over the diagonal. A figure that a report
 // lacks is left out.
 nlohmann::ordered_json figures_of(const nlohmann::json& report, const std::string& command);

@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// The lines of the error output as one, each without the program's name and the path of the mesh in front.
+// Joins the lines of the error output into one, without the program's name and the path of the mesh at their beginning.
 std::string message_of(const std::string& err, const std::filesystem::path& mesh, const std::string& name,
                        const std::filesystem::path& folder) {
   std::string text = replaced(err, "orchard: " + mesh.string() + ": ", "");
@@ -61,12 +61,13 @@ void add_report(const json& report, const std::string& command, ordered_json& ro
   row["figures"] = figures_of(report, command);
 }
 
-// The reason of an end that is no result.
+// Returns the reason for an end without a result.
 std::string why_of(const WorkerEnd& end) {
   if (end.cause == WorkerEnd::Cause::out_of_time) return "timeout";
   if (end.cause == WorkerEnd::Cause::out_of_memory) return "memory";
   if (end.cause == WorkerEnd::Cause::signalled) return end.number == SIGKILL ? "killed" : "crashed";
-  if (end.number > kInterrupted - SIGINT) return "killed";  // 128 + a signal that the worker ended by cleanly
+  // 128 + a signal after which the worker ended in an orderly way.
+  if (end.number > kInterrupted - SIGINT) return "killed";
   return end.number == kBadInput ? "refused" : "error";
 }
 

@@ -7,9 +7,9 @@
 
 namespace orchard::apps {
 
-// SHA-256 (FIPS 180-4) of bytes that come piece by piece. It names the results of a batch: the checksums of 64 bits
-// that files carry against damage (provenance.h, the tree format) are too short to be taken for the content of a
-// million meshes. Written here because no library that the program links has one. About 200 MB a second.
+// Computes the SHA-256 (FIPS 180-4) of bytes that are added piece by piece. It names the results of a batch, because
+// the checksums of 64 bits that files have against damage (provenance.h, the tree format) are too short to identify the
+// contents of a million meshes. No library that the program links has this function. About 200 MB a second.
 class Sha256 {
  public:
   void add(std::string_view bytes);

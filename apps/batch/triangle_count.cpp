@@ -48,7 +48,8 @@ std::uint64_t of_ply(std::ifstream& in) {
     if (!(words >> element >> name >> count) || element != "element") continue;
     if (name == "vertex") vertices = count;
     if (name == "face") return count;
-    if (name == "tristrips") return 2 * vertices;  // as closed surfaces have; the strips' lengths are behind the header
+    // True of closed surfaces; the lengths of the strips come after the header.
+    if (name == "tristrips") return 2 * vertices;
   }
   return 0;
 }
@@ -76,7 +77,8 @@ std::uint64_t count_triangles(const fs::path& mesh) {
                               : ending == ".off" ? of_off(in)
                               : ending == ".obj" ? lines_that_begin_with(in, "f ")
                                                  : bytes / kBytesOfOther;
-  return std::min<std::uint64_t>(count, bytes);  // damaged headers promise anything; a face takes a byte at least
+  // A damaged header may contain any number, but a face takes at least a byte.
+  return std::min<std::uint64_t>(count, bytes);
 }
 
 }  // namespace orchard::apps

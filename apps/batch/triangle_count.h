@@ -4,9 +4,9 @@
 
 namespace orchard::apps {
 
-// About how many triangles a mesh file has, from its header where that says so (.stl, .ply, .off), else by counting
-// its faces (.obj), polygons as one, or from its size (other formats). 0 where the file is none that can be read: it
-// costs nothing, either.
+// Estimates the number of triangles of a mesh file: from its header (.stl, .ply, .off), by counting its faces with
+// polygons as one (.obj), or from its size (other formats). Returns 0 if the file cannot be read; such a file costs
+// nothing.
 std::uint64_t count_triangles(const std::filesystem::path& mesh);
 
 }  // namespace orchard::apps

@@ -17,23 +17,25 @@
 namespace orchard::apps {
 namespace {
 
-constexpr const char* kThisProgram = "/proc/self/exe";  // also after the file was replaced by a newer one
-constexpr int kBetweenLooks = 20;                       // milliseconds
+// It is still right after the file has been replaced by a newer one.
+constexpr const char* kThisProgram = "/proc/self/exe";
+constexpr int kBetweenLooks = 20;  // milliseconds
 constexpr std::size_t kReportBytes = std::size_t{32} << 20, kLogBytes = std::size_t{32} << 10;
-constexpr int kMostPieces = 64;  // in one look: a process that prints for ever must not keep from looking at the clock
+// Blocks that are read at a time, so that a process with endless output does not delay the check of the clock.
+constexpr int kMostPieces = 64;
 constexpr int kNotStarted = 127;
 
 using Pipe = std::array<int, 2>;  // its end to read from, its end to write to
 
 std::string why() { return std::generic_category().message(errno); }
 
-// Runs in the new process, where nothing may be done that takes a lock.
+// Runs in the new process, where no function that takes a lock may be called.
 [[noreturn]] void become(char* const* words, const Pipe& out, const Pipe& err, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(kNotStarted);  // it ended before it could be told of
+  if (getppid() != parent) _exit(kNotStarted);  // the parent ended before prctl() took effect
   const rlimit none{0, 0};
-  setrlimit(RLIMIT_CORE, &none);  // a thousand crashes would fill the disk
+  setrlimit(RLIMIT_CORE, &none);  // core files of many crashes would fill the disk
   const int input = open("/dev/null", O_RDONLY);
   if (input >= 0) dup2(input, STDIN_FILENO);
   dup2(out[1], STDOUT_FILENO);
@@ -56,6 +58,7 @@ Worker::Worker(const std::vector<std::string>& words, const WorkerLimits& limits
   std::vector<std::string> all{"orchard"};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> pointers;
+  pointers.reserve(all.size() + 1);
   for (std::string& word : all) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   const Pipe out = new_pipe(), err = new_pipe();
@@ -71,7 +74,7 @@ Worker::Worker(const std::vector<std::string>& words, const WorkerLimits& limits
     for (const int end : pipes_) close(end);
     throw Error("no process can be started: " + reason);
   }
-  setpgid(pid_, pid_);  // whichever of the two processes comes first
+  setpgid(pid_, pid_);  // called in both processes, because either may run first
 }
 
 Worker::~Worker() {
@@ -114,7 +117,7 @@ std::optional<WorkerEnd> Worker::look() {
     if (broken_limit_) kill_group();
     return std::nullopt;
   }
-  kill_group();  // what it started and left behind, while its number is still its own
+  kill_group();  // kills processes that it left behind, while their group still has its number
   int status = 0;
   rusage usage{};
   wait4(pid_, &status, 0, &usage);
@@ -126,8 +129,7 @@ std::optional<WorkerEnd> Worker::look() {
                                     : WorkerEnd::Cause::exited;
   end.number = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   end.seconds = seconds;
-  // The system's account begins with the memory of this process, which the new one shared until it became another
-  // program.
+  // The system counts from the memory of this process, which the new one shared until it became another program.
   rusage own{};
   getrusage(RUSAGE_SELF, &own);
   end.peak_bytes = peak_bytes_;

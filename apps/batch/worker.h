@@ -13,8 +13,9 @@
 
 namespace orchard::apps {
 
-// Limits of one mesh; 0: none. Memory is what is resident: a limit of the address space would fail programs that map
-// files or start threads. It is looked at every few hundredths of a second, so that a process may exceed it that long.
+// Limits for one mesh; 0 means none. Memory is resident memory, because a limit of the address space would break
+// programs that map files or start threads. It is checked every few hundredths of a second, so a process may exceed it
+// for that long.
 struct WorkerLimits {
   double seconds = 0;
   std::uint64_t bytes = 0;
@@ -31,8 +32,8 @@ struct WorkerEnd {
   bool out_whole = true;
 };
 
-// This program, run on one mesh as a process in a group of its own, with its output kept here. A signal from the
-// terminal does not reach it; when this process ends, however that is, the worker is killed.
+// Runs this program on one mesh, as a process in a group of its own whose output is collected here. Signals from the
+// terminal do not reach it. When this process ends, for any reason, the worker is killed.
 class Worker {
  public:
   // words: a command and its options. Throws Error if no process can be started.
@@ -41,9 +42,9 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // Reads what was printed, looks at the limits, and returns how it ended once it has.
+  // Reads its output, checks the limits, and returns how it ended if it has.
   std::optional<WorkerEnd> look();
-  // Where its output comes from, for poll(); -1 where nothing more comes.
+  // the descriptors of its output, for poll(); -1 after the end of the output
   const std::array<int, 2>& descriptors() const { return pipes_; }
 
  private:

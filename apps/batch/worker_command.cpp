@@ -24,7 +24,7 @@ bool is_in(const std::array<std::string_view, N>& names, const std::string& name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// As if each mesh were called so.
+// the name of the mesh while a command line is checked for all meshes
 constexpr const char* kAnyMesh = "MESH.obj";
 constexpr const char* kAnyFolder = "FOLDER";
 
@@ -33,9 +33,9 @@ const CLI::App& parsed(CLI::App& app, const std::vector<std::string>& words) {
   typed.insert(typed.end(), words.begin(), words.end());
   if (const std::string fault = unknown_word(app, typed); !fault.empty()) throw InputError(fault);
   try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the last first
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // in reverse order, as the parser expects
   } catch (const CLI::Success&) {
-    throw InputError("batch: --help behind -- belongs to no mesh; see \"orchard " + words.front() + " --help\"");
+    throw InputError("batch: --help after -- has no effect on a mesh; see \"orchard " + words.front() + " --help\"");
   } catch (const CLI::ParseError& error) {
     throw InputError(in_one_line(app, error));
   }
@@ -62,15 +62,16 @@ std::vector<std::string> WorkerCommand::words(const std::filesystem::path& mesh,
   std::vector<std::string> words{name};
   words.insert(words.end(), options.begin(), options.end());
   words.insert(words.end(), {"--json", "-o", folder.string()});
-  if (!own_threads) words.insert(words.end(), {"--threads", "1"});  // the meshes are what runs side by side
-  words.insert(words.end(), {"--", mesh.string()});                 // whatever its name begins with
+  // Meshes are processed in parallel, so each worker gets a single thread.
+  if (!own_threads) words.insert(words.end(), {"--threads", "1"});
+  words.insert(words.end(), {"--", mesh.string()});  // after "--", because the name may begin with a dash
   return words;
 }
 
 WorkerCommand parse_worker_command(const std::vector<std::string>& words) {
   if (words.empty() || !is_in(kCommands, words.front()))
     throw InputError(
-        "batch: say what to do with every mesh behind --: build, medial or spheres and its options, such as "
+        "batch: give the command for every mesh after --: build, medial or spheres and its options, such as "
         "-- build --depth 2");
   WorkerCommand worker{.name = words.front(),
                        .options = {words.begin() + 1, words.end()},

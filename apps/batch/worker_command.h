@@ -9,17 +9,17 @@ namespace orchard::apps {
 
 struct Request;
 
-// What a batch does with every mesh: `orchard build|medial|spheres MESH -o FOLDER OPTIONS`.
+// The command that a batch runs for every mesh: `orchard build|medial|spheres MESH -o FOLDER OPTIONS`.
 struct WorkerCommand {
   std::string name;                  // build, medial or spheres
   std::vector<std::string> options;  // as typed
-  // What of them decides the results, in the words of provenance.h: the same for all ways to type the same.
+  // The part of the options that decides the results, in a normal form (provenance.h).
   std::string decisive;
   nlohmann::json decisive_options;
-  bool own_threads = false;                // the options say how many
-  std::shared_ptr<const Request> request;  // as the command itself would see them
+  bool own_threads = false;                // whether the options state a number of threads
+  std::shared_ptr<const Request> request;  // the parsed options, as the command would see them
 
-  // The program's words for one mesh.
+  // Returns the arguments of the program for one mesh.
   std::vector<std::string> words(const std::filesystem::path& mesh, const std::filesystem::path& folder) const;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "command_line/command_line.h"
 
-// Each command with its options, in files of their own by what they are about.
+// Adds each command with its options. The files are divided by topic.
 namespace orchard::apps {
 
 // tree_commands.cpp
@@ -32,13 +32,13 @@ void add_audit(CLI::App& app, Request& request);
 
 // robot_commands.cpp
 void add_robot(CLI::App& app, Request& request);
-// How a robot is read, for each command that reads one; returns the options.
+// Adds how a robot is read, for each command that reads one. Returns the options.
 std::vector<CLI::Option*> add_robot_reading(CLI::App& command, RobotReading& reading);
 
 // batch_commands.cpp
 void add_batch(CLI::App& app, Request& request);
-// How many of the program's words are its own: those behind -- of a batch are the command that it runs, and are taken
-// from them into the request.
+// Returns how many of the arguments belong to the program itself. Those after -- of a batch are the command that it
+// runs, and are moved into the request.
 int take_worker_words(int argc, const char* const* argv, Request& request);
 
 }  // namespace orchard::apps

@@ -12,6 +12,7 @@
 #include "command_line/sweep_option.h"
 #include "command_line/tree_options.h"
 #include "medial/axis_export.h"
+#include "medial/axis_importance.h"
 #include "orchard/geometry/noise.h"
 
 namespace orchard::apps {
@@ -129,8 +130,19 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
                   "where there are too few balls)")
       ->check(CLI::IsMember({"medial", "free"}))
       ->capture_default_str();
-  command.add_flag("--curve", medial.curve,
-                   "Also write the error of the axis simplified to fewer and fewer balls: MODEL-curve.csv and .svg");
+  add_list(
+      command, "--importance", medial.importance,
+      "Also measure how much each ball matters, by these measures of --prune, as arrays of the views and of --export "
+      "npz and csv",
+      importance_names());
+  command
+      .add_option("--prune-curve", medial.prune_curve,
+                  "Also prune the axis by this measure at ever larger values, and write error and size: "
+                  "MODEL-prune-MEASURE.csv and .svg")
+      ->check(CLI::IsMember(prune_names()));
+  command.add_flag(
+      "--error-curve", medial.error_curve,
+      "Also write the error of the axis simplified to fewer and fewer balls: MODEL-error-curve.csv and .svg");
   CLI::Option* envelope = command.add_option(
       "--envelope", medial.envelope,
       "Write the envelope of the axis, or of the simplified axis of --vertices or --error, to this .obj file");
@@ -261,7 +273,7 @@ void add_voronoi(CLI::App& app, Request& request) {
   });
 }
 
-// Either a word or a level.
+// Either the word auto or a percentage.
 CLI::Validator noise_validator() {
   const NumberValidator level(CLI::Range(1e-4, 100 * kMaxNoise));
   return {[level](std::string& text) { return text == "auto" ? std::string() : level(text); }, "auto or a percentage"};

@@ -21,37 +21,37 @@
 #include "robot/formats.h"
 #include "trees/tree_request.h"
 
-// The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
-// exit code and one line on stderr.
+// The options of each command, and the functions that run the commands, each of which is in a file of its own. On
+// failure they throw, and main() turns that into an exit code and one line on stderr.
 namespace orchard::apps {
 
 struct Output {
   bool quiet = false;  // no progress, no table
   bool json = false;   // a JSON report on stdout instead of a table; no progress
   bool force = false;  // replace the files of another input
-  Invocation run;      // what the report says of how it was made
+  Invocation run;      // how the report states that it was made
 };
 
 struct BuildCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
   TreeRequest tree;
-  std::optional<double> seconds;  // what there is after that time
+  std::optional<double> seconds;  // stop after this time with the best tree so far
   MedialTuning tuning;
   AxisSource source;
-  bool views = true;                  // ParaView files, where the program was built with them
+  bool views = true;                  // ParaView files, if the program was built with VTK
   bool picture = false;               // a .png as well
   bool page = false;                  // an .html page with pictures, tables and plots
-  bool cost = false;                  // say what it will cost, and build nothing
+  bool cost = false;                  // print the expected cost, and build nothing
   std::vector<std::string> exports;   // sph (always written), json, urdf, npz, csv
-  std::optional<Index> export_level;  // of the urdf; the last one
+  std::optional<Index> export_level;  // the level of the urdf; the default is the last one
   std::string up = "y";               // the mesh's axis that points up in the picture
   std::vector<std::string> given;     // the options on the command line, by their long names, without dashes
-  bool accept = false;                // a promise that is not kept does not change the exit code
+  bool accept = false;                // a broken promise does not change the exit code
   Output output;
 };
 ExitCode build(const BuildCommand& command);
-// What can be refused whatever the mesh is; so below. Throws InputError.
+// Throws InputError for options that are invalid for every mesh, as do the functions of this name below.
 void check_options(const BuildCommand& command);
 
 struct CollideCommand {
@@ -63,9 +63,9 @@ void collide(const CollideCommand& command);
 
 struct VerifyCommand {
   std::filesystem::path tree, mesh;
-  MeshInput input;             // as in MeshOptions; so below
+  MeshInput input;             // as in MeshOptions, and in the commands below
   std::optional<double> join;  // likewise
-  bool box_centered = false;   // a text tree around the centre of the mesh's bounding box
+  bool box_centered = false;   // whether a text tree is relative to the centre of the mesh's bounding box
   Output output;
 };
 bool verify(const VerifyCommand& command);  // false: something is not proven
@@ -74,14 +74,14 @@ struct AuditCommand {
   std::filesystem::path spheres, mesh;
   std::filesystem::path folder;  // for the views and the report; empty: none
   MeshInput input;
-  std::string link;              // of a file of several; empty: there is one
-  std::optional<double> buffer;  // on every radius, in place of the file's own
+  std::string link;              // the link, if the file has several; empty if it has one
+  std::optional<double> buffer;  // added to every radius, in place of the file's own buffer
   std::optional<double> join;
   bool picture = false;
   bool report = false;             // a page
   std::string up = "z";            // the mesh's axis that points up in the picture
-  RobotReading reading;            // where `mesh` is a URDF: the whole robot is audited
-  bool wrap = false;               // likewise: links that are no solids
+  RobotReading reading;            // for a URDF as `mesh`: the whole robot is audited
+  bool wrap = false;               // for a URDF: wrap links that are no solids
   std::vector<std::string> given;  // as of BuildCommand
   Output output;
 };
@@ -90,9 +90,9 @@ ExitCode audit_robot(const AuditCommand& command);  // which audit() calls
 
 struct RobotCommand {
   std::filesystem::path urdf, folder;
-  std::filesystem::path from;  // spheres that are there already; empty: they are made
+  std::filesystem::path from;  // a file of existing spheres; empty to make them
   RobotReading reading;
-  bool wrap = true;  // links that are no solids
+  bool wrap = true;  // wrap links that are no solids
   Index spheres = 60;
   std::string fit = "cover";
   std::vector<std::string> links, link_fits;  // "NAME=NUMBER", "NAME=FIT"
@@ -102,11 +102,11 @@ struct RobotCommand {
   Index states = robot::SelfCollisionOptions{}.states;
   std::uint64_t seed = 1;
   std::vector<std::string> exports;      // of robot::formats(); empty: kUsualFormats
-  std::vector<std::string> tool_frames;  // links
+  std::vector<std::string> tool_frames;  // names of links
   std::optional<double> acceleration, jerk;
   Index resolution = robot::FormatOptions{}.resolution;
-  std::vector<std::string> joints;   // "NAME=VALUE": where the robot rests, and is drawn
-  std::filesystem::path trajectory;  // poses to draw as well; empty: none
+  std::vector<std::string> joints;   // "NAME=VALUE": the pose in which the robot rests and is drawn
+  std::filesystem::path trajectory;  // further poses to draw; empty for none
   bool trees = false, views = true, picture = true, report = false;
   std::string up = "z";
   std::vector<std::string> given;  // as of BuildCommand
@@ -124,10 +124,10 @@ struct SpheresCommand {
          inertia_error = 100 * ParticleOptions{}.inertia_error;  // of particles, percent
   std::vector<double> clip;              // normal and offset of the half-space that is kept; empty: all
   std::filesystem::path vertex_weights;  // a number for each vertex; empty: none
-  std::vector<Index> curve;              // numbers of spheres to try as well
+  std::vector<Index> error_curve;        // numbers of spheres for which the error is written, too
   std::vector<std::string> exports;      // json, csv, npz, urdf, yaml; x y z r as text always
   std::string link;                      // the name in robots' files; empty: the mesh's
-  bool tree = false;                     // an .orchard file over the spheres; of a file of spheres, too
+  bool tree = false;  // also write an .orchard file over the spheres, even if they were read from a file
   bool views = true, picture = false, report = false;
   std::string up = "z";
   std::vector<std::string> given;  // as of BuildCommand
@@ -141,26 +141,26 @@ struct SampleCommand {
   std::filesystem::path mesh, folder;
   MeshInput input;
   Index samples = 5000;               // in all
-  std::optional<Index> edge_samples;  // of them on edges; a fifth unless it is given
+  std::optional<Index> edge_samples;  // the number of these on edges; a fifth by default
   std::optional<double> join;
   int iterations = SamplingOptions{}.iterations;
   std::uint64_t seed = 1;
   Relaxation relaxation = Relaxation::automatic;
   std::optional<double> cluster_degrees;
   std::optional<double> crease_degrees;
-  bool views = true;    // ParaView files, where the program was built with them
+  bool views = true;    // ParaView files, if the program was built with VTK
   bool report = false;  // an .html page
   Output output;
 };
 void sample(const SampleCommand& command);
-// Throws InputError if they contradict each other, or one leaves another without effect.
+// Throws InputError if options contradict each other, or if one makes another ineffective.
 void check_sampling(const SampleCommand& command);
-// What the command's options come to on a surface.
+// Returns the command's options for a surface.
 SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface);
 
 struct VoronoiCommand {
   std::filesystem::path input, folder;  // points or a mesh; no folder: write nothing
-  SampleCommand sampling;               // of a mesh; its own mesh, folder and output do not count
+  SampleCommand sampling;               // for a mesh; its members mesh, folder and output are not used
   VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
   bool compare = false;                     // run all algorithms
   std::vector<Index> cells;                 // to write; empty: all
@@ -171,7 +171,7 @@ struct VoronoiCommand {
 };
 void voronoi(const VoronoiCommand& command);
 
-// An option that a sweep varies, and what it takes in turn.
+// An option that a sweep varies, and its values.
 struct SweptOption {
   std::string name;
   std::vector<std::string> values;
@@ -194,22 +194,24 @@ struct MedialCommand {
   std::string up = "y";                       // the mesh's axis that points up in the picture
   Index quality_samples = 100'000;            // surface points of the judgement
   Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
-  double few_error = 0;                // percent of the diagonal that the simplified axis may be off; 0: not asked
-  std::string few_kind = "medial";     // what the balls of the simplified axis may be: medial or free
-  bool curve = false;                  // simplify to ever fewer vertices, and write how far off each is
-  std::filesystem::path envelope;      // .obj: the surface of what the axis stands for; empty: none
-  double envelope_cell = 0.5;          // % of the diagonal
-  std::vector<std::string> sweep;      // NAME=VALUE,VALUE,..
-  std::vector<SweptOption> swept;      // what it says
-  std::vector<MedialCommand> runs;     // of a sweep: the command of each combination, the last option fastest
-  std::vector<std::string> choice;     // of such a run: the values of the options that are swept
-  bool keep = false;                   // of a sweep: write the axis of each run as well
-  std::string best = "hausdorff_max";  // of a sweep: the measure that its rows are printed by, the best first
-  std::optional<TreeRequest> tree;     // of a sweep: the tree to build from each axis
-  bool views = true;                   // ParaView files, where the program was built with them
-  Index light_balls = 20'000;          // of a file for spheres, where the axis has more; 0: no such file
-  std::vector<std::string> given;      // the options on the command line, as of BuildCommand
-  bool accept = false;                 // as of BuildCommand
+  double few_error = 0;                 // percent of the diagonal that the simplified axis may be off; 0: not asked
+  std::string few_kind = "medial";      // what the balls of the simplified axis may be: medial or free
+  std::vector<std::string> importance;  // measures of the balls to add as arrays
+  std::string prune_curve;              // the measure whose values are written against error and size; empty: none
+  bool error_curve = false;             // simplify to ever fewer vertices, and write how far off each is
+  std::filesystem::path envelope;       // .obj: the surface of what the axis stands for; empty: none
+  double envelope_cell = 0.5;           // % of the diagonal
+  std::vector<std::string> sweep;       // NAME=VALUE,VALUE,..
+  std::vector<SweptOption> swept;       // what it says
+  std::vector<MedialCommand> runs;      // of a sweep: the command of each combination, the last option fastest
+  std::vector<std::string> choice;      // of such a run: the values of the options that are swept
+  bool keep = false;                    // of a sweep: write the axis of each run as well
+  std::string best = "hausdorff_max";   // of a sweep: the measure that its rows are printed by, the best first
+  std::optional<TreeRequest> tree;      // of a sweep: the tree to build from each axis
+  bool views = true;                    // ParaView files, if the program was built with VTK
+  Index light_balls = 20'000;           // of a file for spheres, where the axis has more; 0: no such file
+  std::vector<std::string> given;       // the options on the command line, as of BuildCommand
+  bool accept = false;                  // as of BuildCommand
   Output output;
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line
@@ -219,7 +221,7 @@ void check_options(const MedialCommand& command);
 struct LeaderboardCommand {
   std::filesystem::path input, folder;  // of meshes and axes; for the table
   std::vector<std::string> builders;    // of orchard: refined, raw; empty: both
-  std::vector<Index> vertices;          // numbers of balls beside those of the axes
+  std::vector<Index> vertices;          // numbers of balls in addition to those of the axes
   bool connect = false;                 // as of MedialCommand
   Index quality_samples = 20'000;       // surface points of each judgement
   Index samples = kStandardSamples;     // surface points of orchard's axes
@@ -251,7 +253,7 @@ void compare_axes(const CompareCommand& command);  // which compare() calls for 
 
 struct ProfileCommand {
   std::filesystem::path a, b;    // .orchard files; b empty: two copies of a
-  unsigned flights = 300;        // of b past a
+  unsigned flights = 300;        // the number of flights of b past a
   std::uint64_t seed = 1;        // of the flights
   std::filesystem::path plot;    // .svg; empty: none
   std::filesystem::path csv;     // every pose and level; empty: none
@@ -263,12 +265,12 @@ void profile(const ProfileCommand& command);
 
 struct SimulateCommand {
   std::string scene;
-  std::filesystem::path tree;         // of the bodies; empty: a small ship of its own
-  std::size_t bodies = 0;             // 0: as many as the scene has
-  std::optional<std::size_t> frames;  // 100, or as many as were recorded
-  std::string budget;                 // a frame's, in tests of spheres or as time; empty: none
+  std::filesystem::path tree;         // the tree of the bodies; empty for that of a small ship
+  std::size_t bodies = 0;             // 0 for the scene's own number
+  std::optional<std::size_t> frames;  // the default is 100, or the number that was recorded
+  std::string budget;                 // of each frame, as a number of sphere tests or a time; empty for none
   std::uint64_t seed = 1;
-  std::filesystem::path record, replay;  // what came from outside; empty: neither
+  std::filesystem::path record, replay;  // files of the input from outside; empty for none
   std::filesystem::path folder;          // for the traces; empty: none
   bool report = false;                   // a page
   bool views = true;                     // frames for ParaView
@@ -280,11 +282,11 @@ struct ThicknessCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
   ThicknessOptions options;
-  std::optional<double> below;       // mesh units: say where the solid is thinner
-  std::optional<double> fail_below;  // the same, and the exit code is kTooThin if it is anywhere
+  std::optional<double> below;       // in mesh units: report where the solid is thinner
+  std::optional<double> fail_below;  // the same, and the exit code is kTooThin if it is thinner anywhere
   Index bins = 50;                   // of the histogram
   bool report = false;               // a page
-  bool views = true;                 // ParaView files, where the program was built with them
+  bool views = true;                 // ParaView files, if the program was built with VTK
   Output output;
 };
 ExitCode thickness(const ThicknessCommand& command);
@@ -312,7 +314,7 @@ struct OffsetCommand {
   OffsetSide side = OffsetSide::outside;
   std::optional<double> hollow;                        // thickness of the wall, in place of the distance
   double tolerance = 100 * OffsetOptions{}.tolerance;  // percent of the diagonal
-  bool views = true;                                   // ParaView files, where the program was built with them
+  bool views = true;                                   // ParaView files, if the program was built with VTK
   bool report = false;                                 // an .html page
   bool accept = false;                                 // as of BuildCommand
   Output output;
@@ -328,7 +330,7 @@ struct BatchCommand {
   double timeout = 0;        // seconds for each mesh; 0: none
   std::uint64_t memory = 0;  // MiB of each mesh; 0: no limit
   bool resume = false, cost = false;
-  std::vector<std::string> worker;  // what to do with each mesh: the words behind --
+  std::vector<std::string> worker;  // the command for each mesh: the arguments after --
   std::vector<std::string> faults;  // KIND=MESH, for tests
   std::vector<std::string> given;   // as of BuildCommand
   Output output;
@@ -337,7 +339,7 @@ ExitCode batch(const BatchCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;
-  MeshInput input;  // its unit is also that of files of other kinds
+  MeshInput input;  // its unit is used for files of other kinds, too
   std::optional<double> join;
   bool full = false;  // count self-intersections of large meshes too
   Output output;
@@ -354,22 +356,22 @@ void report(const ReportCommand& command);
 struct ViewCommand {
   std::vector<std::filesystem::path> files;  // trees, axes, diagrams, meshes, points: all in one picture
   MeshInput input;                           // of the meshes
-  std::filesystem::path picture;             // .png, .svg or .pdf; of a window, where s saves to
+  std::filesystem::path picture;             // .png, .svg or .pdf; in a window, the key s saves to it
   std::vector<Index> levels;                 // of the trees, a panel for each; empty: the deepest
   std::string camera, size;                  // "azimuth,elevation" in degrees, "widthxheight" in pixels; empty: as fits
   std::string up = "y";
-  double opacity = 0.16;        // of meshes beside other things
+  double opacity = 0.16;        // of meshes next to other things
   std::string color, range;     // an array; "a,b"
-  std::string map = "viridis";  // of these colours
+  std::string map = "viridis";  // the colours of that array
   std::string look_at, clip;    // "x,y,z"; "a,b,c,d"
   std::optional<double> width;  // of what is seen around look_at, in mesh units
   std::string layout = "over";  // or beside
   bool edges = false, balls = false, captions = false, transparent = false;
   Index turn = 0;     // frames of a turntable; 0: one picture
   Index frame = 0;    // the time step of series (.pvd), from 1; 0: the last one
-  bool play = false;  // a picture for each of them
+  bool play = false;  // draw a picture for each time step
   bool window = false, quiet = false;
-  Invocation run;  // which the picture says
+  Invocation run;  // recorded in the picture
 };
 void view(const ViewCommand& command);
 

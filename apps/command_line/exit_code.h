@@ -3,10 +3,10 @@
 
 namespace orchard::apps {
 
-// What the program's exit code says. Scripts rely on the numbers: a meaning keeps its number for ever.
+// The exit codes of the program. Scripts rely on the numbers, so a meaning never changes its number.
 enum ExitCode : int {
   kSucceeded = 0,
-  kFailed = 1,          // any other failure; `verify` did not prove everything
+  kFailed = 1,          // a failure that is none of those below, or `verify` did not prove everything
   kBadInput = 2,        // an InputError or a mistake on the command line
   kAuditOpen = 3,       // `audit` found surface that is in no sphere
   kTooThin = 4,         // everything is written, and a measured thickness is below --fail-below

@@ -9,8 +9,10 @@ namespace orchard::apps {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int kMapped = 32 << 20;  // bytes: larger blocks are mapped on their own, and given back; the most it takes
-  constexpr int kKept = 256 << 20;   // bytes: more than that is given back
+  // Bytes: larger blocks are mapped on their own and returned to the system when freed; it is the largest value
+  // allowed.
+  constexpr int kMapped = 32 << 20;
+  constexpr int kKept = 256 << 20;  // bytes: free memory above this is returned to the system
   mallopt(M_MMAP_THRESHOLD, kMapped);
   mallopt(M_TRIM_THRESHOLD, kKept);
 #endif

@@ -2,9 +2,8 @@
 
 namespace orchard::apps {
 
-// Lets the allocator keep what is freed, for the next allocation, where it would give it back to the system: mapping
-// pages again took a tenth of the time of a medial axis. To be called first; does nothing where the C library is not
-// GNU's.
+// Lets the allocator keep freed memory for later allocations instead of returning it to the system. Mapping pages again
+// took a tenth of the time of a medial axis. Call it first. It does nothing with C libraries other than GNU's.
 void keep_freed_memory();
 
 }  // namespace orchard::apps

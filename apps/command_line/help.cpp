@@ -59,7 +59,7 @@ std::string help_of(const std::string& program, const CommandEntry& command) {
     std::string rows;
     for (const OptionEntry& option : command.options)
       if (group_of(option) == group) rows += row_of(option);
-    if (!rows.empty()) text += "\n" + group + ":\n" + rows;
+    if (!rows.empty()) text += fmt::format("\n{}:\n{}", group, rows);
   }
   return command.footer.empty() ? text : text + "\n" + command.footer + "\n";
 }
@@ -88,12 +88,12 @@ const std::vector<Group>& groups() {
         "spheres clip",   "buffer",       "bbox-center", "pose",   "pose-a",       "simulate tree", "replay",
         "vertex-weights", "full",         "box",         "format", "scale",        "unit",          "audit link",
         "weight",         "package-path", "no-wrap",     "visual", "ignore-units", "ignore-up",     "from"}},
-      {"Output", {"output",       "views",  "no-views",     "picture",       "export",     "export-level",
-                  "report",       "up",     "json",         "quiet",         "force",      "accept",
-                  "plot",         "csv",    "envelope",     "envelope-cell", "curve",      "spheres tree",
-                  "spheres link", "record", "cells",        "cost",          "bins",       "beside",
-                  "tool-frame",   "joints", "acceleration", "jerk",          "resolution", "robot density",
-                  "trajectory",   "trees",  "no-picture",   "window",        "light",      "meshes"}},
+      {"Output", {"output",       "views",  "no-views",     "picture",       "export",      "export-level",
+                  "report",       "up",     "json",         "quiet",         "force",       "accept",
+                  "plot",         "csv",    "envelope",     "envelope-cell", "error-curve", "spheres tree",
+                  "spheres link", "record", "cells",        "cost",          "bins",        "beside",
+                  "tool-frame",   "joints", "acceleration", "jerk",          "resolution",  "robot density",
+                  "trajectory",   "trees",  "no-picture",   "window",        "light",       "meshes"}},
       {"Quality",
        {"method",       "depth",         "branching",   "spheres",      "effort",     "objective", "error",
         "region",       "time",          "fit",         "volume-error", "solid",      "padding",   "min-radius",

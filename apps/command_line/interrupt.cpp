@@ -20,11 +20,11 @@ std::atomic<bool> on_terminal{false};
 static_assert(std::atomic<State>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 void write_text(const char* text) {
-  // There is nowhere to tell that this failed.
+  // A failure cannot be reported anywhere.
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
 }
 
-// Nothing but what a signal handler may do.
+// It calls only functions that are allowed in a signal handler.
 [[noreturn]] void end(int number) {
   if (number != SIGPIPE) {  // which is how "orchard .. | head" ends
     if (on_terminal) write_text("\r                                                                      \r");
@@ -35,7 +35,7 @@ void write_text(const char* text) {
 
 extern "C" void on_signal(int number) {
   received = number;
-  // The first to change the state wins: either nothing has been made yet, or its maker clears it away.
+  // The first to change the state wins: either nothing has been made yet, or the function that made it removes it.
   State expected = State::idle;
   if (state.compare_exchange_strong(expected, State::ending)) end(number);
 }

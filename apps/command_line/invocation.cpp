@@ -17,7 +17,7 @@ bool is_one_of(const std::array<std::string_view, N>& names, std::string_view na
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Options that say where files go and what is printed, not what files hold.
+// Whether an option says only where files go and what is printed, not what files contain.
 bool decides_nothing(const std::string& name) {
   static constexpr std::array<std::string_view, 6> kNames{"help", "output", "threads", "quiet", "json", "force"};
   return is_one_of(kNames, name);
@@ -32,7 +32,7 @@ bool names_files(const CLI::App& command, const CLI::Option& option) {
   return is_one_of(kNames, name) || (name == "tree" && command.get_name() == "simulate");  // elsewhere it is a method
 }
 
-// As a shell takes it for one word.
+// Quotes a word so that a shell reads it as one word.
 std::string word(const std::string& text) {
   const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("_-+=.,:/%@").find(static_cast<char>(c)) != std::string_view::npos;

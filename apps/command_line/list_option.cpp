@@ -16,7 +16,8 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-// Checks every item by its fault, empty if there is none; `said` is what the help says of the values.
+// Checks every item. `fault` returns what is wrong with it, or an empty string; `said` describes the values in the
+// help.
 CLI::Validator each_item(const std::function<std::string(const std::string&)>& fault, const std::string& said) {
   const auto check = [fault](std::string& text) {
     const auto items = list_items(text);
@@ -28,7 +29,7 @@ CLI::Validator each_item(const std::function<std::string(const std::string&)>& f
   return {check, said};
 }
 
-// One word at a time: a list never takes the words behind it.
+// One word at a time, so that a list never takes the arguments after it.
 CLI::Option* add_words(CLI::App& command, const std::string& option, const std::string& help,
                        const std::function<void(const std::string&)>& take) {
   return command

@@ -9,7 +9,7 @@
 
 namespace orchard::apps {
 
-// The whole number, not below 0, that a text is, if it is one and nothing else.
+// Returns the whole number of 0 or more that the text consists of; nullopt if it is anything else.
 inline std::optional<Index> whole_number(std::string_view text) {
   Index value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -17,7 +17,7 @@ inline std::optional<Index> whole_number(std::string_view text) {
   return value;
 }
 
-// The number that a text is, if it is one and nothing else.
+// Returns the finite number that the text consists of; nullopt if it is anything else.
 inline std::optional<double> finite_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

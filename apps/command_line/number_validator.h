@@ -6,7 +6,7 @@
 
 namespace orchard::apps {
 
-// A range of doubles without what is not a number: that passes every range of CLI's, for it is neither below nor above.
+// A range of doubles that refuses NaN. CLI's own ranges accept it, because it is neither below nor above them.
 class NumberValidator : public CLI::Validator {
  public:
   explicit NumberValidator(const CLI::Validator& range) : Validator(range) {

@@ -14,13 +14,22 @@ struct Renamed {
   std::string_view command, was, is;
 };
 constexpr std::array kRenamed{Renamed{"verify", "--bbox-centre", "--bbox-center"},
-                              Renamed{"medial", "--best", "--sort-by"}};
+                              Renamed{"medial", "--best", "--sort-by"}, Renamed{"medial", "--curve", "--error-curve"},
+                              Renamed{"spheres", "--curve", "--error-curve"}};
 
 // Options that became measures of another one: --prune-angle 20 is --prune angle=20, and in --sweep 'prune angle=..'.
 struct Merged {
   std::string_view was, option, measure;
 };
 constexpr std::array kMerged{Merged{"--prune-angle", "--prune", "angle"}, Merged{"--prune-scale", "--prune", "scale"}};
+
+// Measures by which a sweep may be sorted.
+struct RenamedMeasure {
+  std::string_view was, is;
+};
+constexpr std::array kRenamedMeasures{RenamedMeasure{"sheets", "face_components"},
+                                      RenamedMeasure{"wires", "curve_components"},
+                                      RenamedMeasure{"sheets_between_seams", "sheet_count"}};
 
 struct Removed {
   std::string_view command, was, instead;
@@ -65,7 +74,23 @@ void rename_swept(std::vector<std::string>& words, std::size_t at, std::vector<s
     if (name != option.was.substr(2) && !is_alias) continue;
     const std::string is = fmt::format("{} {}", option.option.substr(2), option.measure);
     warnings.push_back(renamed_warning("--sweep " + name + "=", fmt::format("--sweep '{}='", is)));
-    word = word.substr(0, begin) + is + word.substr(end);
+    word.replace(begin, end - begin, is);
+    return;
+  }
+}
+
+// The same of a measure, the value of --sort-by.
+void rename_sorted(std::vector<std::string>& words, std::size_t at, std::vector<std::string>& warnings) {
+  constexpr std::string_view kSortBy = "--sort-by";
+  const bool inside = words[at].rfind("--sort-by=", 0) == 0;
+  if (!inside && (words[at] != kSortBy || at + 1 == words.size())) return;
+  std::string& word = words[inside ? at : at + 1];
+  const std::size_t begin = inside ? kSortBy.size() + 1 : 0;
+  for (const RenamedMeasure& measure : kRenamedMeasures) {
+    if (word.substr(begin) != measure.was) continue;
+    warnings.push_back(
+        renamed_warning(fmt::format("{} {}", kSortBy, measure.was), fmt::format("{} {}", kSortBy, measure.is)));
+    word = word.substr(0, begin) + std::string(measure.is);
     return;
   }
 }
@@ -89,6 +114,7 @@ std::vector<std::string> rename_options(std::vector<std::string>& words) {
     if (words[1] == "medial" || words[1] == "build") {
       rename_merged(words, i, warnings);
       rename_swept(words, i, warnings);
+      rename_sorted(words, i, warnings);
     }
   }
   return warnings;

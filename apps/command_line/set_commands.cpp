@@ -69,9 +69,9 @@ void add_set_options(CLI::App& command, SpheresCommand& spheres) {
           "sets")
       ->check(CLI::IsMember({"low", "standard", "high"}));
   command.add_option("--seed", options.seed, "Seed of all random choices")->capture_default_str();
-  add_list(command, "--curve", spheres.curve,
-           "Also fit sets of these numbers of spheres and write the error of each: MODEL-set-curve.csv and .svg", 1,
-           kMaxSetSpheres);
+  add_list(command, "--error-curve", spheres.error_curve,
+           "Also fit sets of these numbers of spheres and write the error of each: MODEL-set-error-curve.csv and .svg",
+           1, kMaxSetSpheres);
 }
 
 // Options for the part of the mesh that counts, and for the weights of its parts.

@@ -240,7 +240,12 @@ void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree, std::vec
                 : for_tree ? kTreeAxisGroup
                            : "Tuning");
   }
-  for (PruneMeasure& measure : prune_measures(tuning)) measures.push_back(std::move(measure));
+  const std::vector<PruneMeasure> own = measures;
+  for (PruneMeasure& measure : prune_measures(tuning)) {
+    // A measure of the command itself, such as the erosion of a skeleton, is meant by a name that both have.
+    const auto is_same = [&](const PruneMeasure& other) { return other.name == measure.name; };
+    if (std::none_of(own.begin(), own.end(), is_same)) measures.push_back(std::move(measure));
+  }
   add_prune(command, measures)->group(for_tree ? kTreeAxisGroup : "Tuning");
 }
 

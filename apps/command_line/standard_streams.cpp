@@ -12,7 +12,8 @@ namespace orchard::apps {
 void occupy_standard_streams() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number is this one. Only reading: what is printed to a closed stream is an error, not lost.
+    // open() returns the lowest free number, which is this one. Standard output is opened for reading, so that printing
+    // to it is an error and not lost.
     [[maybe_unused]] const int opened = open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

@@ -2,11 +2,11 @@
 
 namespace orchard::apps {
 
-// Where a standard stream is closed, a file that is opened later would take its number and what is printed: takes the
-// number first, for something that cannot be written (nor read).
+// If a standard stream is closed, a file that is opened later would get its number and receive what is printed. This
+// function takes the number first, for a file that cannot be written to (or read).
 void occupy_standard_streams();
 
-// Whether everything that was printed to stdout, by C or C++, has reached it; if not, `errno` may say why.
+// Whether everything that was printed to stdout, by C or C++, has been written. If not, `errno` may tell why.
 bool flush_standard_output();
 
 }  // namespace orchard::apps

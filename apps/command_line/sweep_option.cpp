@@ -14,10 +14,10 @@
 namespace orchard::apps {
 namespace {
 
-// Options with values that no row of a sweep depends on, or that a sweep does not take.
-constexpr std::array kNotSwept{"output",   "sweep", "sort-by",        "axis",          "beside", "export",
-                               "threads",  "up",    "envelope",       "envelope-cell", "points", "diagram",
-                               "features", "side",  "outside-radius", "tree-depth"};
+// Options that do not change the rows of a sweep, or that a sweep does not accept.
+constexpr std::array kNotSwept{"output",   "sweep", "sort-by",        "axis",          "beside",     "export",
+                               "threads",  "up",    "envelope",       "envelope-cell", "points",     "diagram",
+                               "features", "side",  "outside-radius", "tree-depth",    "importance", "prune-curve"};
 // Flags that concern the sweep, not its runs.
 constexpr std::array kOfTheSweep{"keep", "report", "picture", "no-views", "quiet", "json", "force"};
 
@@ -50,18 +50,18 @@ SweptOption swept_option(const CLI::App& command, const std::string& text) {
   if (!values) throw InputError(fmt::format("--sweep {}: {}", text, kEmptyItem));
   for (const std::string& value : *values)
     if (std::count(values->begin(), values->end(), value) > 1)
-      throw InputError(fmt::format("--sweep {}: {} is there twice", text, value));
+      throw InputError(fmt::format("--sweep {}: the value {} is given twice", text, value));
   return {name, std::move(*values)};
 }
 
-// What was typed of a command, without what is swept and what concerns the sweep.
+// Returns the arguments of a command without the swept options and those of the sweep itself.
 std::vector<std::string> words_of_runs(const CLI::App& command, const std::vector<SweptOption>& swept) {
   std::vector<std::string> words{command.get_name()};
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0) continue;
     const std::string name = option->get_lnames().empty() ? "" : option->get_lnames().front();
     if (name == "sweep" || name == "sort-by" || among(name, kOfTheSweep) || is_swept(name, swept)) continue;
-    if (name == "raw" && is_swept("refine", swept)) continue;  // refused where all contradictions are
+    if (name == "raw" && is_swept("refine", swept)) continue;  // it is refused where all contradictions are
     const bool flag = option->get_expected_min() == 0;
     for (const std::string& value : option->results()) {
       if (name == "prune" && is_swept(kPruneMeasure + value.substr(0, value.find('=')), swept)) continue;
@@ -70,7 +70,7 @@ std::vector<std::string> words_of_runs(const CLI::App& command, const std::vecto
       else if (flag && (value == "true" || value == "false"))
         words.push_back("--" + name);
       else
-        words.push_back("--" + name + "=" + value);
+        words.push_back(fmt::format("--{}={}", name, value));
     }
   }
   return words;
@@ -90,7 +90,7 @@ MedialCommand parsed_run(std::vector<std::string> words, const std::string& comb
   return std::move(request.medial);
 }
 
-// Counts through all combinations, the last option fastest; false after the last one.
+// Moves to the next combination; the last option changes fastest. Returns false after the last combination.
 bool next_combination(std::vector<std::size_t>& choice, const std::vector<SweptOption>& swept) {
   for (std::size_t d = choice.size(); d-- > 0;) {
     if (++choice[d] < swept[d].values.size()) return true;
@@ -119,7 +119,7 @@ void expand_sweep(const CLI::App& command, MedialCommand& medial) {
   for (const SweptOption& one : medial.swept)
     if (std::count_if(medial.swept.begin(), medial.swept.end(),
                       [&](const SweptOption& o) { return o.name == one.name; }) > 1)
-      throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", one.name));
+      throw InputError(fmt::format("--sweep: {} is given twice; give all its values in one --sweep", one.name));
   const std::vector<std::string> typed = words_of_runs(command, medial.swept);
   std::vector<std::size_t> choice(medial.swept.size(), 0);
   do {

@@ -80,7 +80,7 @@ Refinement::Region parse_region(const std::string& text) {
   return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
 }
 
-// A number of the annealing's schedule, kept until the effort is known.
+// A number of the annealing schedule, which is kept until the effort is known.
 template <class Number>
 void add_schedule(CLI::App& command, TreeRequest& tree, const char* option, Number AnnealingOptions::*number,
                   const char* what, const CLI::Validator& check) {
@@ -95,7 +95,7 @@ void add_schedule(CLI::App& command, TreeRequest& tree, const char* option, Numb
       ->group(kSchedule);
 }
 
-// The numbers of dissertation 5.3.1, in place of the effort's.
+// Adds the numbers of dissertation 5.3.1, which replace those of the effort.
 void add_annealing_options(CLI::App& command, TreeRequest& tree) {
   const auto share = NumberValidator(CLI::Range(1e-6, 1 - 1e-6));
   const auto count = CLI::Range(1, 1'000'000);

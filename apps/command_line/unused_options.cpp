@@ -12,7 +12,7 @@
 namespace orchard::apps {
 namespace {
 
-// What options of tree_options.cpp are for, where that is not every method.
+// The methods that options of tree_options.cpp belong to, for options that do not belong to all.
 struct OwnOption {
   const char* option;
   std::vector<TreeMethod> methods;
@@ -41,7 +41,7 @@ std::string method_names(const std::vector<TreeMethod>& methods) {
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-// The steps to an axis that a file stands in for. An axis of one's own still gets points on the surface, and is pruned.
+// Returns the steps that a file replaces. An axis of the user's still gets surface points, and is pruned.
 std::vector<TuningStep> steps_replaced(const std::string& source) {
   if (source == "points") return {TuningStep::points, TuningStep::open_places};
   if (source == "diagram") return {TuningStep::points, TuningStep::diagram, TuningStep::open_places};
@@ -50,17 +50,16 @@ std::vector<TuningStep> steps_replaced(const std::string& source) {
 
 using FlagNames = std::vector<std::string>;
 
-// Refuses flags for a step that a file is in place of.
+// Refuses flags for a step that a file replaces.
 void refuse_replaced(const TuningFlag& flag, const FlagNames& sources) {
   for (const std::string& source : sources) {
     const std::vector<TuningStep> replaced = steps_replaced(source);
     if (std::find(replaced.begin(), replaced.end(), flag.step) != replaced.end())
-      throw InputError(
-          fmt::format("--{} has no effect with --{}, whose file is in place of that step", flag.name, source));
+      throw InputError(fmt::format("--{} has no effect with --{}, whose file replaces that step", flag.name, source));
   }
 }
 
-// Refuses a flag that other flags' values leave without effect, whichever of the tunings is run.
+// Refuses a flag that has no effect because of the values of other flags, in all of the tunings that are run.
 void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tunings) {
   if (!flag.unused) return;
   std::string why;
@@ -71,7 +70,7 @@ void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tu
   throw InputError(fmt::format("--{} has no effect with {}", flag.name, why));
 }
 
-// Refuses what a sweep overrides, and what it varies without any column that would tell.
+// Refuses options that a sweep overrides, and options that it varies without a column that shows the effect.
 void refuse_unused_in_sweep(const MedialCommand& command, const FlagNames& swept) {
   for (const std::string& name : swept) {
     if (among(name, command.given))
@@ -112,13 +111,15 @@ void refuse_unused_options(const BuildCommand& command) {
 
 void refuse_unused_options(const MedialCommand& command) {
   const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
-  if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
-    throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+  if (among("quality-samples", command.given) && !command.report && !judges && !sweeps && command.prune_curve.empty())
+    throw InputError(
+        "--quality-samples has no effect without --report, --prune-curve, --axis or --sweep, because nothing is "
+        "measured");
   if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
-    throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
+    throw InputError("--beside needs --report or --axis, whose table shows the other axes");
   if (!command.exports.empty() && sweeps && !command.keep)
     throw InputError("--export has no effect with --sweep, which writes no axis without --keep");
-  if (command.keep && !sweeps) throw InputError("--keep has no effect without --sweep: all files are kept");
+  if (command.keep && !sweeps) throw InputError("--keep has no effect without --sweep, because all files are kept");
   if (among("sort-by", command.given) && !sweeps) throw InputError("--sort-by has no effect without --sweep");
   if (among("light", command.given) && (sweeps || judges || !command.views))
     throw InputError(
@@ -126,7 +127,7 @@ void refuse_unused_options(const MedialCommand& command) {
                                                                                         : judges ? "--axis"
                                                                                                  : "--no-views"));
   if (command.picture && (sweeps || (!command.report && !judges)))
-    throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
+    throw InputError("--picture needs --report or --axis, because it shows where their measures are worst");
   const FlagNames swept = swept_flags(command);
   refuse_unused_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
@@ -147,7 +148,7 @@ void refuse_unused_options(const MedialCommand& command) {
     if ((!among(flag.name, command.given) && !among(flag.name, swept)) || flag.name == "seed") continue;
     if (judges) throw InputError(fmt::format("--{} has no effect with --axis, which builds nothing", flag.name));
     if (sweeps && flag.step == TuningStep::report)
-      throw InputError(fmt::format("--{} has no effect with --sweep, whose table tells nothing of it", flag.name));
+      throw InputError(fmt::format("--{} has no effect with --sweep, whose table does not depend on it", flag.name));
     refuse_replaced(flag, sources);
     refuse_disabled(flag, tunings);
   }

@@ -3,10 +3,11 @@
 
 namespace orchard::apps {
 
-// Each throws InputError if an option was given that the method, another option, or the file in place of a step, leaves
-// without effect: names it and says what it belongs to. `--seed` always passes: where nothing is random, any seed is
-// kept to. So does what is so anyhow, as `--report` with a sweep, which always measures. In a sweep, an option is idle
-// that is so with every combination of the values.
+// Each function throws InputError if an option was given that has no effect because of the method, another option, or a
+// file that replaces a step. The message names the option and what it belongs to. `--seed` is always accepted: if
+// nothing is random, every seed gives the same result. So are options that state what happens anyway, such as
+// `--report` with a sweep, which always measures. In a sweep, an option is unused if it has no effect with any
+// combination of the values.
 void refuse_unused_options(const BuildCommand& command);
 void refuse_unused_options(const MedialCommand& command);
 

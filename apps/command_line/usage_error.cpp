@@ -7,7 +7,7 @@
 namespace orchard::apps {
 namespace {
 
-// Letters to insert, delete, replace, or swap with their neighbours, to come from one word to the other.
+// Returns the number of letters to insert, delete, replace or swap with a neighbour that turns one word into the other.
 std::size_t edits(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> table(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
@@ -25,10 +25,11 @@ std::size_t edits(std::string_view a, std::string_view b) {
   return table[a.size()][b.size()];
 }
 
-// ", did you mean X?", if one of the words is near enough.
+// Returns ", did you mean X?" if one of the words is similar enough.
 std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
   const std::string* best = nullptr;
-  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;  // a third of the letters, and two in any case
+  // At most a third of the letters, but two in any case.
+  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : words) {
     const std::size_t count = edits(word, candidate);
     const bool begun = word.size() >= 2 && candidate.starts_with(word);
@@ -44,7 +45,7 @@ std::string help_of(const CLI::App& app, const std::string& command) {
   return "\"" + app.get_name() + (command.empty() ? "" : " " + command) + " --help\"";
 }
 
-// The first of the words from `begin` on that begins like an option and is none of the command's.
+// Returns the first argument from `begin` on that looks like an option and is not one of the command's.
 std::string unknown_option(const CLI::App& app, const CLI::App& command, std::size_t begin,
                            const std::vector<std::string>& words) {
   std::vector<std::string> options;

@@ -11,9 +11,10 @@ namespace orchard::apps {
 
 WeightRegion parse_weight(const std::string& text) {
   const auto fail = [&] {
-    throw CLI::ValidationError("--weight " + text +
-                               ": give a ball and what looseness counts there as x,y,z,r=F, or a box as x,y,z,x,y,z=F, "
-                               "with r and F above 0");
+    throw CLI::ValidationError(
+        "--weight " + text +
+        ": expected a ball and the factor of looseness in it as x,y,z,r=F, or a box as x,y,z,x,y,z=F, "
+        "with r and F above 0");
   };
   std::vector<double> numbers;
   const char* at = text.data();
@@ -46,7 +47,8 @@ std::vector<double> read_vertex_weights(const std::filesystem::path& file) {
     weights.push_back(lines.real("a vertex's weight"));
     if (!(weights.back() > 0)) lines.fail("a weight must be above 0");
   }
-  if (weights.empty()) throw InputError(file.string() + ": holds no weight; give one for each vertex, one a line");
+  if (weights.empty())
+    throw InputError(file.string() + ": the file has no weight; give a weight for each vertex, one on each line");
   return weights;
 }
 

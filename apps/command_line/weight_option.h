@@ -5,13 +5,14 @@
 
 #include "orchard/spheretree/set_weights.h"
 
-// Where looseness counts more, as the command line and files say it.
+// Reads from the command line and from files where looseness counts more.
 namespace orchard::apps {
 
-// "x,y,z,r=F" of a ball, or "x,y,z,x,y,z=F" of a box by two opposite corners. Throws CLI::ValidationError.
+// Parses "x,y,z,r=F" for a ball, or "x,y,z,x,y,z=F" for a box with these opposite corners. Throws CLI::ValidationError.
 WeightRegion parse_weight(const std::string& text);
 
-// A number for each vertex in the order of the mesh, one a line. Throws InputError naming file and line.
+// Reads a number for each vertex in the order of the mesh, one on each line. Throws InputError, which names file and
+// line.
 std::vector<double> read_vertex_weights(const std::filesystem::path& file);
 
 }  // namespace orchard::apps

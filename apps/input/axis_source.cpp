@@ -14,7 +14,7 @@ struct PlacedPoints {
   double max_moved = 0;
 };
 
-// Where points lie on the surface; moves them there.
+// Moves points onto the surface.
 PlacedPoints on_surface(std::vector<Point> points, const Surface& surface) {
   PlacedPoints own;
   own.sampling.points = std::move(points);
@@ -34,7 +34,7 @@ OwnDiagram read_diagram(const std::filesystem::path& file, const Surface& surfac
   PlacedPoints placed = on_surface(own.diagram.points, surface);
   if (placed.max_moved > tolerance::kOnTriangle * surface.bounding_radius())
     throw InputError(file.string() + ": a point lies " + std::to_string(placed.max_moved) +
-                     " off the mesh; the medial axis needs the diagram of points on it");
+                     " off the mesh; give the diagram of points that lie on the mesh");
   own.sampling = std::move(placed.sampling);
   own.sampling.points = own.diagram.points;
   return own;
@@ -55,7 +55,7 @@ OwnInput read_axis_source(const AxisSource& source, const Surface& surface) {
     MeshReading read = read_points_or_mesh_and_report(source.points);
     own.reading = std::move(read.report);
     PlacedPoints placed = on_surface(std::move(read.mesh.vertices), surface);
-    if (placed.sampling.size() < 4) throw InputError(source.points.string() + ": four points at least are needed");
+    if (placed.sampling.size() < 4) throw InputError(source.points.string() + ": at least four points are needed");
     own.max_moved = placed.max_moved;
     own.input.sampling = std::move(placed.sampling);
   }

@@ -18,12 +18,12 @@ void check_input(const std::filesystem::path& file) {
     throw InputError(file.string() + ": cannot be read: " + std::generic_category().message(errno));
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
-    throw InputError(file.string() + ": is a folder; name a file in it");
+    throw InputError(file.string() + ": this is a folder; name a file in it");
 }
 
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
+  if (!in) throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -29,7 +29,7 @@ double parse_offset(const std::string& text) {
 SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) {
   Surface surface(std::move(mesh), ball);
   if (!surface.solid())
-    throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
+    throw InputError(name + ": the mesh is not a closed, consistently oriented manifold: " + surface.report().faults() +
                      "; without --strict, orchard repairs what is safe to repair");
   return {.surface = std::move(surface),
           .reading = {},
@@ -54,7 +54,7 @@ SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, BoundingBall ba
   return solid;
 }
 
-// Without a number there is nothing to say how they are counted.
+// Without a number in the message, no note on how triangles are counted is needed.
 std::string with_note_on_numbers(const std::string& faults) {
   return faults.find_first_of("0123456789") == std::string::npos ? faults : faults + " (numbers count from 0)";
 }
@@ -74,7 +74,8 @@ SolidMesh repaired(const std::string& name, TriangleMesh mesh, const MeshOptions
   const RepairMeshOptions limits = repair_options(options);
   MeshRepairReport repair = repair_mesh(mesh, limits);
   if (!repair.solid)
-    throw InputError(name + ": no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
+    throw InputError(name +
+                     ": the mesh is no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
                      holes_left(repair, limits) + "; --wrap builds on a closed skin around it instead");
   SolidMesh solid{.surface = Surface(std::move(mesh), ball),
                   .reading = {},
@@ -95,39 +96,39 @@ void unite(SolidMesh& solid, BoundingBall ball, const Progress& progress) {
   solid.surface = Surface(std::move(united->mesh), ball);
 }
 
-// Replaces the surface by one without its noise, if that is more than nothing.
+// Replaces the surface by one without its noise, unless the noise is negligible.
 void smooth(SolidMesh& solid, const MeshOptions& options, const Progress& progress) {
   NoiseResult noise{.estimated = options.noise == "auto"};
   const TriangleMesh& mesh = solid.surface.mesh();
-  noise.level = noise.estimated ? noise_level(mesh) : *finite_number(options.noise) / 100;
-  if (noise.level > kMaxNoise)
+  noise.deviation = noise.estimated ? noise_deviation(mesh) : *finite_number(options.noise) / 100;
+  if (noise.deviation > kMaxNoise)
     throw InputError(
         fmt::format("the noise was estimated as {:.2g} % of the diagonal, more than the {:.2g} % that can "
-                    "be smoothed away; give a lower level to --noise, or take --wrap",
-                    100 * noise.level, 100 * kMaxNoise));
-  if (!noise.estimated || noise.level > kNegligibleNoise) {
-    DenoisedMesh smoothed = denoise(mesh, {.level = noise.level}, progress);
+                    "be smoothed away; give a smaller percentage to --noise, or take --wrap",
+                    100 * noise.deviation, 100 * kMaxNoise));
+  if (!noise.estimated || noise.deviation > kNegligibleNoise) {
+    DenoisedMesh smoothed = denoise(mesh, {.deviation = noise.deviation}, progress);
     noise.rounds = smoothed.rounds;
     noise.moved_rms = smoothed.moved_rms;
     noise.moved_max = smoothed.moved_max;
     solid.surface = Surface(std::move(smoothed.mesh), options.ball);
     if (!solid.surface.solid())
-      throw InputError("without its noise the mesh is no solid any more; give a lower level to --noise");
+      throw InputError("without its noise the mesh is no solid any more; give a smaller percentage to --noise");
   }
   solid.noise = noise;
 }
 
 json noise_json(const NoiseResult& noise) {
   return {{"estimated", noise.estimated},
-          {"level_over_diagonal", noise.level},
+          {"deviation_over_diagonal", noise.deviation},
           {"rounds", noise.rounds},
           {"moved_rms_over_diagonal", noise.moved_rms},
           {"moved_max_over_diagonal", noise.moved_max}};
 }
 
 std::string in_words(const NoiseResult& noise) {
-  std::string text =
-      fmt::format("noise of {:.2g} % of the diagonal{}", 100 * noise.level, noise.estimated ? ", as estimated," : "");
+  std::string text = fmt::format("noise of {:.2g} % of the diagonal{}", 100 * noise.deviation,
+                                 noise.estimated ? ", as estimated," : "");
   if (noise.rounds == 0) return text + " was left: it is too low to matter";
   return text + fmt::format(" was smoothed away; no vertex moved by more than {:.2g} % of the diagonal",
                             100 * noise.moved_max);
@@ -145,7 +146,7 @@ RepairMeshOptions repair_options(std::optional<double> join) {
 
 std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits) {
   if (repair.holes_left == 0) return {};
-  // The width that would do, rounded up so that what is written here can be copied.
+  // The width that suffices, rounded up so that the printed value can be given as it is.
   const double enough = std::ceil(repair.max_hole_left * 100) / 100;
   const std::string of_edges = limits.max_hole_edges == std::numeric_limits<Index>::max()
                                    ? ""

@@ -13,29 +13,32 @@
 #include "orchard/geometry/surface_distance.h"
 #include "orchard/geometry/wrap.h"
 
-// What every command that needs a solid does with the mesh that it is given.
+// Turns the mesh of a command into a solid.
 namespace orchard::apps {
 
 struct MeshOptions {
   MeshInput input;
-  bool strict = false;  // as it is or not at all
-  std::string wrap;     // not empty: build on a wrap that lies this far outside, a number of WrapOptions::offset
+  bool strict = false;  // accept the mesh as it is, or refuse it
+  std::string wrap;     // not empty: build on a wrap with this offset (WrapOptions::offset)
   double wrap_alpha = WrapOptions{}.alpha;
-  std::optional<double> join;        // corners up to this far apart, in bounding radii; else as repair.h says
-  std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
-  std::string noise;                 // not empty: what to smooth away, "auto" or a level in percent of the diagonal
-  bool unite = false;                // parts that cut each other become one
+  // Corners up to this far apart are joined, in bounding radii; the default is that of repair.h.
+  std::optional<double> join;
+  // Holes up to this width are filled, in bounding radii, with any number of edges; the default is that of repair.h.
+  std::optional<double> fill_holes;
+  std::string noise;   // not empty: smooth away noise, "auto" or its standard deviation in percent of the diagonal
+  bool unite = false;  // unite parts that cut each other
   BoundingBall ball = BoundingBall::minimal;
 
   bool operator==(const MeshOptions&) const = default;
 };
 inline const std::string kDefaultWrap = "0.002";
-inline constexpr double kMaxJoin = 0.01;  // of MeshOptions::join: beyond it, corners that are meant are near enough
+// Of MeshOptions::join; with a larger value, corners would be joined that are meant to be apart.
+inline constexpr double kMaxJoin = 0.01;
 
 struct WrapResult {
   WrapOptions options;
   SurfaceDistance to_input, from_input;  // wrap to input and input to wrap
-  // What the wrap adds, at most, to the distance of anything from the input; in mesh units.
+  // The largest distance that the wrap adds to any distance from the input, in mesh units.
   double distance() const { return to_input.upper; }
 };
 
@@ -47,35 +50,34 @@ struct UnionResult {
 // The noise that was smoothed away. Lengths are fractions of the diagonal, as in noise.h.
 struct NoiseResult {
   bool estimated = false;
-  double level = 0;
-  int rounds = 0;  // 0: the level is too low to matter, and the mesh is as it was
+  double deviation = 0;  // standard deviation along the normals, over the diagonal
+  int rounds = 0;        // 0: the noise is too low to matter, and the mesh is as it was
   double moved_rms = 0, moved_max = 0;
 };
-// An estimated level up to this is left alone: the borders of axes lose twice as much anyway.
+// An estimated deviation up to this is left alone: the borders of axes lose twice as much anyway.
 inline constexpr double kNegligibleNoise = 0.0005;
 
 struct SolidMesh {
   Surface surface;
   MeshReadReport reading;
-  MeshRepairReport repair;         // nothing done if wrapped
-  RepairDistance repair_distance;  // likewise
-  std::optional<WrapResult> wrap;  // then `surface` is the wrap
-  // Pairs of triangles that cut or touch each other: parts of the surface lie inside there, or stick out inside out.
-  // Not counted for a wrap, which has none, and beyond kMaxForSelfIntersections.
+  MeshRepairReport repair;         // without changes if it was wrapped
+  RepairDistance repair_distance;  // as above
+  std::optional<WrapResult> wrap;  // if it was wrapped; then `surface` is the wrap
+  // Pairs of triangles that cut or touch each other. Parts of the surface lie inside there, or protrude inside out. Not
+  // counted for a wrap, which has none, and for more than kMaxForSelfIntersections triangles.
   std::optional<std::size_t> self_intersections;
   std::optional<UnionResult> united = {};  // then `surface` is the union
   std::optional<NoiseResult> noise = {};   // if asked for
 
   bool is_smoothed() const { return noise && noise->rounds > 0; }
-  // Whether `surface` is neither the file's nor a wrap.
+  // Whether `surface` differs from the file and is not a wrap.
   bool changed() const { return repair.changed() || united.has_value() || is_smoothed(); }
 };
 
 inline constexpr std::size_t kMaxForSelfIntersections = 500'000;  // triangles: a few seconds
 
-// Reads a mesh and makes a solid of it: wraps it if that is asked for, else repairs what is safe to repair, and unites
-// parts that cut each other if that is asked for and possible. Throws InputError, with the way out, if that gives no
-// solid.
+// Reads a mesh and makes it a solid. Wraps it if asked for; otherwise makes all safe repairs, and unites parts that cut
+// each other if asked for and possible. Throws InputError, which says what to do, if the result is no solid.
 SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress = {});
 
 struct RepairedMesh {
@@ -85,25 +87,25 @@ struct RepairedMesh {
   RepairDistance distance;
 };
 
-// For commands that take any triangles: the mesh that load_solid() gives with no other option than `join`, or as it is
-// in the file if that cannot be repaired; then nothing was done.
+// For commands that accept any triangles: returns the mesh that load_solid() makes with no other option than `join`;
+// or, if that cannot be repaired, the mesh as it is in the file, without changes.
 RepairedMesh read_repaired(const std::filesystem::path& file, const MeshInput& input, std::optional<double> join);
 
-// What repair_mesh() is asked for.
+// Returns the options of repair_mesh().
 RepairMeshOptions repair_options(std::optional<double> join);
 
-// What to say of holes that were too large to fill, and how to have them filled; empty if there are none.
+// Returns a sentence about holes that were too large to fill, and how to have them filled; empty if there are none.
 std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits = {});
 
-// A line for each thing done, and one for how far it moved the surface.
+// Prints a line for each repair, and one for how far it moved the surface.
 void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair, const RepairDistance& distance,
                   double bounding_radius);
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
-// What a certificate of the solid is about, where it is written to, and how far that is from the input: the line that a
-// build ends with.
+// Returns the last line of a build: what the certificate is about, where that is written, and how far it is from the
+// input.
 std::string certificate(const SolidMesh& solid, const std::filesystem::path& written);
 nlohmann::json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
-// Sets "reading", and "repair", "noise", "self_intersections" and "union", or "wrap" and "wrap_distance".
+// Sets "reading", and either "repair", "noise", "self_intersections" and "union", or "wrap" and "wrap_distance".
 void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
 
 }  // namespace orchard::apps

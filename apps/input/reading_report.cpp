@@ -53,8 +53,8 @@ json reading_json(const MeshReadReport& reading) {
 
 void require_complete(const std::string& name, const MeshReadReport& reading) {
   if (reading.complete()) return;
-  throw InputError(name + ": not read as it stands: " + reading.faults().front() +
-                   "; without --strict, orchard does so and goes on");
+  throw InputError(name + ": the file cannot be read without changes: " + reading.faults().front() +
+                   "; leave out --strict to accept them");
 }
 
 std::string hole_warning(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius) {

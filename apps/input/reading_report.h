@@ -7,19 +7,19 @@
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/repair.h"
 
-// What a command says of the file that it read, beside what repair did to the mesh.
+// Reports how a file was read. Repairs of the mesh are reported elsewhere.
 namespace orchard::apps {
 
-// A line for each kind of thing that the reader skipped or decided.
+// Prints a line for each kind of element that the reader skipped, and for each of its decisions.
 void print_reading(const std::filesystem::path& file, const MeshReadReport& reading);
-// The length's unit behind a number: " mm", or nothing.
+// Returns the unit to print after a number: " mm", or nothing.
 std::string with_unit(const std::string& unit);
 nlohmann::json reading_json(const MeshReadReport& reading);
 
 // For --strict: throws InputError if anything that makes up the surface was skipped.
 void require_complete(const std::string& name, const MeshReadReport& reading);
 
-// That filled holes moved the surface far, and what to do about it; empty if they did not.
+// Returns a warning if filled holes moved the surface far, with what to do about it; empty if they did not.
 std::string hole_warning(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
 // Prints a warning to standard error in a line of its own, whatever else a command prints.
 void print_warning(const std::filesystem::path& file, const std::string& warning);

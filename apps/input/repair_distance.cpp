@@ -46,9 +46,9 @@ TriangleMesh only_in(const TriangleMesh& mesh, const std::vector<PlacedTriangle>
   return part;
 }
 
-// Finer than for a wrap, whose distance is known beforehand: a crack that was closed is thin. Where two flat parts lie
-// on each other but are divided into other triangles, what is left to search is along the lines that divide them, and
-// never ends; after the budget, a second or so, the upper bound is a little wider.
+// The search is finer than for a wrap, whose distance is known beforehand, because a closed crack is thin. If two flat
+// parts lie on each other but are triangulated differently, the search along the dividing lines never ends. After the
+// budget, about a second, the upper bound is slightly wider.
 SurfaceDistanceOptions search(const TriangleMesh& from) {
   return {.tolerance = 1e-6, .max_evaluations = 200'000 + 10 * static_cast<Index>(from.triangles.size())};
 }

@@ -121,7 +121,7 @@ void check_indices(const aiScene& scene, const std::string& name) {
       for (unsigned k = 0; k < part.mFaces[f].mNumIndices; ++k)
         if (part.mFaces[f].mIndices[k] >= part.mNumVertices)
           throw InputError(name + ": face " + std::to_string(f) + " of mesh " + std::to_string(m) +
-                           " names a vertex that is not there");
+                           " names a vertex that does not exist");
   }
 }
 
@@ -135,13 +135,14 @@ TriangleMesh read_by_assimp(const fs::path& file, const std::string& format) {
                 ? importer.ReadFile(name, aiProcess_Triangulate)
                 : importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, format.c_str());
   } catch (const std::exception& error) {
-    throw InputError(name + ": no readable " + name_of_scene_format(format) + " file: " + error.what());
+    throw InputError(name + ": this is no readable " + name_of_scene_format(format) + " file: " + error.what());
   }
   if (scene == nullptr || scene->mRootNode == nullptr)
-    throw InputError(name + ": no readable " + name_of_scene_format(format) + " file: " + importer.GetErrorString());
+    throw InputError(name + ": this is no readable " + name_of_scene_format(format) +
+                     " file: " + importer.GetErrorString());
   check_indices(*scene, name);
   TriangleMesh mesh = triangles_of(*scene);
-  if (mesh.triangles.empty()) throw InputError(name + ": its scene has no triangle");
+  if (mesh.triangles.empty()) throw InputError(name + ": the scene of the file has no triangle");
   return mesh;
 }
 

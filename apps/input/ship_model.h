@@ -3,7 +3,7 @@
 
 namespace orchard::apps {
 
-// The tree of a small arrow-shaped ship, nose along x, for those who have none of their own at hand.
+// Returns the tree of a small arrow-shaped ship with its nose along x. It is used if no tree is given.
 runtime::PackedSphereTree ship_tree();
 
 }  // namespace orchard::apps

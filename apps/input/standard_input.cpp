@@ -22,7 +22,8 @@ StandardInput::StandardInput(const std::string& format) {
   std::error_code error;
   const fs::path temporary = fs::temp_directory_path(error);
   std::string folder = ((error ? fs::path("/tmp") : temporary) / kFolder).string() + "XXXXXX";
-  if (mkdtemp(folder.data()) == nullptr) throw Error(folder + ": cannot be made, to keep standard input in");
+  if (mkdtemp(folder.data()) == nullptr)
+    throw Error(folder + ": the folder for standard input cannot be made; set TMPDIR to another place");
   file_ = fs::path(folder) / ("standard-input." + format);
   std::ofstream out(file_, std::ios::binary);
   std::array<char, 65536> piece{};
@@ -35,9 +36,9 @@ StandardInput::StandardInput(const std::string& format) {
   const bool broken = std::ferror(stdin) != 0, kept = static_cast<bool>(out);
   if (kept && !broken && total > 0) return;
   fs::remove_all(file_.parent_path(), error);
-  if (broken) throw InputError("standard input: cannot be read");
-  if (!kept) throw Error(file_.string() + ": standard input cannot be kept there; is the disk full?");
-  throw InputError("standard input: it is empty");
+  if (broken) throw InputError("standard input: reading failed");
+  if (!kept) throw Error(file_.string() + ": standard input cannot be stored there; the disk may be full");
+  throw InputError("standard input: it is empty; check the program that writes to it");
 }
 
 StandardInput::~StandardInput() {

@@ -4,19 +4,19 @@
 
 namespace orchard::apps {
 
-// What arrived at standard input, as a file that lives as long as this object, so that it can be read like any other:
-// more than once, and from any place.
+// The data from standard input, as a file that exists as long as this object, so that it can be read like any other:
+// several times, and from any position.
 class StandardInput {
  public:
-  // Reads all of standard input. `format`: the ending of the file's name. Throws InputError if nothing arrives, and
-  // Error if it cannot be kept.
+  // Reads all of standard input. `format` becomes the extension of the file. Throws InputError if there is no data, and
+  // Error if it cannot be stored.
   explicit StandardInput(const std::string& format);
   ~StandardInput();
   StandardInput(const StandardInput&) = delete;
   StandardInput& operator=(const StandardInput&) = delete;
 
   const std::filesystem::path& file() const { return file_; }
-  // A message in which the file is called "standard input".
+  // Returns the message with "standard input" in place of the file's name.
   std::string in_words(std::string message) const;
 
  private:
@@ -25,7 +25,7 @@ class StandardInput {
 
 // Whether a file is that of a StandardInput.
 bool is_standard_input(const std::filesystem::path& file);
-// What messages call a file: its path, or "standard input".
+// Returns the name of a file for messages: its path, or "standard input".
 std::string shown(const std::filesystem::path& file);
 
 }  // namespace orchard::apps

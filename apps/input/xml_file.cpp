@@ -20,13 +20,14 @@ const XMLElement& parse_xml(const std::filesystem::path& file, tinyxml2::XMLDocu
                             const char* what) {
   const std::string text = content_of(file);
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError(fmt::format("{}, line {}: is no well-formed XML ({})", file.string(), document.ErrorLineNum(),
-                                 document.ErrorName()));
+    throw InputError(fmt::format("{}, line {}: the file is no well-formed XML ({})", file.string(),
+                                 document.ErrorLineNum(), document.ErrorName()));
   const XMLElement* element = document.RootElement();
-  if (element == nullptr) throw InputError(fmt::format("{}: is no {}: it has no element", file.string(), what));
+  if (element == nullptr)
+    throw InputError(fmt::format("{}: the file is no {}, since it has no element", file.string(), what));
   if (std::string_view(element->Name()) != root)
-    throw InputError(fmt::format("{}: is no {}: its root is <{}> rather than <{}>", at_line(file, *element), what,
-                                 element->Name(), root));
+    throw InputError(fmt::format("{}: the file is no {}, since its root is <{}> rather than <{}>",
+                                 at_line(file, *element), what, element->Name(), root));
   return *element;
 }
 
@@ -44,7 +45,7 @@ std::vector<double> numbers_in(const std::string& text, std::size_t count, const
   }
   if (at != end || numbers.size() != count)
     throw InputError(
-        fmt::format("{}: {} is to be {} number{}, and is \"{}\"", where, what, count, count == 1 ? "" : "s", text));
+        fmt::format("{}: {} has to be {} number{}, but it is \"{}\"", where, what, count, count == 1 ? "" : "s", text));
   return numbers;
 }
 

@@ -38,7 +38,7 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-// The name without what programs add to the files of one axis.
+// Returns the name without the endings that programs add to the files of one axis.
 std::string stem_of(const fs::path& file) {
   std::string stem = file.stem().string();
   for (const std::string ending : {"_center", "_skel_face", "_skel_edge", "_sphere"}) {
@@ -61,10 +61,11 @@ class Finder {
   explicit Finder(const fs::path& folder) : folder_(folder) {}
 
   LeaderboardFolder run() {
-    if (!fs::is_directory(folder_)) throw InputError(folder_.string() + ": is no folder");
+    if (!fs::is_directory(folder_)) throw InputError(folder_.string() + ": this is no folder");
     const std::vector<fs::path> beside = files_of(folder_);
     find_meshes(beside);
-    if (meshes_.empty()) throw InputError(folder_.string() + ": holds no mesh " + input_formats_in_words());
+    if (meshes_.empty())
+      throw InputError(folder_.string() + ": the folder contains no mesh " + input_formats_in_words());
     for (const fs::path& table : {folder_ / "results.csv", folder_ / "results" / "results.csv"}) {
       if (fs::is_regular_file(table)) read_table(table);
     }
@@ -126,7 +127,7 @@ class Finder {
         head = std::move(cells);
         for (const char* column : {"file", "mesh", "system"}) {
           if (std::find(head.begin(), head.end(), column) == head.end())
-            lines.fail(std::string("has no column \"") + column + '"');
+            lines.fail(std::string("the table has no column \"") + column + '"');
         }
         continue;
       }
@@ -134,7 +135,7 @@ class Finder {
       std::map<std::string, std::string> row;
       for (std::size_t i = 0; i < head.size(); ++i) row[head[i]] = cells[i];
       const std::string model = fs::path(row["mesh"]).stem().string();
-      if (!meshes_.contains(model)) lines.fail("no mesh of this name: " + row["mesh"]);
+      if (!meshes_.contains(model)) lines.fail("there is no mesh of this name: " + row["mesh"]);
       if (!row["n"].empty() && !whole_number(row["n"])) lines.fail("expected a whole number for n");
       row["mesh"] = model;
       table_[row["file"]] = row;
@@ -167,7 +168,8 @@ class Finder {
       return;
     }
     entry.mesh = meshes_.at(entry.model);
-    // Files of one axis count once: the points of Point2Skeleton before its faces, an .off before its .obj.
+    // The files of one axis count once: Point2Skeleton's points before its faces, and an .off file before its .obj
+    // file.
     const std::string family = file.parent_path().string() + '/' + stem_of(file);
     const bool pair = one_of(lower_extension(file), {".obj", ".off"});
     if (pair && !families_.insert(family).second) {

@@ -37,22 +37,23 @@ std::vector<std::string> axis_export_names(const MedialCommand& command) {
 void check_axis_exports(const MedialCommand& command) {
 #ifndef ORCHARD_HAS_VIZ
   if (std::find(command.exports.begin(), command.exports.end(), "vtp") != command.exports.end())
-    throw InputError("--export vtp: this program was built without VTK");
+    throw InputError(
+        "--export vtp: this program was built without VTK; choose another format, or build it with ORCHARD_VIZ=ON");
 #else
   (void)command;
 #endif
 }
 
 void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, const AxisContacts& contacts,
-                        Outputs& outputs) {
+                        const std::vector<ImportanceArray>& importance, Outputs& outputs) {
   for (const std::string& kind : command.exports) {
     if (kind == "csv") {
-      for (const auto& [ending, text] : axis_tables(mesh, contacts))
+      for (const auto& [ending, text] : axis_tables(mesh, contacts, importance))
         write_file(outputs.add(file_name(command, ending), "a table of the axis"), text);
       continue;
     }
     const std::filesystem::path file = outputs.add(file_name(command, "." + kind), "the axis as " + kind);
-    if (kind == "npz") write_file(file, to_npz(axis_arrays(mesh, contacts)));
+    if (kind == "npz") write_file(file, to_npz(axis_arrays(mesh, contacts, importance)));
     if (kind == "ma") write_file(file, to_ma(mesh) + to_structure_section(medial_structure(mesh)));
     if (kind == "ply") write_file(file, to_ply(mesh, &contacts));
     if (kind == "obj") write_file(file, to_obj(mesh));

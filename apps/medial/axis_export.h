@@ -17,6 +17,6 @@ std::vector<std::string> axis_export_names(const MedialCommand& command);
 // Throws InputError if a kind needs what the program was built without.
 void check_axis_exports(const MedialCommand& command);
 void write_axis_exports(const MedialCommand& command, const MedialMesh& mesh, const AxisContacts& contacts,
-                        Outputs& outputs);
+                        const std::vector<ImportanceArray>& importance, Outputs& outputs);
 
 }  // namespace orchard::apps

@@ -82,7 +82,7 @@ json report_of(const CompareCommand& command, const SolidMesh& solid, const std:
   return report;
 }
 
-void print(const std::vector<ComparedAxis>& axes) {
+void print_compared(const std::vector<ComparedAxis>& axes) {
   fmt::print("two-sided distance of surface and envelope, % of the diagonal, at equal numbers of balls\n");
   fmt::print("{:>7} {:>12} {:>12} {:>12}  {:<9} {}\n", "balls", "max", "mean", "open, proven", "topology", "axis");
   for (const ComparedAxis& axis : axes) {
@@ -145,7 +145,7 @@ void compare_axes(const CompareCommand& command) {
     write_file(command.csv, stamped(with_other_rows(table, rows_of_others(command.csv, model)), "table.csv", line));
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
-  print(axes);
+  print_compared(axes);
   if (outputs) outputs->print();
   if (!command.plot.empty()) fmt::print("  {}  (distances against balls)\n", command.plot.string());
   if (!command.csv.empty()) fmt::print("  {}  (the rows of this mesh and of others)\n", command.csv.string());

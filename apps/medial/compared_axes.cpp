@@ -156,7 +156,7 @@ std::vector<std::string> rows_of_others(const fs::path& file, const std::string&
   std::string line;
   if (!std::getline(in, line) || line != csv_head())
     throw InputError(file.string() +
-                     ", line 1: is no table that compare of this version wrote, so no rows can be added; choose "
+                     ", line 1: compare of this version did not write this table, so no rows can be added; choose "
                      "another name for --csv");
   const std::string own = csv_word(model) + ",";
   while (std::getline(in, line))

@@ -13,7 +13,7 @@
 namespace orchard::apps {
 namespace {
 
-constexpr double kSamePlace = 1e-5;  // bounding radii: texts with six digits round by less
+constexpr double kSamePlace = 1e-5;  // in bounding radii: coordinates written with six digits are off by less
 
 class FeatureLineReader {
  public:
@@ -27,7 +27,7 @@ class FeatureLineReader {
 
   std::vector<std::array<Index, 2>> run() {
     std::ifstream in(file_);
-    if (!in) throw InputError(fmt::format("{}: cannot be read", file_.string()));
+    if (!in) throw InputError(fmt::format("{}: the file cannot be read; check its permissions", file_.string()));
     std::string line, word;
     while (std::getline(in, line)) {
       ++number_;
@@ -38,7 +38,7 @@ class FeatureLineReader {
     }
     if (result_.empty())
       throw InputError(
-          fmt::format("{}: has no lines (\"l 1 2\"); feature edges are lines of an OBJ file", file_.string()));
+          fmt::format("{}: the file has no lines (\"l 1 2\"); feature edges are lines of an OBJ file", file_.string()));
     std::sort(result_.begin(), result_.end());
     result_.erase(std::unique(result_.begin(), result_.end()), result_.end());
     return std::move(result_);
@@ -88,11 +88,12 @@ class FeatureLineReader {
     for (const Index v : corners) {
       if ((surface_.mesh().vertices[v] - place).norm() <= near) return v;
     }
-    fail("a place that is no vertex of the mesh");
+    fail("the place is no vertex of the mesh");
   }
   void add_edge(Index a, Index b) {
     const std::array<Index, 2> edge = ascending(a, b);
-    if (!std::binary_search(edges_.begin(), edges_.end(), edge)) fail("a line between two vertices without an edge");
+    if (!std::binary_search(edges_.begin(), edges_.end(), edge))
+      fail("the mesh has no edge between two vertices of the line");
     result_.push_back(edge);
   }
 

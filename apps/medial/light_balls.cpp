@@ -38,7 +38,7 @@ std::vector<Index> light_balls(std::span<const Sphere> balls, Index most) {
   if (balls.size() <= most) return kept;
   Box box;
   for (const Sphere& ball : balls) box.extend(ball.center);
-  // The cells are between those of one ball each, if need be, and one cell around everything.
+  // Bisects between cells that contain a single ball each and one cell around everything.
   double fine = 0, coarse = 1.0001 * box.sizes().maxCoeff();
   if (coarse == 0) return {largest_of_cells(balls, box.min(), 1).front()};
   kept = largest_of_cells(balls, box.min(), coarse);

@@ -11,6 +11,7 @@
 #include "input/input_file.h"
 #include "input/reading_report.h"
 #include "medial/axis_export.h"
+#include "medial/axis_importance.h"
 #include "medial/feature_lines.h"
 #include "medial/medial_advice.h"
 #include "medial/medial_report.h"
@@ -38,8 +39,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Levels of noise that borders may lose beside what they lose anyway. Smoothing leaves a third to a half of the noise,
-// in waves that are too long to be told from the shape, and what they raise on the axis loses less than this.
+// Deviations of the noise that borders may lose beside what they lose anyway. Smoothing leaves a third to a half of the
+// noise, in waves that are too long to be told from the shape, and what they raise on the axis loses less than this.
 constexpr double kLossOfNoise = 1.5;
 constexpr const char* kSmoothedEnding = "-smoothed.obj";
 constexpr double kDistanceAccuracy = 1e-4;  // of the diagonal: to which the largest distance of two axes is searched
@@ -56,6 +57,8 @@ std::vector<std::string> names_of(const MedialCommand& command) {
   std::vector<std::string> names = few_balls_names(command);
   const std::vector<std::string> exports = axis_export_names(command);
   names.insert(names.end(), exports.begin(), exports.end());
+  const std::vector<std::string> curves = importance_file_names(command);
+  names.insert(names.end(), curves.begin(), curves.end());
   if (!command.axis.empty()) {
     names.push_back(named(command.axis, "-quality.png"));
     names.push_back(page_name(command.axis, "medial"));
@@ -221,7 +224,7 @@ void judge_file(const MedialCommand& command, const Destination& destination, co
       report_quality(command, destination, solid, judged, beside, report, progress, bar);
   Outputs outputs(destination);
   write_few_balls(command, destination.provenance, few, report, outputs);
-  write_axis_exports(command, mesh, axis_contacts(solid.surface, mesh), outputs);
+  write_axis_exports(command, mesh, axis_contacts(solid.surface, mesh), {}, outputs);
   const std::string picture =
       write_picture(command, solid.surface, pictured, nullptr, named(command.axis, "-quality.png"), outputs);
   finish(command, report, picture, outputs);
@@ -258,6 +261,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const StructureGraph graph = structure_graph(build.axis);
   const FewBalls few = make_few_balls(command, surface, mesh, progress);
+  const AxisImportance importance = measure_importance(command, surface, build.axis, progress);
   std::optional<MedialJudgement> judgement;
   if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
   bar.clear();
@@ -299,7 +303,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
     pictured = report_quality(command, destination, solid, judged, beside, report, progress, bar);
   }
   Outputs outputs(destination);
-  write_axis(command, build, mesh, last_line, outputs);
+  write_axis(command, build, mesh, importance.arrays, last_line, outputs);
   if (!build.features.empty())
     write_file(outputs.add(named(command.mesh, "-features.obj"), "the edges of the mesh that its sheets reach"),
                to_feature_lines(surface, build.features));
@@ -308,6 +312,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
               surface.mesh());
   write_file(outputs.add(named(command.mesh, ".graphml"), "its structure graph"), to_graphml(graph, build.axis));
   write_few_balls(command, destination.provenance, few, report, outputs);
+  write_importance(command, importance, report, outputs);
   write_views(command,
               {.surface = surface,
                .build = build,
@@ -315,6 +320,7 @@ ExitCode build_axis(const MedialCommand& command, const Destination& destination
                .graph = graph,
                .mesh = mesh,
                .errors = errors ? &*errors : nullptr,
+               .importance = importance.arrays,
                .worst = pictured.front().worst},
               outputs);
   const std::string picture =
@@ -345,11 +351,11 @@ json axis_report(const MedialCommand& command, const SolidMesh& solid, const Med
 }
 
 void write_axis(const MedialCommand& command, const MedialBuild& build, const MedialMesh& mesh,
-                const std::string& last_line, Outputs& outputs) {
+                const std::vector<ImportanceArray>& importance, const std::string& last_line, Outputs& outputs) {
   write_file(
       outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
       to_ma(mesh) + to_structure_section(medial_structure(mesh)) + (last_line.empty() ? "" : "# " + last_line + "\n"));
-  write_axis_exports(command, mesh, axis_contacts(build.axis), outputs);
+  write_axis_exports(command, mesh, axis_contacts(build.axis), importance, outputs);
 }
 
 void add_quality(const MedialJudgement& judgement, json& report) {
@@ -361,7 +367,7 @@ MedialTuning tuning_for(const MedialCommand& command, const SolidMesh& solid) {
   MedialTuning tuning = command.tuning;
   if (!solid.is_smoothed()) return tuning;
   const RefineOptions standard;
-  const double times = 1 + kLossOfNoise * solid.noise->level / standard.border_loss;
+  const double times = 1 + kLossOfNoise * solid.noise->deviation / standard.border_loss;
   if (!given(command, "border-loss")) tuning.refinement.border_loss = times * standard.border_loss;
   if (!given(command, "feature-loss")) tuning.refinement.feature_loss = times * standard.feature_loss;
   return tuning;
@@ -410,6 +416,7 @@ void check_options(const MedialCommand& command) {
   if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
   check_side(command);
   check_axis_exports(command);
+  check_importance(command);
   if (command.tree && command.sweep.empty())
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
   refuse_unused_options(command);

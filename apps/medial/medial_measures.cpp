@@ -69,13 +69,14 @@ std::vector<MedialMeasure> topology_measures() {
 }
 
 std::vector<MedialMeasure> form_measures() {
-  return {
-      {"balls", "balls", "", true, [](const J& j) { return number(j.quality.balls); }},
-      {"border_length", "length of borders", "diagonals", true, [](const J& j) { return j.quality.border_length; }},
-      {"sheets", "sheets joined across edges", "", true, [](const J& j) { return number(j.quality.pieces.sheets); }},
-      {"wires", "wires: edges without faces", "", true, [](const J& j) { return number(j.quality.pieces.wires); }},
-      {"small_pieces", "flakes and spikes of these", "", true,
-       [](const J& j) { return number(j.quality.pieces.small); }}};
+  return {{"balls", "balls", "", true, [](const J& j) { return number(j.quality.balls); }},
+          {"border_length", "length of borders", "diagonals", true, [](const J& j) { return j.quality.border_length; }},
+          {"face_components", "components of faces", "", true,
+           [](const J& j) { return number(j.quality.pieces.face_components); }},
+          {"curve_components", "components of curves", "", true,
+           [](const J& j) { return number(j.quality.pieces.curve_components); }},
+          {"small_pieces", "flakes and spikes of these", "", true,
+           [](const J& j) { return number(j.quality.pieces.small); }}};
 }
 
 std::vector<MedialMeasure> making_measures() {
@@ -87,13 +88,13 @@ std::vector<MedialMeasure> making_measures() {
            [](const J& j) { return j.shape.quality_below; }},
           {"edge_spread", "edges, 90th over 10th percentile", "ratio", true,
            [](const J& j) { return j.shape.edge_spread; }},
-          {"sheets_between_seams", "sheets, cut at seams", "", true, [](const J& j) { return number(j.shape.sheets); }},
+          {"sheet_count", "sheets", "", true, [](const J& j) { return number(j.shape.sheets); }},
           {"small_sheets", "sheets smaller than their balls", "", true,
            [](const J& j) { return number(j.shape.small_sheets); }},
           {"tiny_sheets", "sheets of 3 triangles or fewer", "", true,
            [](const J& j) { return number(j.shape.tiny_sheets); }},
           {"seam_length", "length of seams", "diagonals", false, [](const J& j) { return j.shape.seam_length; }},
-          {"wire_length", "length of wires", "diagonals", false, [](const J& j) { return j.shape.wire_length; }},
+          {"curve_length", "length of curves", "diagonals", false, [](const J& j) { return j.shape.curve_length; }},
           {"border_turns", "border turns by more than 60", "fraction", true,
            [](const J& j) { return j.shape.border_turns; }},
           {"border_roughness", "border roughness", "ratio", true, [](const J& j) { return j.shape.border_roughness; }},

@@ -42,11 +42,11 @@ json to_json(const Topology& topology) {
 json refinement_json(const RefineReport& report) {
   return {{"vertices_before", report.vertices_before},
           {"inexact_vertices", report.inexact},
-          {"folded_triangles", report.folded_triangles},
+          {"single_contact_triangles", report.single_contact_triangles},
           {"border_cuts", report.border_cuts},
           {"spike_and_flake_cells_removed", report.small_pieces},
           {"vertices_moved", report.vertices_moved},
-          {"notches_filled", report.notches},
+          {"filling_triangles", report.filling_triangles},
           {"open_places_reached", report.reached_places},
           {"vertices_on_sharp_edges", report.edge_vertices},
           {"degenerate_cells_removed", report.degenerate},
@@ -75,7 +75,7 @@ json to_json(const MedialBuild& build) {
           {"vertices_left_out", build.axis.left_out},
           {"vertices", build.axis.size()},
           {"faces", build.axis.faces.size()},
-          {"walls", build.axis.walls.size()},
+          {"topology_faces", build.axis.topology_faces.size()},
           {"seconds", seconds}};
 }
 
@@ -86,7 +86,7 @@ json to_json(const MedialSegments& segments, const StructureGraph& graph, const 
   }
   json rows = json::array();
   for (const MedialSegments::Segment& s : segments.segments) {
-    rows.push_back({{"sheet", s.sheet},
+    rows.push_back({{"has_faces", s.has_faces},
                     {"trunk", s.trunk},
                     {"cells", s.cells},
                     {"min_radius", s.min_radius},
@@ -125,11 +125,10 @@ void print(const MedialBuild& build) {
              repair.faces_still_crossing);
   if (repair.faces_at_cuts > 0) fmt::print(", {} of them where the mesh cuts itself", repair.faces_at_cuts);
   const RefineReport& refinement = build.refinement;
-  const Index pruned = refinement.vertices > 0 ? refinement.vertices_before : build.axis.size();
   fmt::print("\n{} medial vertices", build.axis.size());
-  if (pruned != build.unpruned_vertices) fmt::print(" after pruning {} to {}", build.unpruned_vertices, pruned);
+  if (build.axis.size() != build.unpruned_vertices) fmt::print(" after pruning, {} before", build.unpruned_vertices);
   if (refinement.vertices > 0)
-    fmt::print(", refined from {}: {} inexact, {} on sharp edges", pruned, refinement.inexact,
+    fmt::print(", refined from {}: {} inexact, {} on sharp edges", refinement.vertices_before, refinement.inexact,
                refinement.edge_vertices);
   if (build.axis.stems > 0) fmt::print(", {} without faces", build.axis.stems);
   if (build.axis.bridges > 0) fmt::print(", {} edges that bridge the outside", build.axis.bridges);
@@ -137,10 +136,11 @@ void print(const MedialBuild& build) {
   fmt::print(", {} faces\n", build.axis.faces.size());
   if (refinement.vertices == 0) return;
   fmt::print(
-      "refining: {} folded triangles and what borders lose less than cut off, {} cells of spikes and flakes taken "
-      "away, {} notches filled, {} open places reached, {} edges divided",
-      refinement.folded_triangles, refinement.small_pieces, refinement.notches, refinement.reached_places,
-      refinement.divided);
+      "refining: {} triangles with a single contact and what borders lose less than cut off, {} cells of spikes and "
+      "flakes taken "
+      "away, {} triangles filled in, {} open places reached, {} edges divided",
+      refinement.single_contact_triangles, refinement.small_pieces, refinement.filling_triangles,
+      refinement.reached_places, refinement.divided);
   if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
   fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
 }

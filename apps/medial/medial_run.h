@@ -7,6 +7,7 @@
 #include "command_line/commands.h"
 #include "command_line/console.h"
 #include "input/load_solid.h"
+#include "medial/axis_importance.h"
 #include "medial/medial_measures.h"
 #include "orchard/medial/build.h"
 #include "output/outputs.h"
@@ -46,7 +47,7 @@ void sweep_medial(const MedialCommand& command, const Destination& destination, 
 nlohmann::json axis_report(const MedialCommand& command, const SolidMesh& solid, const MedialBuild& build,
                            const MedialMesh& mesh);
 void write_axis(const MedialCommand& command, const MedialBuild& build, const MedialMesh& mesh,
-                const std::string& last_line, Outputs& outputs);
+                const std::vector<ImportanceArray>& importance, const std::string& last_line, Outputs& outputs);
 // Sets "quality" and "diagonal".
 void add_quality(const MedialJudgement& judgement, nlohmann::json& report);
 

@@ -22,8 +22,8 @@ namespace {
 
 using nlohmann::json;
 
-// The numbers of vertices of a curve.
-constexpr Index kCurve[] = {5000, 2000, 1000, 500, 200, 100, 50, 20, 10, 5, 2, 1};
+// The numbers of vertices that an error curve has.
+constexpr Index kErrorCurve[] = {5000, 2000, 1000, 500, 200, 100, 50, 20, 10, 5, 2, 1};
 
 bool simplifies(const MedialCommand& command) { return command.few_vertices > 0 || command.few_error > 0; }
 
@@ -85,12 +85,12 @@ void print_few_balls(const FewBalls& few) {
                100 * report.hausdorff.max, 100 * report.upper, 100 * report.hausdorff.mean, 100 * report.coverage.max,
                100 * report.protrusion.max);
   };
-  if (few.simplified || !few.curve.empty()) {
+  if (few.simplified || !few.error_curve.empty()) {
     fmt::print("in few balls: distance of surface and envelope, % of the diagonal\n");
     fmt::print("  {:>7} {:>12} {:>8} {:>10} {:>10} {:>12}\n", "balls", "two-sided", "proven", "mean", "coverage",
                "protrusion");
   }
-  for (const auto& [mesh, report] : few.curve) row(report);
+  for (const auto& [mesh, report] : few.error_curve) row(report);
   if (few.simplified) row(few.simplified->report);
   if (few.envelope) {
     fmt::print("envelope: {} vertices, {} triangles{}\n", few.envelope->mesh.vertices.size(),
@@ -118,22 +118,22 @@ std::vector<std::string> few_balls_names(const MedialCommand& command) {
   if (simplifies(command)) {
     for (const char* ending : {"-simplified.ma", "-simplified.ply", "-simplified.obj", "-simplified.vtp"}) add(ending);
   }
-  if (command.curve) {
-    for (const char* ending : {"-curve.csv", "-curve.svg"}) add(ending);
+  if (command.error_curve) {
+    for (const char* ending : {"-error-curve.csv", "-error-curve.svg"}) add(ending);
   }
   return names;
 }
 
 void check_simplification(const MedialCommand& command) {
-  if (given(command, "balls") && !simplifies(command) && !command.curve)
-    throw InputError("--balls has no effect without --vertices, --error or --curve");
+  if (given(command, "balls") && !simplifies(command) && !command.error_curve)
+    throw InputError("--balls has no effect without --vertices, --error or --error-curve");
   if (given(command, "error") && !(command.few_error > 0)) throw InputError("--error: expected a percentage above 0");
 }
 
 void check_few_balls(const MedialCommand& command, const Destination& destination,
                      const std::vector<std::filesystem::path>& inputs) {
   if (!command.sweep.empty()) {
-    for (const char* option : {"curve", "envelope"}) {
+    for (const char* option : {"error-curve", "envelope"}) {
       if (given(command, option)) throw InputError(fmt::format("--{} has no effect with --sweep", option));
     }
     return;  // each run is checked by itself
@@ -156,12 +156,13 @@ void check_few_balls(const MedialCommand& command, const Destination& destinatio
 FewBalls make_few_balls(const MedialCommand& command, const Surface& surface, const MedialMesh& axis,
                         const Progress& progress) {
   FewBalls few;
-  if (command.curve) {
+  if (command.error_curve) {
     std::vector<Index> counts;
-    std::copy_if(std::begin(kCurve), std::end(kCurve), std::back_inserter(counts),
+    std::copy_if(std::begin(kErrorCurve), std::end(kErrorCurve), std::back_inserter(counts),
                  [&](Index count) { return count <= axis.size(); });
-    time_stage(few.seconds, "curve",
-               [&] { few.curve = simplify_to_each(surface, axis, counts, few_balls_options(command), progress); });
+    time_stage(few.seconds, "error_curve", [&] {
+      few.error_curve = simplify_to_each(surface, axis, counts, few_balls_options(command), progress);
+    });
   }
   if (simplifies(command)) {
     time_stage(few.seconds, "simplifying",
@@ -192,12 +193,12 @@ void write_few_balls(const MedialCommand& command, const Provenance& provenance,
       write_medial_mesh(outputs.add(name("-simplified.vtp"), "the same for ParaView, with radius and structure"), mesh);
 #endif
   }
-  if (!few.curve.empty()) {
+  if (!few.error_curve.empty()) {
     json rows = json::array();
-    for (const auto& [mesh, row] : few.curve) rows.push_back(simplification_json(row));
-    report["curve"] = std::move(rows);
-    write_file(outputs.add(name("-curve.csv"), "numbers of balls against error"), to_csv(few.curve));
-    write_file(outputs.add(name("-curve.svg"), "the same as a picture"), to_svg(few.curve));
+    for (const auto& [mesh, row] : few.error_curve) rows.push_back(simplification_json(row));
+    report["error_curve"] = std::move(rows);
+    write_file(outputs.add(name("-error-curve.csv"), "numbers of balls against error"), to_csv(few.error_curve));
+    write_file(outputs.add(name("-error-curve.svg"), "the same as a picture"), to_svg(few.error_curve));
   }
   if (few.envelope) {
     const auto& [mesh, lost] = *few.envelope;

@@ -11,13 +11,14 @@
 #include "orchard/medial/simplify.h"
 #include "output/outputs.h"
 
-// `orchard medial` with --vertices, --error, --curve or --envelope: the axis in few balls, and what it stands for.
+// `orchard medial` with --vertices, --error, --error-curve or --envelope: the axis in few balls, and what it stands
+// for.
 namespace orchard::apps {
 
 // What became of an axis.
 struct FewBalls {
   std::optional<SimplifiedMedialMesh> simplified = {};  // with --vertices or --error
-  std::vector<SimplifiedMedialMesh> curve = {};         // with --curve
+  std::vector<SimplifiedMedialMesh> error_curve = {};   // with --error-curve
   std::optional<EnvelopeMesh> envelope = {};            // with --envelope: of the simplified mesh, or else of the axis
   StageTimes seconds = {};
 };

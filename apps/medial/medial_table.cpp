@@ -15,7 +15,7 @@ constexpr double kLoose = 2;          // times what was found: a proven bound ab
 constexpr double kNegligible = 0.01;  // % of the diagonal: bounds below that are good enough in any case
 constexpr std::size_t kNarrowest = 12, kWidest = 28;  // of a column
 
-// Long names keep their ends, which tell files apart.
+// Long names are cut at the beginning, because their ends distinguish files.
 std::string fitted(const std::string& name) {
   return name.size() <= kWidest ? name : ".." + name.substr(name.size() - kWidest + 2);
 }
@@ -25,7 +25,7 @@ std::string cell(double value, const MedialMeasure& measure) {
   return *measure.unit == '\0' ? fmt::format("{:.0f}", value) : fmt::format("{:.5f}", value);
 }
 
-// "1 0 0 right" says more in a line than four rows.
+// One line such as "1 0 0 right" replaces four rows.
 void print_topologies(const std::vector<JudgedAxis>& axes, const std::vector<std::size_t>& widths) {
   const auto three = [](const Topology& t) { return fmt::format("{} {} {}", t.components, t.loops, t.cavities); };
   fmt::print("  {:<30}", "components, loops, cavities");
@@ -42,7 +42,8 @@ struct Bound {
   double found, upper;
 };
 
-// Says of proven bounds that are far above what was found why they are: a reader takes them for the error otherwise.
+// For proven bounds that are far above the measured values, prints why, because readers would otherwise take them for
+// the error.
 void print_loose_bounds(const JudgedAxis& axis) {
   const MedialQuality& quality = axis.judgement.quality;
   const double reach = std::max(quality.protrusion.max, quality.coverage.max);

@@ -17,9 +17,9 @@ constexpr double kGain = 0.1;  // of a value: a step that gains less is not wort
 constexpr std::size_t kMaxTrials = 50;
 
 // Options that leave the axis as it is.
-constexpr const char* kOfTheReport[] = {"report",        "picture",        "beside", "up",    "no-views", "export",
-                                        "accept",        "vertices",       "error",  "balls", "curve",    "envelope",
-                                        "envelope-cell", "quality-samples"};
+constexpr const char* kOfTheReport[] = {
+    "report", "picture", "beside",      "up",       "no-views",      "export",          "accept",     "vertices",
+    "error",  "balls",   "error-curve", "envelope", "envelope-cell", "quality-samples", "importance", "prune-curve"};
 
 std::string text_of(const json& options, const std::string& option) {
   const auto at = options.find(option);

@@ -8,7 +8,7 @@
 #include "medial/medial_table.h"
 #include "output/provenance.h"
 
-// Advice that ends: it looks at earlier runs on the same input, which reports remember.
+// Makes advice end: it considers the earlier runs on the same input, which reports store.
 namespace orchard::apps {
 
 // One run with --report, as far as advice depends on it.
@@ -23,8 +23,8 @@ std::vector<MedialTrial> earlier_trials(const std::filesystem::path& report, con
 MedialTrial trial_of(const Provenance& provenance, const std::vector<WorstPlace>& worst);
 nlohmann::json to_json(const std::vector<MedialTrial>& trials);
 
-// The advice for a place, unless an earlier run shows that it does not help: one with the very option, or one from
-// which the last step of that option gained less than a tenth. Then the sentence says so, with both values.
+// Returns the advice for a place, unless an earlier run shows that it does not help: one with that very option, or one
+// from which the last step of that option gained less than a tenth. Then the sentence says so, with both values.
 std::string advice_after(const std::vector<MedialTrial>& earlier, const MedialTrial& now, const Advice& advice,
                          const WorstPlace& place);
 

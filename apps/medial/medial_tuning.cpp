@@ -146,7 +146,25 @@ std::vector<TuningFlag> pruning_flags() {
            [](T& t, double x) { t.prune_degrees = x; }),
       real("prune scale", "1", 1, 10,
            "Remove balls that lie in others when all are scaled by this factor. Higher values remove small features",
-           [](T& t, double x) { t.options.prune.scale = x; })};
+           [](T& t, double x) { t.options.prune.scale = x; }),
+      real("prune border-loss", "0", 0, 100,
+           "Remove borders beyond which less than this of the surface is left open, in percent of the diagonal; this "
+           "shortens every sheet into a sharp edge",
+           [](T& t, double x) { t.options.prune.border_loss = x / 100; }),
+      real("prune lambda", "0", 0, 100,
+           "Remove balls whose contacts fit into a ball of this radius, in percent of the diagonal. Higher values also "
+           "remove thin parts",
+           [](T& t, double x) { t.options.prune.lambda = x / 100; }),
+      real("prune erosion", "0", 0, 100,
+           "Remove places with less than this erosion thickness, in percent of the diagonal: how much longer a fire "
+           "from the border of the axis takes to arrive than from the surface. Higher values remove short branches, "
+           "however thick, and shorten the others",
+           [](T& t, double x) { t.options.prune.erosion = x / 100; }),
+      real(
+          "prune geodesic", "0", 0, 400,
+          "Remove balls whose contacts are joined by a shorter path on the surface, in percent of the diagonal. Higher "
+          "values leave only the middle of thick parts. Takes longest",
+          [](T& t, double x) { t.options.prune.geodesic = x / 100; })};
 }
 
 std::vector<TuningFlag> refining_flags() {

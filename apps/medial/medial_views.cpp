@@ -84,7 +84,7 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
                            const QualityOptions& options) {
   std::vector<Sphere> middles;
   add_middles(build.axis, build.axis.faces, middles);
-  add_middles(build.axis, build.axis.walls, middles);
+  add_middles(build.axis, build.axis.topology_faces, middles);
   QualityOptions no_contacts = options;
   no_contacts.contact_cells = 0;
   return {.vertices = in_percent(ball_errors(surface, balls_of(mesh), options)),
@@ -230,6 +230,7 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
     of_points = arrays_of(views.errors->points);
     of_mesh = arrays_of(views.errors->mesh);
   }
+  for (const auto& [name, values] : views.importance) of_vertices.push_back({name, values});
   ViewArray& passes = of_points.emplace_back(ViewArray{.name = "repair_pass", .values = {}});
   for (const int pass : repair_passes(views.build))  // of which pass a point is may not be known
     passes.values.push_back(pass < 0 ? std::numeric_limits<double>::quiet_NaN() : pass);

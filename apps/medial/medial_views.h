@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "command_line/commands.h"
+#include "medial/axis_importance.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/quality.h"
 #include "orchard/medial/segments.h"
@@ -14,8 +15,8 @@ namespace orchard::apps {
 
 // What is wrong where, in the units of medial_measures(): percent of the diagonal, and of the radius for centredness.
 struct MedialErrors {
-  BallErrors vertices;         // of the medial mesh, of which the axis's come first
-  BallErrors faces;            // of the balls at the middles of the axis's faces, then of its walls; no centredness
+  BallErrors vertices;  // of the medial mesh, of which the axis's come first
+  BallErrors faces;     // of the balls at the middles of the axis's faces, then of its topology faces; no centredness
   SurfaceErrors points, mesh;  // at the surface points, and at the vertices of the mesh
 };
 // Of an axis that was built here.
@@ -32,6 +33,7 @@ struct MedialViews {
   const StructureGraph& graph;
   const MedialMesh& mesh;
   const MedialErrors* errors = nullptr;  // null: not measured
+  std::vector<ImportanceArray> importance = {};
   std::vector<WorstPlace> worst = {};
 };
 // Where the program was built with VTK.

@@ -15,12 +15,13 @@ struct Column {
   bool rates = false;  // less is better
 };
 std::vector<Column> all_columns(const MedialCommand& command);
-// Without measures of the name of an option that is swept: its values have the name.
+// Leaves out measures with the name of a swept option, because the values of that option have the name.
 std::vector<Column> columns_of(const MedialCommand& command);
 
-// The axis's part of a run's numbers, in the order of all columns. `more`: what its simplification took.
+// Returns the numbers of a run that concern the axis, in the order of the columns. `more` is the time of its
+// simplification.
 std::vector<double> axis_numbers(const MedialBuild& build, const MedialJudgement& judgement, const StageTimes& more);
-// The tree's part, behind it: NaN for levels down to `depth` that it has not.
+// Returns the numbers that concern the tree, which follow. They are NaN for levels up to `depth` that it does not have.
 std::vector<double> tree_numbers(const SphereTreeBuild& built, const Surface& surface, Index depth);
 
 }  // namespace orchard::apps

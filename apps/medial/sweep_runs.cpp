@@ -20,10 +20,10 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Without them, runs that differ in nothing else share their axis.
+// Runs that differ only in these options share their axis.
 constexpr const char* kAfterTheAxis[] = {"vertices", "error", "balls", "quality-samples", "tree", "tree-depth"};
 
-// Everything that a run's numbers depend on.
+// Returns everything that the numbers of a run depend on.
 json decisive_of(const MedialCommand& run, const Destination& destination) {
   json decisive = decisive_json({.run = run.output.run, .inputs = destination.provenance.inputs});
   decisive.erase("command_line");
@@ -36,7 +36,7 @@ std::string axis_key(const MedialCommand& run) {
   return options.dump();
 }
 
-// From the very axis: its diagram is taken over.
+// Builds the tree from the same axis, whose diagram is reused.
 SphereTreeBuild tree_of(const TreeRequest& wanted, const Surface& surface, const MedialBuildOptions& medial,
                         const MedialBuild& build, const Progress& progress) {
   SphereTreeOptions options = tree_options(wanted, medial.sampling.seed);
@@ -170,7 +170,7 @@ class SweepRunner {
     quiet.views = false;
     json report = axis_report(quiet, solid, *build_, mesh);
     add_quality(judgement, report);
-    write_axis(quiet, *build_, mesh, "", outputs);
+    write_axis(quiet, *build_, mesh, {}, "", outputs);
     write_few_balls(quiet, destination.provenance, few, report, outputs);
     outputs.add_report(report);
     outputs.commit();

@@ -237,7 +237,8 @@ Destination check(const VoronoiCommand& command) {
 void check_cells(const VoronoiCommand& command, const Input& input) {
   for (const Index cell : command.cells)
     if (cell >= input.points.size())
-      throw InputError(fmt::format("--cells {}: there are {} points, counted from 0", cell, input.points.size()));
+      throw InputError(
+          fmt::format("--cells {}: there are only {} points, which are counted from 0", cell, input.points.size()));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::size_t rows_of(const NamedArray& array) {
   return std::visit([&](const auto& values) { return values.size(); }, array.values) / array.columns.size();
 }
 
-// The .npy file of an array: its head is padded so that the numbers begin at a multiple of 64.
+// Returns the .npy file of an array. Its header is padded so that the numbers begin at a multiple of 64 bytes.
 std::string to_npy(const NamedArray& array) {
   constexpr std::array kTypes{"<f8", "<u4", "<i4"};  // in the order of the variant
   const std::string shape = array.columns.size() == 1 ? fmt::format("({},)", rows_of(array))
@@ -66,8 +66,8 @@ std::string to_npy(const NamedArray& array) {
   return bytes;
 }
 
-// What the local head and the directory's entry of a file have in common, from the version that is needed on: stored,
-// on the first day that ZIP knows, so that the same arrays give the same bytes.
+// Returns what the local header of a file and its entry in the directory have in common, beginning with the version.
+// The date is the first one that ZIP can express, so that the same arrays give the same bytes.
 std::string zip_entry(const std::string& name, const std::string& file) {
   std::string entry;
   append(entry, std::uint16_t{20});

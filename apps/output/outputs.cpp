@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders that do not exist, the outermost first; makes them. Sets `error` if that cannot be.
+// Makes the folders that do not exist, and returns them, the outermost first. Sets `error` if that fails.
 std::vector<fs::path> make_folders(const fs::path& folder, std::error_code& error) {
   std::vector<fs::path> made;
   fs::path whole;
@@ -54,15 +54,17 @@ void check_file(const fs::path& file, std::span<const fs::path> inputs) {
   const fs::file_status status = fs::status(file, ignored);
   if (!fs::exists(status)) return;
   if (fs::is_directory(status))
-    throw InputError(file.string() + ": cannot be written, it is a folder; rename it or choose another place");
+    throw InputError(
+        file.string() +
+        ": the file cannot be written because a folder has this name; rename that or choose another place");
   for (const fs::path& input : inputs)
     if (fs::equivalent(file, input, ignored))
-      throw InputError(file.string() + ": would be written over, but is what the command reads; choose another place");
+      throw InputError(file.string() + ": the command reads this file and would overwrite it; choose another place");
   if (access(file.c_str(), W_OK) != 0)
     throw InputError(file.string() + ": cannot be written: " + reason(errno) + "; remove it or choose another place");
 }
 
-// What the report that is there says, if the files may be replaced.
+// Returns the report of the run whose files are there, if these may be replaced.
 std::optional<RecordedRun> check_owner(const Destination& destination) {
   const fs::path report = destination.folder / destination.report;
   std::optional<RecordedRun> recorded = read_recorded(report);
@@ -101,7 +103,7 @@ void check_outputs(const Destination& destination, std::span<const std::string> 
                    std::span<const fs::path> inputs) {
   const fs::path& folder = destination.folder;
   if (!destination.single.empty()) return check_output(folder / destination.single_as, inputs);
-  if (folder.empty()) throw InputError("-o: the folder's name is empty; \".\" is the one that you are in");
+  if (folder.empty()) throw InputError("-o: the name of the folder is empty; give \".\" for the current one");
   const Writing writing;
   std::error_code error;
   const std::vector<fs::path> made = make_folders(folder, error);

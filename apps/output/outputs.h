@@ -58,15 +58,15 @@ class Outputs {
   Outputs(const Outputs&) = delete;
   Outputs& operator=(const Outputs&) = delete;
 
-  // Where to write a file until commit(), and what to tell the user about it; nothing: it goes without saying. Throws
-  // Cancelled after a signal.
+  // Returns where to write a file until commit(). `what` describes it in the list for the user; a file without a
+  // description is not listed. Throws Cancelled after a signal.
   std::filesystem::path add(const std::string& name, const std::string& what = {});
 
-  // The same without a word, for what may not succeed.
+  // The same without a description, for files that may fail to be written.
   std::filesystem::path staged(const std::string& name) const { return staging_ / name; }
 
-  // The bytes of a file that was added or staged; unless it is to be kept, it is then none of the outputs. Empty if
-  // there is no such file.
+  // Returns the bytes of a file that was added or staged, and empty if there is no such file. Unless `keep` is set, the
+  // file is then no longer an output.
   std::string take(const std::string& name, bool keep);
 
   // Where commit() puts it.

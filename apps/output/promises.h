@@ -8,12 +8,12 @@
 #include "orchard/medial/promise.h"
 #include "orchard/spheretree/build.h"
 
-// What a command promises of its results, beside what it made. Everything is written all the same; what is broken is
-// said in the last line, in the report and in the exit code.
+// What a command promises about its results. If a promise is broken, everything is written nevertheless, and the last
+// line, the report and the exit code say so.
 namespace orchard::apps {
 
-// What was promised and is not known to hold, in words with figures, one sentence part each. A promise that could
-// neither be proven nor disproved is among it: an unknown result is no kept promise.
+// Promises that are not known to hold, each as a part of a sentence with numbers. A promise that could neither be
+// proven nor disproved counts as broken.
 struct Broken {
   std::vector<std::string> what;
   std::string remedy;  // what may help; may be empty

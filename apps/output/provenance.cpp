@@ -40,7 +40,7 @@ std::string checksum_of(const fs::path& file) {
   while (in.read(piece.data(), piece.size()), in.gcount() > 0)
     for (std::streamsize i = 0; i < in.gcount(); ++i)
       hash = (hash ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3u;
-  if (in.bad() || !in.eof()) throw InputError(file.string() + ": cannot be read");
+  if (in.bad() || !in.eof()) throw InputError(file.string() + ": the file cannot be read; check its permissions");
   return fmt::format("{:016x}", hash);
 }
 

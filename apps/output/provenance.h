@@ -19,7 +19,7 @@ namespace orchard::apps {
 
 // Version of the keys of reports. It rises when a key is renamed, removed or changes its meaning;
 // docs/reference/reports.schema.json describes this version.
-inline constexpr int kSchemaVersion = 2;
+inline constexpr int kSchemaVersion = 3;
 
 // What the user asked for.
 struct Invocation {

@@ -27,7 +27,7 @@ Sphere parse_sphere(const json& item) {
 
 SphereLists read_json(const std::filesystem::path& file) {
   std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
+  if (!in) throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   SphereLists lists;
   try {
     const json parsed = json::parse(in);
@@ -43,9 +43,9 @@ SphereLists read_json(const std::filesystem::path& file) {
       }
     }
   } catch (const json::exception& error) {
-    throw InputError(file.string() + ": not a list of levels of spheres: " + error.what());
+    throw InputError(file.string() + ": the file is not a list of levels of spheres: " + error.what());
   }
-  if (lists.levels.empty()) throw InputError(file.string() + ": holds no level");
+  if (lists.levels.empty()) throw InputError(file.string() + ": the file has no level");
   lists.carried.resize(lists.levels.size());
   return lists;
 }

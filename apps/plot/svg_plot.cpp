@@ -19,11 +19,12 @@ namespace {
 
 constexpr double kWidth = 420, kHeight = 300, kRight = 20, kTop = 30, kBottom = 44;  // of a plot, in pixels
 constexpr double kLegendRow = 15;
-constexpr double kLetter = 6.2;  // the width of one, about, at the size of all print
-constexpr double kWide = 8;  // the largest value over the smallest, from which on a scale is logarithmic if it may be
+constexpr double kLetter = 6.2;  // the approximate width of a letter, at the size of all print
+// If the largest value is this many times the smallest, a scale becomes logarithmic if that is allowed.
+constexpr double kWide = 8;
 constexpr std::size_t kMaxMarks = 40;  // on a line
 constexpr const char* kColors[] = {"#1f6fb4", "#d9581c", "#2e8b4f", "#8c4fa8", "#b8860b", "#555555", "#c2417c"};
-// Lines differ by more than their colour: not all printers, nor all eyes, tell colours apart.
+// Lines differ by their dashes as well as by colour, for printers and readers that do not distinguish colours.
 constexpr const char* kDashes[] = {"", "7 3", "2 3", "8 3 2 3", "12 4", "4 2", "1 2"};
 constexpr const char* kDashed = "6 4";
 
@@ -127,13 +128,13 @@ void rectangle(std::ostream& out, double x, double y, double width, double heigh
       << "/>\n";
 }
 
-// Where colours begin again, dashes go on to the next.
+// When the colours repeat, the dashes change.
 const char* dashes_of_line(std::size_t line) {
   return kDashes[(line + line / std::size(kColors)) % std::size(kDashes)];
 }
 
-// What tells points of one line from those of another where they lie upon each other, by the coordinates of corners in
-// units of a mark's size; none: a circle.
+// The marks of different lines, as coordinates of corners in units of a mark's size, so that overlapping points can be
+// distinguished; an empty one is a circle.
 constexpr std::array<std::string_view, 6> kMarks{"",
                                                  "-.9,-.9 .9,-.9 .9,.9 -.9,.9",
                                                  "0,-1.25 1.1,.75 -1.1,.75",
@@ -149,7 +150,7 @@ struct Look {
   bool hollow = false;
 };
 
-// On a line, whose other dots keep clear of it.
+// Draws a mark on a line. The line's other dots keep their distance from it.
 void draw_mark(std::ostream& out, double x, double y, const Look& look) {
   const std::string style = std::string("fill=\"") + (look.hollow ? "white" : look.color) + "\" stroke=\"" +
                             (look.hollow ? look.color : "white") + "\"";
@@ -165,8 +166,8 @@ std::string dashes_of(const Look& look) {
   return *look.dashes == 0 ? std::string() : " stroke-dasharray=\"" + std::string(look.dashes) + "\"";
 }
 
-// Above the marks, right of the frame's middle to their left. A label that would lie upon an earlier one of the line is
-// left out.
+// Draws labels above the marks, or to the left of marks in the right half of the frame. A label that would overlap an
+// earlier one of the same line is left out.
 void draw_labels(std::ostream& out, const Series& series, const Axis& x, const Axis& y, const Look& look) {
   const std::string style = std::string("font-size=\"10\" fill=\"") + look.color + "\"";
   double last_x = -1e9, last_y = -1e9;
@@ -225,7 +226,7 @@ void draw_frame(std::ostream& out, const Plot& plot, const Axis& x, const Axis& 
     ticks.resize(plot.x_names.size());
     for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i] = static_cast<double>(i);
   }
-  double written = -1e9;  // up to where there is print below the frame
+  double written = -1e9;  // the right end of the text below the frame
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     line(out, x.place(ticks[i]), kTop, x.place(ticks[i]), bottom, "stroke=\"#e4e4e4\"");
     const std::string name = plot.x_names.empty() ? number(ticks[i]) : plot.x_names[i];
@@ -250,7 +251,7 @@ void draw_frame(std::ostream& out, const Plot& plot, const Axis& x, const Axis& 
   out << "</g>\n";
 }
 
-// Where the last bar ends: it is as wide, as drawn, as the first one.
+// The last bar is drawn as wide as the first one.
 double end_of_bars(const std::vector<double>& x, bool log) {
   const double last = x[x.size() - 1], before = x[x.size() - 2];
   return log ? last * last / before : last + (last - before);

@@ -8,13 +8,13 @@ namespace {
 using nlohmann::json;
 
 // Where a figure is in the report. "LAST" stands for the last item of a list.
-struct Place {
+struct FigurePlace {
   const char* title;
   const char* pointer;
 };
 
-const std::map<std::string, std::vector<Place>>& places() {
-  static const std::map<std::string, std::vector<Place>> all{
+const std::map<std::string, std::vector<FigurePlace>>& places() {
+  static const std::map<std::string, std::vector<FigurePlace>> all{
       {"build",
        {{"triangles of the mesh", "/mesh/triangles"},
         {"spheres of the deepest level", "/levels/LAST/spheres"},
@@ -93,7 +93,7 @@ std::vector<KeyFigure> key_figures(const std::string& kind, const json& report) 
   std::vector<KeyFigure> figures;
   const auto at = places().find(kind);
   if (at == places().end()) return figures;
-  for (const Place& place : at->second) {
+  for (const FigurePlace& place : at->second) {
     json value = sum_of(value_at(report, place.pointer));
     const bool twice = !figures.empty() && figures.back().title == place.title;
     if (!value.is_null() && !twice) figures.push_back({place.title, std::move(value)});

@@ -22,8 +22,9 @@ json parsed(const fs::path& file) {
   try {
     return json::parse(in);
   } catch (const json::parse_error& error) {
-    throw InputError(fmt::format("{}: is no JSON at byte {}; give a report that orchard wrote, or that --json printed",
-                                 file.string(), error.byte));
+    throw InputError(
+        fmt::format("{}: the file is no JSON at byte {}; give a report that orchard wrote, or that --json printed",
+                    file.string(), error.byte));
   }
 }
 
@@ -33,17 +34,16 @@ json read_report(const fs::path& file) {
   try {
     if (!report.is_object() || !report.contains("provenance") || kind_of(report).name.empty())
       throw InputError(file.string() +
-                       ": is no report of orchard: its \"provenance\" names no command that this version knows");
+                       ": this is no report of orchard, since its \"provenance\" names no command of this version");
     const int version = report.value("/provenance/schema_version"_json_pointer, 0);
     if (version != kSchemaVersion)
       throw InputError(
-          fmt::format("{}: has version {} of the keys of reports, and this program reads version {}; run "
+          fmt::format("{}: the report has version {} of the keys, and this program reads version {}; run "
                       "the command again",
                       file.string(), version, kSchemaVersion));
     to_html({{.report = report}});
   } catch (const json::exception&) {
-    throw InputError(file.string() +
-                     ": lacks values that its command writes: it was changed or cut; run the command again");
+    throw InputError(file.string() + ": the report lacks values that its command writes; run the command again");
   }
   return report;
 }
@@ -59,7 +59,8 @@ std::vector<std::string> pictures_beside(const fs::path& file) {
 }  // namespace
 
 void report(const ReportCommand& command) {
-  if (lower_extension(command.page) != ".html") throw InputError(command.page.string() + ": pages are .html files");
+  if (lower_extension(command.page) != ".html")
+    throw InputError(command.page.string() + ": a page needs a name that ends in .html");
   check_output(command.page, command.reports);
   std::vector<ReportPage> pages;
   for (const fs::path& file : command.reports)

@@ -195,6 +195,7 @@ ReportPage page_of(const json& report, const std::string& picture) {
 
 std::string to_html(const std::vector<ReportPage>& pages) {
   std::vector<ShownRun> runs;
+  runs.reserve(pages.size());
   for (const ReportPage& page : pages) runs.push_back(run_of(page));
   const std::string title = runs.size() == 1 ? runs.front().title : fmt::format("{} runs of orchard", runs.size());
   std::string text =

@@ -93,7 +93,7 @@ void add_point(Series& series, double balls, double value) {
 
 std::vector<Plot> axis_plots(const json& report) {
   std::vector<Plot> plots;
-  if (const auto curve = report.find("curve"); curve != report.end()) {
+  if (const auto curve = report.find("error_curve"); curve != report.end()) {
     Plot plot = against_balls("Two-sided distance of surface and envelope");
     for (const auto& [name, key] : {std::pair{"maximum", "hausdorff_max"}, {"mean", "hausdorff_mean"}}) {
       Series series = line_named(name);
@@ -158,7 +158,7 @@ std::vector<Plot> compared_axes_plots(const json& report) {
 }
 
 std::vector<Plot> sphere_set_plots(const json& report) {
-  const auto curve = report.find("curve");
+  const auto curve = report.find("error_curve");
   if (curve == report.end()) return {};
   std::vector<Plot> plots;
   const auto add = [&](const char* title, const char* unit,

@@ -15,12 +15,12 @@ const Schema& nothing_known() {
 }
 
 const Schema& reports_schema() {
-  static const Schema schema = Schema::parse(kReportsSchema);
+  static const Schema schema = Schema::parse(reports_schema_text());
   return schema;
 }
 
 const Schema& leaderboard_schema() {
-  static const Schema schema = Schema::parse(kLeaderboardSchema);
+  static const Schema schema = Schema::parse(leaderboard_schema_text());
   return schema;
 }
 
@@ -55,7 +55,7 @@ std::string name_of_inspected(const json& report) {
 }
 
 std::string name_of(const json& report) {
-  const std::string command = command_of(report);
+  std::string command = command_of(report);
   if (command == "medial") return report.contains("runs") ? "medial_sweep" : "medial";
   if (command == "build") return report.contains("levels") ? "build" : "build_cost";
   if (command == "inspect") return name_of_inspected(report);

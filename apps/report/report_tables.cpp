@@ -18,7 +18,7 @@ constexpr std::size_t kMaxColumns = 8;  // of a list of objects that is shown wi
 constexpr std::size_t kMaxItems = 200;  // of longer lists
 constexpr double kLongestBar = 20;      // letters
 
-// Parts that matter when something is wrong: they are closed at first.
+// Parts of interest only if something is wrong; they are closed at first.
 constexpr std::array kAside{"reading", "repair", "union", "wrap", "gap_repair"};
 
 bool is_list_of_objects(const json& value) {
@@ -76,6 +76,7 @@ std::string in_table(const std::string& rows) { return "<div class=\"wide\"><tab
 
 std::string values_table(const std::vector<ReportRow>& rows) {
   std::vector<ComparedRow> compared;
+  compared.reserve(rows.size());
   for (const ReportRow& row : rows) compared.push_back({row.name, {row.value}, row.words});
   return table_of({"value"}, compared);
 }

@@ -1,9 +1,10 @@
 #pragma once
+#include <string>
 
 // The schemas of reports, which CMake copies into the program from docs/reference.
 namespace orchard::apps {
 
-extern const char* const kReportsSchema;      // reports.schema.json
-extern const char* const kLeaderboardSchema;  // leaderboard.schema.json
+std::string reports_schema_text();      // reports.schema.json
+std::string leaderboard_schema_text();  // leaderboard.schema.json
 
 }  // namespace orchard::apps

@@ -34,7 +34,7 @@ Asset read_asset(const fs::path& file) {
   if (const XMLElement* unit = asset->FirstChildElement("unit"); unit != nullptr && unit->Attribute("meter") != nullptr)
     result.meter = apps::numbers_in(unit->Attribute("meter"), 1, apps::at_line(file, *unit), "meter").front();
   if (!(result.meter > 0) || !std::isfinite(result.meter))
-    throw InputError(apps::at_line(file, *asset) + ": the unit is to be above 0");
+    throw InputError(apps::at_line(file, *asset) + ": the unit must be above 0");
   const XMLElement* up = asset->FirstChildElement("up_axis");
   if (up != nullptr && up->GetText() != nullptr) result.up = up->GetText()[0];
   return result;
@@ -56,9 +56,9 @@ TriangleMesh read_dae(const fs::path& file, const DaeOptions& options) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
-    throw InputError(file.string() + ": cannot be read: " + importer.GetErrorString());
+    throw InputError(file.string() + ": the file cannot be read: " + importer.GetErrorString());
   TriangleMesh mesh = apps::triangles_of(*scene);
-  if (mesh.triangles.empty()) throw InputError(file.string() + ": its scene has no triangle");
+  if (mesh.triangles.empty()) throw InputError(file.string() + ": the scene of the file has no triangle");
   // Assimp has applied the unit.
   const double scale = options.units ? 1 : 1 / asset.meter;
   const Eigen::Matrix3d turn = options.up ? upright(asset.up) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());

@@ -54,7 +54,7 @@ MeshFrame frame_of(const SphereModel& model, const Link& link, const Element& el
   const Vector size = element.scale.cwiseAbs();
   if (size.maxCoeff() - size.minCoeff() > 1e-12 * size.maxCoeff())
     throw InputError(
-        fmt::format("{}, line {}: link {}: in the frame of an unevenly scaled mesh spheres would be none; "
+        fmt::format("{}, line {}: link {}: in the frame of an unevenly scaled mesh spheres would not be round; "
                     "leave morphit out of --export",
                     model.robot->file.string(), element.line, link.name));
   return {element.origin.inverse(), element.scale, size.x()};

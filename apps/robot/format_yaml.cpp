@@ -149,6 +149,7 @@ Files write_xrdf(const SphereModel& model, const FormatOptions& options) {
   const std::string geometry = options.prefix + "_collision_spheres";
   const std::vector<RestingJoint> joints = resting_joints(model, options);
   std::vector<std::string> names;
+  names.reserve(joints.size());
   for (const RestingJoint& joint : joints) names.push_back(joint.name);
   Yaml yaml(comments(model, "# "));
   yaml.begin().key("format").raw("xrdf").key("format_version").raw("1.0");

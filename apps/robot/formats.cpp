@@ -45,7 +45,7 @@ std::pair<Motion, double> frame_of(const apps::SphereGroup& group, const Link& l
   if (group.frame == apps::SphereFrame::element) return {element.origin, 1};
   const Vector size = element.scale.cwiseAbs();
   if (size.maxCoeff() - size.minCoeff() > 1e-12 * size.maxCoeff())
-    throw InputError(fmt::format("{}: link {}: the mesh is scaled unevenly, and its spheres would be none",
+    throw InputError(fmt::format("{}: link {}: the mesh is scaled unevenly, so its spheres would not be round",
                                  file.string(), link.name));
   return {element.origin, size.x()};
 }

@@ -55,7 +55,7 @@ JointValues joint_values(const Robot& robot, const std::map<std::string, double>
   if (left.empty()) return joint_values(robot, free);
   std::vector<std::string> names;
   for (const Index index : robot.free_joints()) names.push_back(robot.joints[index].name);
-  throw InputError(fmt::format("{}: no joint {} moves by itself; these do: {}", robot.file.string(),
+  throw InputError(fmt::format("{}: there is no free joint {}; the free joints are {}", robot.file.string(),
                                left.begin()->first, fmt::join(names, ", ")));
 }
 

@@ -17,18 +17,18 @@ namespace {
 constexpr double kDigits = 1e7;  // of metres: a tenth of a micrometre
 constexpr int kMaxGrowths = 3;
 
-// At the end, means to about a percent: with few large spheres they take longest of all.
+// The final measurement is accurate to about one per cent. With few large spheres it takes longest of all steps.
 const SphereAuditOptions kFinalAudit{.surface_samples = 4000, .sphere_samples = 8000};
 
 double to_digits(double value) { return std::round(value * kDigits) / kDigits; }
 
-// GCC 12 leaves both conversions out where it makes them for two coordinates at once; volatile keeps them.
+// GCC 12 omits both conversions if it makes them for two coordinates at once; volatile prevents that.
 double as_float(double value) {
   const volatile float held = static_cast<float>(value);
   return static_cast<double>(held);
 }
 
-// As its reader in float holds it.
+// Returns the sphere as a program that reads floats sees it.
 Sphere in_floats(const Sphere& sphere) {
   return {Point(as_float(sphere.center.x()), as_float(sphere.center.y()), as_float(sphere.center.z())),
           as_float(sphere.radius)};
@@ -39,7 +39,7 @@ std::vector<Sphere> in_floats(std::vector<Sphere> spheres) {
   return spheres;
 }
 
-// Whether `outer` contains `inner`, with room for the roundings of saying so.
+// Whether `outer` contains `inner`, with a margin for rounding errors of this test.
 bool contains(const Sphere& outer, const Sphere& inner) {
   const double scale = outer.center.cwiseAbs().maxCoeff() + outer.radius;
   return (outer.center - inner.center).norm() + inner.radius + 0x1p-48 * scale <= outer.radius;
@@ -121,7 +121,7 @@ Sphere rounded(const Sphere& sphere, bool outward) {
     return outward ? contains(result, sphere) && contains(held, sphere)
                    : contains(sphere, result) && contains(sphere, held);
   };
-  // A digit more or less each time; where floats are coarser than the digits, twice as many.
+  // The step doubles in each round, since floats may be coarser than the digits.
   for (double step = 1 / kDigits; !right(); step *= 2) {
     result.radius = to_digits(result.radius + (outward ? step : -step));
     if (result.radius <= 0 && !outward) return {result.center, 0};

@@ -66,7 +66,7 @@ void mend(const ShapeOptions& options, TriangleMesh& mesh, Parts& shape, const s
   TriangleMesh repaired = mesh;
   const MeshRepairReport report = repair_mesh(repaired, repair);
   if (report.solid) {
-    for (const std::string& line : report.lines()) shape.notes.push_back(name + ": " + line);
+    for (const std::string& line : report.lines()) shape.notes.push_back(fmt::format("{}: {}", name, line));
     shape.repaired = shape.repaired || report.changed();
     mesh = std::move(repaired);
     return;

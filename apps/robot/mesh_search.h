@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-// Where the mesh files of a robot are, without ROS.
+// Finds the mesh files of a robot without ROS.
 namespace orchard::robot {
 
 struct FoundMesh {
   std::filesystem::path file;                // empty: there is none
   std::vector<std::filesystem::path> tried;  // without those that are there
-  std::string note;                          // where the name had to be read otherwise than it stands; else empty
+  std::string note;  // how the name had to be interpreted, if it differs from what the URDF says; otherwise empty
 };
 
 // Looks for a mesh by its name in a URDF:

@@ -25,9 +25,10 @@ struct Body {
 
 runtime::Pose pose_of(const Motion& motion) {
   runtime::Pose pose;
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] = motion.linear()(row, column);
-    pose.translation[row] = motion.translation()[row];
+    for (int column = 0; column < 3; ++column) pose.rotation[at(3 * row + column)] = motion.linear()(row, column);
+    pose.translation[at(row)] = motion.translation()[row];
   }
   // Products of many rotations drift from one.
   if (const auto rigid = runtime::made_rigid(pose)) return *rigid;
@@ -88,7 +89,7 @@ class Sampler {
     return false;
   }
 
-  // "Maybe" counts as touching.
+  // The answer "maybe" counts as touching.
   bool solids_meet(runtime::Workspace& workspace, std::size_t a, std::size_t b,
                    const std::vector<runtime::Pose>& poses) const {
     const Body &one = bodies_[a], &other = bodies_[b];

@@ -63,7 +63,7 @@ Joint read_joint(const XMLElement& element, Robot& robot) {
   joint.name = required(element, "name", robot.file);
   joint.line = element.GetLineNum();
   if (robot.find_joint(joint.name))
-    throw InputError(fmt::format("{}: there is a joint {} already", at_line(robot.file, element), joint.name));
+    throw InputError(fmt::format("{}: there is already a joint {}", at_line(robot.file, element), joint.name));
   joint.kind = kind_of(element, robot);
   joint.parent = link_of(element, "parent", robot);
   joint.child = link_of(element, "child", robot);
@@ -71,7 +71,7 @@ Joint read_joint(const XMLElement& element, Robot& robot) {
   if (const XMLElement* axis = element.FirstChildElement("axis"); axis != nullptr) {
     joint.axis = vector(*axis, "xyz", Vector::UnitX(), robot.file);
     if (joint.axis.norm() == 0 && joint.moves())
-      throw InputError(at_line(robot.file, *axis) + ": the axis has no length");
+      throw InputError(at_line(robot.file, *axis) + ": the axis has length 0");
     if (joint.moves()) joint.axis.normalize();
   }
   read_limits(element, joint, robot);
@@ -96,7 +96,7 @@ void read_mimics(const std::vector<const XMLElement*>& elements, Robot& robot) {
     const Joint* at = &joint;
     for (std::size_t steps = 0; at->mimic; ++steps, at = &robot.joints[at->mimic->joint])
       if (steps > robot.joints.size())
-        throw InputError(fmt::format("{}, line {}: joint {} mimics itself by way of others", robot.file.string(),
+        throw InputError(fmt::format("{}, line {}: joint {} mimics itself through others", robot.file.string(),
                                      joint.line, joint.name));
   }
 }

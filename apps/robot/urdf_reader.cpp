@@ -32,7 +32,7 @@ class Reader {
     if (const char* name = root.Attribute("name"); name != nullptr) robot_.name = name;
     note_unknown(root, {"link", "joint", "material", "transmission", "gazebo"});
     for (const XMLElement* link : children_of(root, "link")) add_link(*link);
-    if (robot_.links.empty()) throw InputError(file_.string() + ": has no link");
+    if (robot_.links.empty()) throw InputError(file_.string() + ": the file has no link");
     read_joints(root, robot_);
     require_meshes();
     add_notes();
@@ -41,11 +41,12 @@ class Reader {
 
  private:
   [[noreturn]] void refuse_xacro() const {
-    throw InputError(fmt::format("{}: is xacro, which makes URDF; expand it first: xacro {} > {}", file_.string(),
-                                 file_.string(), fs::path(file_.stem()).replace_extension(".urdf").string()));
+    throw InputError(fmt::format("{}: this is xacro, from which a URDF is made; expand it first: xacro {} > {}",
+                                 file_.string(), file_.string(),
+                                 fs::path(file_.stem()).replace_extension(".urdf").string()));
   }
 
-  // Counted, so that what is there often is one line.
+  // Equal messages are counted, so that each is printed once.
   void note_unknown(const XMLElement& parent, const std::set<std::string>& known) {
     for (const XMLElement* child = parent.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
       const std::string name = child->Name();
@@ -61,7 +62,7 @@ class Reader {
     link.name = required(element, "name", file_);
     link.line = element.GetLineNum();
     if (robot_.find_link(link.name))
-      throw InputError(fmt::format("{}: there is a link {} already", at_line(file_, element), link.name));
+      throw InputError(fmt::format("{}: there is already a link {}", at_line(file_, element), link.name));
     note_unknown(element, {"inertial", "visual", "collision", "contact", "sensor", "self_collision_checking"});
     for (const XMLElement* one : children_of(element, "collision")) add_element(*one, Geometry::collision, link);
     for (const XMLElement* one : children_of(element, "visual")) add_element(*one, Geometry::visual, link);
@@ -73,9 +74,10 @@ class Reader {
   void add_element(const XMLElement& element, Geometry kind, Link& link) {
     note_unknown(element, {"origin", "geometry", "material", "verbose"});
     const XMLElement* geometry = element.FirstChildElement("geometry");
-    if (geometry == nullptr) throw InputError(at_line(file_, element) + ": has no <geometry>");
+    if (geometry == nullptr) throw InputError(at_line(file_, element) + ": the element has no <geometry>");
     const XMLElement* shape = geometry->FirstChildElement();
-    if (shape == nullptr) throw InputError(at_line(file_, *geometry) + ": is empty; give it a mesh or a shape");
+    if (shape == nullptr)
+      throw InputError(at_line(file_, *geometry) + ": the element is empty; give it a mesh or a shape");
     Element read;
     read.line = shape->GetLineNum();
     read.origin = read_origin(element, file_);
@@ -127,7 +129,7 @@ class Reader {
     read.scale = one ? Vector::Constant(scale[0]).eval() : Vector(scale[0], scale[1], scale[2]);
     if (one) note_once(mesh, "a scale of one number is no part of the URDF standard: it counts along all axes");
     if (!read.scale.allFinite() || (read.scale.array() == 0).any())
-      throw InputError(at_line(file_, mesh) + ": scale is to be finite numbers other than 0");
+      throw InputError(at_line(file_, mesh) + ": scale must consist of finite numbers other than 0");
   }
 
   std::string in_words(const XMLElement& mesh, const Element& read, const FoundMesh& found) const {
@@ -148,7 +150,7 @@ class Reader {
   void require_meshes() const {
     if (missing_.empty()) return;
     throw InputError(fmt::format(
-        "{}: {} not there: {}; --package-path says where the packages of package:// are", file_.string(),
+        "{}: {} missing: {}; give --package-path for the packages of package://", file_.string(),
         missing_.size() == 1 ? "a mesh is" : fmt::format("{} meshes are", missing_.size()), fmt::join(missing_, "; ")));
   }
 

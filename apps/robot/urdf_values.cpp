@@ -31,7 +31,7 @@ double number(const XMLElement& element, const char* name, double standard, cons
 double positive(const XMLElement& element, const char* name, const fs::path& file) {
   required(element, name, file);
   const double value = number(element, name, 0, file);
-  if (!(value > 0)) throw InputError(fmt::format("{}: {} is to be above 0", at_line(file, element), name));
+  if (!(value > 0)) throw InputError(fmt::format("{}: {} must be above 0", at_line(file, element), name));
   return value;
 }
 
@@ -46,9 +46,9 @@ Vector vector(const XMLElement& element, const char* name, const Vector& standar
 
 Vector positive_vector(const XMLElement& element, const char* name, const fs::path& file) {
   required(element, name, file);
-  const Vector value = vector(element, name, Vector::Zero(), file);
+  Vector value = vector(element, name, Vector::Zero(), file);
   if (!(value.array() > 0).all())
-    throw InputError(fmt::format("{}: {} is to be three numbers above 0", at_line(file, element), name));
+    throw InputError(fmt::format("{}: {} must be three numbers above 0", at_line(file, element), name));
   return value;
 }
 
@@ -73,7 +73,7 @@ Inertial read_inertial(const XMLElement& element, const fs::path& file) {
   if (mass == nullptr) throw InputError(at_line(file, element) + ": <inertial> has no <mass>");
   required(*mass, "value", file);
   inertial.mass = number(*mass, "value", 0, file);
-  if (inertial.mass < 0) throw InputError(at_line(file, *mass) + ": a mass is below 0");
+  if (inertial.mass < 0) throw InputError(at_line(file, *mass) + ": the mass is below 0");
   const Motion origin = read_origin(element, file);
   inertial.center = origin.translation();
   const XMLElement* inertia = element.FirstChildElement("inertia");

@@ -166,7 +166,7 @@ std::string in_words(const json& value) {
   if (!value.is_array()) return value.dump();
   std::string text;
   for (const json& item : value) text += (text.empty() ? "" : ", ") + in_words(item);
-  return value.size() > 0 && value[0].is_array() ? text : "(" + text + ")";
+  return !value.empty() && value[0].is_array() ? text : "(" + text + ")";
 }
 
 void print_inspected(const std::filesystem::path& file, const std::string& unit, const json& report) {

@@ -76,8 +76,7 @@ Figure figure_of(const ViewCommand& command) {
     figure.clip =
         numbers_of<4>("--clip", command.clip, "four numbers A,B,C,D, such as 1,0,0,0.5 for what is right of x = 0.5");
     const auto& [a, b, c, d] = *figure.clip;
-    if (a == 0 && b == 0 && c == 0)
-      throw InputError("--clip " + command.clip + ": A, B and C are all 0, which is no plane");
+    if (a == 0 && b == 0 && c == 0) throw InputError("--clip " + command.clip + ": A, B and C must not all be 0");
   }
   return figure;
 }
@@ -100,15 +99,16 @@ PipelinePicture picture_of(const ViewCommand& command) {
     const auto [azimuth, elevation] =
         two_numbers("--camera", command.camera, ',', "two angles in degrees, to the right and up, such as 35,20");
     if (std::abs(azimuth) > 360 || std::abs(elevation) > 80)
-      throw InputError("--camera " + command.camera + ": the first angle is -360 to 360, the second one -80 to 80");
+      throw InputError("--camera " + command.camera +
+                       ": the first angle must be from -360 to 360, and the second one from -80 to 80");
     picture.azimuth = azimuth * std::numbers::pi / 180;
     picture.elevation = elevation * std::numbers::pi / 180;
   }
   if (!command.size.empty()) {
     const auto [width, height] = two_numbers("--size", command.size, 'x', "pixels, such as 1200x800");
     if (std::min(width, height) < kMinPixels || std::max(width, height) > kMaxPixels)
-      throw InputError(
-          fmt::format("--size {}: width and height are {} to {} pixels", command.size, kMinPixels, kMaxPixels));
+      throw InputError(fmt::format("--size {}: width and height must be from {} to {} pixels", command.size, kMinPixels,
+                                   kMaxPixels));
     picture.width = static_cast<int>(width);
     picture.height = static_cast<int>(height);
   }
@@ -123,7 +123,7 @@ void check_levels(const Scene& scene) {
   for (const auto& tree : scene.trees) depth = std::max(depth, tree.value.depth());
   for (const Index level : scene.levels)
     if (level > depth)
-      throw InputError(fmt::format("--level {}: the deepest level there is is {}; the root is 0", level, depth));
+      throw InputError(fmt::format("--level {}: the deepest level is {}, and the root is 0", level, depth));
 }
 
 void check_color(const Scene& scene) {
@@ -186,7 +186,7 @@ void check_view(const ViewCommand& command) {
   if (command.window) check_window(command);
   if (!is_of_lines(command)) return;
   if (!command.color.empty())
-    throw InputError("view: --color colours surfaces, and " + command.picture.string() +
+    throw InputError("view: --color colours surfaces, but " + command.picture.string() +
                      " is a picture of lines; name a .png file");
   if (command.picture.extension() != ending)
     throw InputError(command.picture.string() + ": write the ending in small letters, " + ending);
@@ -195,9 +195,9 @@ void check_view(const ViewCommand& command) {
 // Cut spheres are no outlines of spheres, and polyhedra in a heap no lines that one could read.
 void check_lines(const ViewCommand& command, const Scene& scene) {
   if (!is_of_lines(command)) return;
-  if (!scene.diagrams.empty()) throw InputError("view: a picture of lines shows no Voronoi diagram; name a .png file");
+  if (!scene.diagrams.empty()) throw InputError("view: a line drawing cannot show a Voronoi diagram; name a .png file");
   if (!command.clip.empty() && (!scene.trees.empty() || command.balls))
-    throw InputError("view: --clip cuts no spheres in a picture of lines; name a .png file");
+    throw InputError("view: --clip cannot cut spheres in a line drawing; name a .png file");
 }
 
 SeriesList read_all_series(const ViewCommand& command) {

@@ -58,8 +58,9 @@ std::vector<TimeStep> read_series(const fs::path& pvd) {
     steps[time].time = time;
     steps[time].files.push_back(file);
   }
-  if (steps.empty()) throw InputError(pvd.string() + ": there is no time step in it");
+  if (steps.empty()) throw InputError(pvd.string() + ": the series has no time step");
   std::vector<TimeStep> series;
+  series.reserve(steps.size());
   for (auto& [time, step] : steps) series.push_back(std::move(step));
   return series;
 }

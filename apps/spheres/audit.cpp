@@ -27,7 +27,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// One set beside the mesh: as it is in the file, or with the buffer that a planner adds to its radii.
+// One set next to the mesh: as it is in the file, or with the buffer that a planner adds to its radii.
 struct Audited {
   double buffer = 0;
   std::vector<Sphere> spheres;
@@ -36,7 +36,7 @@ struct Audited {
   std::optional<ParticleFigures> particles;  // where the file has masses, without a buffer
 };
 
-// A radius that a negative buffer takes away is one that is switched off.
+// A sphere whose radius a negative buffer reduces to 0 or less counts as switched off.
 Audited with_buffer(const SphereGroup& group, double buffer) {
   Audited set{.buffer = buffer, .spheres = {}, .switched_off = group.switched_off, .audit = {}, .particles = {}};
   for (Sphere sphere : group.spheres) {
@@ -55,7 +55,7 @@ void measure_masses(const SphereGroup& group, Audited& set) {
   set.particles = particle_figures(set.spheres, group.masses, set.audit.beside_solid->volume.of_solid, {});
 }
 
-// What there is to write to the folder.
+// The files to write to the folder.
 struct Plan {
   std::optional<Destination> destination;
   Provenance provenance;

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// Sets whose box is smaller than this part of the mesh's, or larger by as much, are in another unit.
+// If the box of a set is this many times smaller or larger than the mesh's, the set is in another unit.
 constexpr double kOtherUnit = 0.05;
 
 double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }

@@ -34,11 +34,12 @@ std::string bytes_of(const runtime::PackedSphereTree& packed) {
 std::vector<std::string> set_file_names(const SpheresCommand& command) {
   std::vector<std::string> endings = sphere_view_endings("-set");
   for (const char* ending : {"-set.txt", "-set.csv", "-set.npz", "-set-spheres.json", "-set.yml", "-set.urdf",
-                             kTreeEnding, "-set.png", "-set-curve.csv", "-set-curve.svg"})
+                             kTreeEnding, "-set.png", "-set-error-curve.csv", "-set-error-curve.svg"})
     endings.emplace_back(ending);
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   endings.emplace_back(kClippedEnding);
   std::vector<std::string> names;
+  names.reserve(endings.size() + 1);
   for (const std::string& ending : endings) names.push_back(named(command.mesh, ending));
   names.push_back(page_name(command.mesh, "spheres"));
   return names;

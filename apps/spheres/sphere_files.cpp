@@ -19,7 +19,7 @@ SphereFile read_ply(const fs::path& file) {
   const PlyTables ply(file);
   const PlyTables::Table* vertices = ply.find("vertex");
   if (vertices == nullptr)
-    throw InputError(file.string() + ": has no element vertex; write one with x, y, z and radius");
+    throw InputError(file.string() + ": the file has no element vertex; write one with x, y, z and radius");
   const auto column = [&](std::initializer_list<const char*> names) -> const PlyTables::Column& {
     for (const char* name : names)
       if (const PlyTables::Column* found = vertices->find(name); found != nullptr && !found->list) return *found;
@@ -55,7 +55,8 @@ SphereFile read_by_ending(const fs::path& file) {
   if (ending == ".sph" || ending == ".orchard") return read_tree(file);
   if (ending == ".txt" || ending == ".csv" || ending == ".xyz") return read_text_spheres(file);
   throw InputError(file.string() +
-                   ": spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .urdf, .srdf, .xml, .mol, "
+                   ": the format is unknown; spheres are read from .txt, .csv, .xyz, .json, .yml, .yaml, .xrdf, .urdf, "
+                   ".srdf, .xml, .mol, "
                    ".py, .ply, .sph and .orchard; name it so");
 }
 
@@ -73,14 +74,14 @@ SphereFile read_folder(const fs::path& folder) {
     if (digits.empty() || digits.size() > 4 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
     SphereFile one = read_json_spheres(file);
     if (one.groups.size() != 1 || !one.groups.front().name.empty())
-      throw InputError(file.string() + ": is to hold the spheres of one mesh, as centers and radii");
+      throw InputError(file.string() + ": the file must have the spheres of one mesh, as centers and radii");
     SphereGroup& group = result.groups.emplace_back(std::move(one.groups.front()));
     group.name = stem.substr(0, bar);
     group.frame = SphereFrame::mesh;
     group.element = static_cast<Index>(std::stoul(digits));
   }
   if (result.groups.empty())
-    throw InputError(folder.string() + ": is a folder without files LINK_K.json, as MorphIt writes them");
+    throw InputError(folder.string() + ": the folder has no files LINK_K.json, as MorphIt writes them");
   return result;
 }
 
@@ -100,7 +101,7 @@ SphereFile read_sphere_file(const fs::path& file) {
   SphereFile spheres = fs::is_directory(file) ? read_folder(file) : read_by_ending(file);
   std::erase_if(spheres.groups,
                 [](const SphereGroup& group) { return group.spheres.empty() && group.switched_off == 0; });
-  if (spheres.groups.empty()) throw InputError(file.string() + ": holds no sphere");
+  if (spheres.groups.empty()) throw InputError(file.string() + ": the file has no sphere");
   return spheres;
 }
 
@@ -111,7 +112,8 @@ const SphereGroup& group_named(const SphereFile& spheres, const fs::path& file, 
     names.push_back(group.name);
   }
   if (name.empty() && spheres.groups.size() == 1) return spheres.groups.front();
-  if (names == std::vector<std::string>{""}) throw InputError(file.string() + ": names no links; leave out --link");
+  if (names == std::vector<std::string>{""})
+    throw InputError(file.string() + ": the file names no links; leave out --link");
   const std::string fault = name.empty() ? "holds several links; choose one by --link" : "has no link " + name;
   throw InputError(fmt::format("{}: {}: {}", file.string(), fault, fmt::join(names, ", ")));
 }

@@ -27,7 +27,7 @@ Point point_of(const json& center, const std::string& where) {
 
 void add_list(SphereGroup& group, const json& list, const std::string& where) {
   for (const json& item : list) {
-    if (!is_sphere(item)) throw InputError(where + ": an item is neither [x, y, z, r] nor has a radius");
+    if (!is_sphere(item)) throw InputError(where + ": an item is not [x, y, z, r] and has no radius");
     if (item.is_array()) {
       add_sphere(group, Point(item[0].get<double>(), item[1].get<double>(), item[2].get<double>()),
                  item[3].get<double>(), where);
@@ -61,7 +61,7 @@ void add_any(SphereGroup& group, const json& value, const std::string& where) {
   if (has_centers(value)) return add_columns(group, value, where);
   if (value.is_object() && value.contains("spheres")) return add_any(group, value.at("spheres"), where);
   if (value.is_object() && value.contains("levels")) return add_any(group, value.at("levels"), where);
-  if (!value.is_array()) throw InputError(where + ": is no list of spheres");
+  if (!value.is_array()) throw InputError(where + ": this is no list of spheres");
   if (value.empty()) return;
   if (is_sphere(value.front())) return add_list(group, value, where);
   for (auto level = value.rbegin(); level != value.rend(); ++level) {
@@ -86,7 +86,7 @@ SphereFile spheres_of(const json& root, const std::string& file) {
   for (const auto& [link, value] : root.items()) {
     SphereGroup& group = result.groups.emplace_back();
     group.name = link;
-    add_any(group, value, file + ": link " + link);
+    add_any(group, value, fmt::format("{}: link {}", file, link));
   }
   return result;
 }
@@ -101,10 +101,10 @@ SphereFile read_json_spheres(const std::filesystem::path& file) {
     return spheres_of(root, file.string());
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    throw InputError(fmt::format("{}, line {}: is no JSON; correct it or export it again", file.string(),
+    throw InputError(fmt::format("{}, line {}: the file is no JSON; correct it or export it again", file.string(),
                                  1 + std::count(text.begin(), end, '\n')));
   } catch (const json::exception&) {
-    throw InputError(file.string() + ": something that must be a number is none; lists of spheres have numbers alone");
+    throw InputError(file.string() + ": a value that must be a number is none");
   }
 }
 

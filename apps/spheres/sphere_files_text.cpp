@@ -64,7 +64,7 @@ SphereFile read_links(const fs::path& file, const std::string& text) {
     for (double& value : values) {
       const auto [next, error] = std::from_chars(at, line.data() + line.size(), value);
       if (error != std::errc() || next == line.data() + line.size() || *next != ',')
-        throw InputError(where + ": is to be x,y,z,r and a link's name");
+        throw InputError(where + ": the line must be x,y,z,r and the name of a link");
       at = next + 1;
     }
     const std::string link = link_in(line);
@@ -137,10 +137,11 @@ SphereFile read_lammps_spheres(const fs::path& file) {
       if (section.name == name) {
         for (const auto& row : section.rows)
           if (row.size() != width)
-            throw InputError(fmt::format("{}: section {}: a line is to have {} numbers", file.string(), name, width));
+            throw InputError(fmt::format("{}: section {}: a line must have {} numbers", file.string(), name, width));
         return section.rows;
       }
-    throw InputError(fmt::format("{}: is no molecule of spheres: it has no section {}", file.string(), name));
+    throw InputError(
+        fmt::format("{}: the file is no molecule of spheres, since it has no section {}", file.string(), name));
   };
   const auto &centers = rows_of("Coords", 4), &diameters = rows_of("Diameters", 2);
   if (centers.size() != diameters.size()) throw InputError(file.string() + ": there must be a diameter for each atom");
@@ -163,7 +164,7 @@ SphereFile read_yade_spheres(const fs::path& file) {
     for (double& value : values) {
       at = std::min(text.find_first_not_of(" \t\n,)", at), text.size());
       const auto [next, error] = std::from_chars(text.data() + at, text.data() + text.size(), value);
-      if (error != std::errc()) throw InputError(where + ": is to be sphere((x, y, z), r) with numbers alone");
+      if (error != std::errc()) throw InputError(where + ": the call must be sphere((x, y, z), r) with numbers only");
       at = static_cast<std::size_t>(next - text.data());
     }
     add_sphere(group, Point(values[0], values[1], values[2]), values[3], where);

@@ -76,7 +76,7 @@ SphereFile read_curobo(const YAML::Node& root, const fs::path& file) {
   SphereFile result{"cuRobo's YAML", {}};
   if (!spheres)
     throw InputError(file.string() +
-                     ": has neither collision_spheres, as cuRobo's files have, nor geometry, as XRDF has");
+                     ": the file has neither collision_spheres, as in cuRobo's files, nor geometry, as in XRDF");
   if (spheres.IsScalar())
     throw InputError(fmt::format("{}: its spheres are in another file, {}; audit that one",
                                  at_line(file, spheres.Mark()), spheres.Scalar()));
@@ -89,12 +89,13 @@ SphereFile read_curobo(const YAML::Node& root, const fs::path& file) {
 SphereFile read_yaml_spheres(const fs::path& file) {
   try {
     const YAML::Node root = YAML::LoadFile(file.string());
-    if (!root.IsMap()) throw InputError(file.string() + ": is no robot of cuRobo or Isaac: it holds no names");
+    if (!root.IsMap())
+      throw InputError(file.string() + ": the file is no robot of cuRobo or Isaac, since it has no keys");
     return root["geometry"] && root["geometry"].IsMap() ? read_xrdf(root, file) : read_curobo(root, file);
   } catch (const YAML::BadFile&) {
-    throw InputError(file.string() + ": cannot be opened");
+    throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}: is no YAML: {}", at_line(file, error.mark), error.msg));
+    throw InputError(fmt::format("{}: the file is no YAML: {}", at_line(file, error.mark), error.msg));
   }
 }
 

@@ -81,20 +81,20 @@ void write_tree(const SpheresCommand& command, const Surface& surface, const Sph
     write_union_tree(command, set.spheres, outputs);
 }
 
-void write_curve(const SpheresCommand& command, const Surface& surface, const std::vector<SphereSetBuild>& sets,
-                 Outputs& outputs) {
-  if (command.curve.empty()) return;
+void write_error_curve(const SpheresCommand& command, const Surface& surface, const std::vector<SphereSetBuild>& sets,
+                       Outputs& outputs) {
+  if (command.error_curve.empty()) return;
   const double diagonal = surface.bounding_box().diagonal().norm();
-  write_file(outputs.add(named(command.mesh, "-set-curve.csv"), "number of spheres and errors"),
-             curve_csv(sets, diagonal));
-  write_file(outputs.add(named(command.mesh, "-set-curve.svg"), "the same as a plot"),
-             plot::to_svg(curve_plots(sets, diagonal, command.mesh.stem().string()), 2));
+  write_file(outputs.add(named(command.mesh, "-set-error-curve.csv"), "number of spheres and errors"),
+             error_curve_csv(sets, diagonal));
+  write_file(outputs.add(named(command.mesh, "-set-error-curve.svg"), "the same as a plot"),
+             plot::to_svg(error_curve_plots(sets, diagonal, command.mesh.stem().string()), 2));
 }
 
-// The set itself, and those of the curve in the order of their numbers.
+// The set itself, and those of the error curve in the order of their numbers.
 std::vector<SphereSetBuild> build_sets(const SpheresCommand& command, const Surface& surface,
                                        const SphereSetOptions& options, const Progress& progress, std::size_t& chosen) {
-  std::vector<Index> numbers = command.curve;
+  std::vector<Index> numbers = command.error_curve;
   numbers.push_back(options.spheres);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -135,12 +135,12 @@ void check_options(const SpheresCommand& command) {
   require_usable(options);
   for (const char* option : {"overlap", "equal", "density", "density-of", "masses", "center-error", "inertia-error"})
     if (options.fit != SphereFit::particles && among(option, command.given))
-      throw InputError(fmt::format("--{} belongs to --fit particles", option));
+      throw InputError(fmt::format("--{} has no effect without --fit particles", option));
   if (!command.vertex_weights.empty() && !command.clip.empty())
     throw InputError("--vertex-weights has no effect with --clip, which changes the vertices: give --weight");
   const bool by_error = options.error > 0 || options.volume_error > 0;
-  if (by_error && !command.curve.empty())
-    throw InputError("--curve has no effect with --error or --volume-error, which choose the number of spheres");
+  if (by_error && !command.error_curve.empty())
+    throw InputError("--error-curve has no effect with --error or --volume-error, which choose the number of spheres");
 }
 
 ExitCode spheres(const SpheresCommand& command) {
@@ -163,7 +163,7 @@ ExitCode spheres(const SpheresCommand& command) {
   const double diagonal = surface.bounding_box().diagonal().norm();
   const Broken broken = apps::broken(options, set, diagonal);
   json report = report_of(command, solid, options, set, broken);
-  if (!command.curve.empty()) report["curve"] = curve_json(sets, diagonal);
+  if (!command.error_curve.empty()) report["error_curve"] = error_curve_json(sets, diagonal);
 
   Outputs outputs(destination);
   const std::string promise = broken.none()
@@ -175,7 +175,7 @@ ExitCode spheres(const SpheresCommand& command) {
              .particles = set.particles ? &*set.particles : nullptr},
             outputs);
   write_tree(command, surface, set, outputs);
-  write_curve(command, surface, sets, outputs);
+  write_error_curve(command, surface, sets, outputs);
   if (command.views) write_sphere_views(command.mesh, "-set", surface, set.spheres, outputs);
   const std::string picture = named(command.mesh, "-set.png");
   if (command.picture || command.report)

@@ -14,13 +14,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// All that spheres which are there already leave without effect is refused.
+// Refuses all options that have no effect on spheres that exist already.
 void refuse_idle(const SpheresCommand& command) {
   constexpr std::array kOf{"output", "export", "link", "tree", "force", "quiet", "json", "threads", "no-views"};
   for (const std::string& option : command.given)
     if (std::find(kOf.begin(), kOf.end(), option) == kOf.end())
-      throw InputError(fmt::format("{}: --{} has no effect on a file that holds spheres: it belongs to meshes",
-                                   command.mesh.string(), option));
+      throw InputError(
+          fmt::format("{}: --{} has no effect on a file of spheres; it is for meshes", command.mesh.string(), option));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// What a curve has of each set.
+// What an error curve has of each set.
 struct CurveRow {
   double protrusion_max, protrusion_mean, gap_max, two_sided;  // percent of the diagonal
   double outside, uncovered, volume;                           // percent of the solid's volume
@@ -137,7 +137,7 @@ std::string set_as_urdf(std::span<const Sphere> spheres, const std::string& link
   return text.insert(text.find("    <collision>"), inertial);
 }
 
-json curve_json(std::span<const SphereSetBuild> sets, double diagonal) {
+json error_curve_json(std::span<const SphereSetBuild> sets, double diagonal) {
   json rows = json::array();
   for (const SphereSetBuild& set : sets) {
     const CurveRow row = row_of(set, diagonal);
@@ -154,7 +154,7 @@ json curve_json(std::span<const SphereSetBuild> sets, double diagonal) {
   return rows;
 }
 
-std::string curve_csv(std::span<const SphereSetBuild> sets, double diagonal) {
+std::string error_curve_csv(std::span<const SphereSetBuild> sets, double diagonal) {
   std::string text =
       "spheres,kept,protrusion_max,protrusion_mean,gap_max,two_sided_mean,outside_volume,uncovered_volume,union_"
       "volume\n";
@@ -167,7 +167,8 @@ std::string curve_csv(std::span<const SphereSetBuild> sets, double diagonal) {
   return text;
 }
 
-std::vector<plot::Plot> curve_plots(std::span<const SphereSetBuild> sets, double diagonal, const std::string& title) {
+std::vector<plot::Plot> error_curve_plots(std::span<const SphereSetBuild> sets, double diagonal,
+                                          const std::string& title) {
   std::vector<plot::Plot> plots;
   const auto add = [&](const std::string& what, const std::string& unit) -> plot::Plot& {
     plot::Plot& plot = plots.emplace_back();

@@ -29,8 +29,9 @@ std::string set_as_urdf(std::span<const Sphere> spheres, const std::string& link
 
 // Sets of several numbers of spheres: a table, and a plot of how far off each is. Lengths over the diagonal, in
 // percent.
-nlohmann::json curve_json(std::span<const SphereSetBuild> sets, double diagonal);
-std::string curve_csv(std::span<const SphereSetBuild> sets, double diagonal);
-std::vector<plot::Plot> curve_plots(std::span<const SphereSetBuild> sets, double diagonal, const std::string& title);
+nlohmann::json error_curve_json(std::span<const SphereSetBuild> sets, double diagonal);
+std::string error_curve_csv(std::span<const SphereSetBuild> sets, double diagonal);
+std::vector<plot::Plot> error_curve_plots(std::span<const SphereSetBuild> sets, double diagonal,
+                                          const std::string& title);
 
 }  // namespace orchard::apps

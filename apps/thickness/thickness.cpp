@@ -48,6 +48,7 @@ std::vector<MeshArray> arrays_of(const ThicknessValues& values) {
 
 std::vector<double> as_numbers(const std::vector<Index>& indices) {
   std::vector<double> numbers;
+  numbers.reserve(indices.size());
   for (const Index index : indices) numbers.push_back(index == kNone ? -1 : static_cast<double>(index));
   return numbers;
 }

@@ -69,7 +69,7 @@ bool is_given(const BuildCommand& command, const std::string& option) {
 
 bool draws_axis(const BuildCommand& command) { return command.views || command.picture || command.page; }
 
-// Whether anything tells of the medial axis, which a tightened tree could do without, or is to.
+// Whether some output shows the medial axis, which a tightened tree does not need.
 bool shows_axis(const BuildCommand& command) {
   const auto tunes = [&](const TuningFlag& flag) {
     return flag.step != TuningStep::points && is_given(command, flag.name);
@@ -82,7 +82,7 @@ bool shows_axis(const BuildCommand& command) {
 // Everything that the tree is built with.
 SphereTreeOptions options_of(const BuildCommand& command) {
   MedialTuning tuning = command.tuning;
-  // A tightened tree does without, so that its axis is the one to look at. Others are built from the raw one.
+  // A tightened tree does not use the axis, so the refined axis is shown. Other trees are built from the raw one.
   tuning.refine = command.tree.method == TreeMethod::tightened && command.source.axis.empty() && draws_axis(command);
   const bool samples_by_need = command.seconds && !tuning.samples;  // the efforts need different numbers
   if (!tuning.samples) tuning.samples = samples_needed(builder_of(command.tree));
@@ -94,7 +94,7 @@ SphereTreeOptions options_of(const BuildCommand& command) {
   return options;
 }
 
-// What can be refused before anything is built; then where the files go.
+// Refuses what can be refused before anything is built. Returns where the files go.
 Destination check(const BuildCommand& command) {
   check_input(command.mesh);
   check_options(command);
@@ -229,13 +229,13 @@ void check_options(const BuildCommand& command) {
   if (command.export_level) {
     const auto& exports = command.exports;
     if (std::find(exports.begin(), exports.end(), "urdf") == exports.end())
-      throw InputError("--export-level: only a urdf has one level's spheres; add --export urdf");
+      throw InputError("--export-level needs --export urdf, the only format with the spheres of one level");
     if (const Index depth = levels_of(command.tree); *command.export_level > depth)
       throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
                                    *command.export_level, depth, depth));
   }
   if (is_given(command, "up") && !command.views && !command.picture && !command.page)
-    throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
+    throw InputError("--up has no effect with --no-views and without --picture or --report, because nothing is drawn");
   if (command.source.files().size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
   refuse_unused_options(command);
   require_sizes(builder_of(command.tree));

@@ -10,11 +10,11 @@
 namespace orchard::apps {
 namespace {
 
-constexpr double kWorthAWord = 30;  // seconds
+constexpr double kWorthAWord = 30;  // in seconds: a longer build is announced
 
-// Fitted to what tools/build-cost measured: so long for each step, most of which make a sphere, so long for each
-// triangle of the mesh, and more for each triangle the more steps there are. That it grows as their root is what
-// fitted, not derived.
+// Fitted to the measurements of tools/build-cost: a time for each step, most of which make a sphere; a time for each
+// triangle of the mesh; and a time for each triangle that grows with the root of the number of steps. The root is a
+// fit, not derived.
 struct TreeRates {
   double step = 0;           // seconds
   double triangle = 0;       // seconds for each triangle and root of the number of spheres
@@ -34,8 +34,8 @@ double bytes_per_triangle(TreeMethod method) { return method == TreeMethod::anne
 
 int as_number(Effort effort) { return effort == Effort::low ? 0 : effort == Effort::standard ? 1 : 2; }
 
-// Of a tightened level, which has a ball for every eight surface points at most: those beyond a thousand are searched
-// less, and cost so much of what the others do.
+// A tightened level has a ball for every eight surface points at most. Balls beyond a thousand are searched less, and
+// cost this share of the others.
 constexpr double kPointsPerBall = 8, kFullySearched = 1000, kCostBeyond = 0.3;
 
 // Of each level below the root, at most. points: as of estimated_cost().
@@ -48,9 +48,9 @@ std::vector<double> counts(const TreeRequest& tree, double points) {
   return levels;
 }
 
-// What takes time: spheres, or, where simulated annealing searches for the children of one, those searches. On a level
-// of the octree about four times as many cubes hold surface as above, not eight; annealing left 19 to 33 spheres of 64
-// on level 2.
+// Returns the number of steps that take time: spheres, or, for simulated annealing, the searches for the children of
+// one. On a level of the octree, about four times as many cubes contain surface as on the level above, not eight.
+// Annealing left 19 to 33 spheres of 64 on level 2.
 double steps(const TreeRequest& tree, double points) {
   const bool octree = tree.method == TreeMethod::octree, annealing = tree.method == TreeMethod::annealing;
   if (!octree && !annealing) {

@@ -8,8 +8,8 @@ namespace orchard::apps {
 
 struct BuildCommand;
 
-// What a build will take, from what others took (docs/results/build-cost.md): tightened and merged trees within a
-// factor of two there, on a processor of the 2020s; octrees and annealing differ more among meshes.
+// The expected cost of a build, from measurements (docs/results/build-cost.md). For tightened and merged trees it is
+// right within a factor of two there, on a processor of the 2020s; octrees and annealing differ more between meshes.
 struct BuildCost {
   double spheres = 0;            // in all levels, if the surface has room for them
   double points = 0;             // of the surface, for a medial axis; 0: none is made
@@ -25,7 +25,8 @@ BuildCost estimated_cost(const TreeRequest& tree, bool axis, double points, doub
 // Of a command on a mesh of so many triangles.
 BuildCost expected_cost(const BuildCommand& command, double triangles);
 
-// A line on what is coming and what would be cheaper; empty where it is a matter of seconds, unless `always`.
+// Returns a line about the expected time and about what would be cheaper; empty if it is a matter of seconds, unless
+// `always`.
 std::string in_words(const BuildCost& cost, const TreeRequest& tree, bool always = false);
 
 nlohmann::json to_json(const BuildCost& cost);

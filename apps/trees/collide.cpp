@@ -83,7 +83,7 @@ json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Po
     step();
     return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
   };
-  // Once unseen, so that the times below are those of a query that a program makes every frame.
+  // An untimed first run, so that the times below are those of a query that a program makes in every frame.
   narrow.start(a, b);
   while (!narrow.finished()) narrow.refine();
   json levels = json::array();
@@ -120,8 +120,8 @@ struct PlacedTree {
   runtime::Pose pose;
 };
 
-// Surfaces that do not touch leave each piece of one either wholly inside the other solid or wholly outside of it, so
-// one vertex of each piece decides.
+// If two surfaces do not touch, each connected piece of one is either wholly inside the other solid or wholly outside.
+// So testing one vertex of each piece suffices.
 void add_inside(json& inside, const PlacedTree& outer, const PlacedTree& inner) {
   if (outer.tree.triangles.empty()) return;
   const auto pieces = pieces_of(inner.tree);

@@ -148,7 +148,8 @@ bool are_axes(const CompareCommand& command) {
   if (trees == 0) return true;
   if (trees < std::ssize(command.files))
     throw InputError(
-        "compare: some files are sphere-trees (.orchard, .sph, .json) and some are medial axes; compare them apart");
+        "compare: some files are sphere-trees (.orchard, .sph, .json) and some are medial axes; compare them "
+        "separately");
   for (const char* option : {"vertices", "csv", "quality-samples", "samples", "seed", "connect", "up"})
     if (std::find(command.given.begin(), command.given.end(), option) != command.given.end())
       throw InputError(fmt::format("--{} has no effect on sphere-trees; it is for medial axes", option));

@@ -253,13 +253,13 @@ void profile(const ProfileCommand& command) {
   if (!command.folder.empty()) check_outputs(destination, std::array{page_name(command.a, "profile")}, inputs);
   const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(second);
   if (a.triangles.empty() || b.triangles.empty())
-    throw InputError(fmt::format("{}: has no triangles, so nothing tells which poses touch; build it again",
+    throw InputError(fmt::format("{}: the tree has no triangles, which decide which poses touch; build it again",
                                  (a.triangles.empty() ? command.a : second).string()));
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const Progress progress = bar.callback();
   report_progress(progress, "flights", 0);
   const std::vector<PosePair> poses = flight_poses(a, b, command.flights, command.seed);
-  if (poses.empty()) throw InputError("no flight came to a pose; ask for more with --flights");
+  if (poses.empty()) throw InputError("no flight led to a pose; ask for more with --flights");
   constexpr std::size_t room = 1u << 20;
   runtime::NarrowPhase pair(a, b, room);
   std::vector<PoseProfile> profiles;

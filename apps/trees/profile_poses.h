@@ -7,7 +7,7 @@
 
 namespace orchard::apps {
 
-// The root's ball, in the tree's own frame.
+// The ball of the root, in the frame of the tree.
 struct RootBall {
   runtime::Vec3 center;
   double radius = 0;
@@ -18,11 +18,12 @@ struct PosePair {
   runtime::Pose a, b;
 };
 
-// Poses as a narrow phase is asked about (dissertation 7.2: not random ones, but of bodies that draw near or just
-// meet): each flight turns both bodies at random and takes the second one along a random line whose distance from the
-// first one's centre is that of a point spread evenly over the disk in which the bounding spheres can meet. One pose a
-// sixteenth of the radii's sum, as long as these overlap, until the first that touches, which is kept. The same for a
-// seed on every machine. Flights that end before their first pose leave none.
+// Returns poses like those that a narrow phase has to answer for: not random ones, but of bodies that approach each
+// other or just meet (dissertation 7.2). Each flight rotates both bodies at random, and moves the second one along a
+// random line. The line meets, at a uniformly distributed point, the disk around the first body's centre in which the
+// bounding spheres can meet. There is a pose after each sixteenth of the sum of the radii, as long as the bounding
+// spheres overlap, up to and including the first pose at which the bodies touch. A flight may have no pose. The result
+// for a seed is the same on every machine.
 std::vector<PosePair> flight_poses(const runtime::TreeView& a, const runtime::TreeView& b, unsigned flights,
                                    std::uint64_t seed);
 

@@ -189,13 +189,14 @@ void simulate(const SimulateCommand& asked) {
   if (!command.replay.empty()) {
     replay = read_recording(command.replay);
     if (replay->scene != command.scene)
-      throw InputError(fmt::format("{}: recorded of the scene {}", command.replay.string(), replay->scene));
+      throw InputError(fmt::format("{}: this is a recording of the scene {}; replay that scene",
+                                   command.replay.string(), replay->scene));
     command.bodies = replay->bodies;
     command.seed = replay->seed;
     if (!command.frames) command.frames = replay->steering.size();
     if (*command.frames > replay->steering.size())
-      throw InputError(
-          fmt::format("--frames {}: {} has {}", *command.frames, command.replay.string(), replay->steering.size()));
+      throw InputError(fmt::format("--frames {}: {} has only {} frames", *command.frames, command.replay.string(),
+                                   replay->steering.size()));
   }
   const std::size_t frames = command.frames.value_or(100);
   const runtime::Budget budget = parse_budget(command.budget);
@@ -213,7 +214,7 @@ void simulate(const SimulateCommand& asked) {
   const runtime::PackedSphereTree tree = command.tree.empty() ? ship_tree() : load_tree(command.tree);
   const std::vector<simulation::Shape> shapes{simulation::shape_of(tree)};
   if (replay && replay->shape != simulation::checksum(tree))
-    throw InputError(command.replay.string() + ": recorded with another tree; name it with --tree");
+    throw InputError(command.replay.string() + ": this was recorded with another tree; name that with --tree");
 
   Simulation simulation(command.scene, shapes, command.bodies, command.seed, replay ? &*replay : nullptr);
   std::optional<Outputs> outputs;

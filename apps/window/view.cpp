@@ -95,7 +95,7 @@ vtkSmartPointer<vtkActor> actor_of(vtkPolyData* data, double opacity) {
 }
 
 template <class Source>
-vtkSmartPointer<vtkActor> wire_of(vtkNew<Source>& source) {
+vtkSmartPointer<vtkActor> wireframe_of(vtkNew<Source>& source) {
   source->Update();
   auto actor = actor_of(source->GetOutput(), 0.5);
   actor->GetProperty()->SetRepresentationToWireframe();
@@ -156,7 +156,8 @@ View::BodyActors& View::actors_of(std::uint32_t body) {
     cube->SetXLength(2);
     cube->SetYLength(2);
     cube->SetZLength(2);
-    BodyActors actors{actor_of(meshes_[shape], 1), actor_of(meshes_[shape], 0.35), wire_of(ball), wire_of(cube)};
+    BodyActors actors{actor_of(meshes_[shape], 1), actor_of(meshes_[shape], 0.35), wireframe_of(ball),
+                      wireframe_of(cube)};
     actors.spheres->GetProperty()->SetColor(0.55, 0.75, 1);
     actors.horn->GetProperty()->SetColor(0.9, 0.8, 0.3);
     actors.cube->GetProperty()->SetColor(0.8, 0.5, 0.9);

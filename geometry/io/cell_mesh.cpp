@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <numeric>
 
 #include "orchard/geometry/error.h"
@@ -101,7 +102,7 @@ std::vector<CellMesh::Face> CellMesh::outer_faces() {
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto x = sorted(faces_[a]), y = sorted(faces_[b]);
     const auto less = std::lexicographical_compare_three_way(x.begin(), x.end(), y.begin(), y.end());
-    return less != 0 ? less < 0 : a < b;
+    return std::is_eq(less) ? a < b : std::is_lt(less);
   });
   std::vector<std::size_t> outer;
   for (std::size_t i = 0; i < order.size();) {
@@ -112,11 +113,12 @@ std::vector<CellMesh::Face> CellMesh::outer_faces() {
   }
   std::sort(outer.begin(), outer.end());
   std::vector<Face> result;
+  result.reserve(outer.size());
   for (const std::size_t face : outer) result.push_back(faces_[face]);
   return result;
 }
 
-// Of its corners, those of several faces as often as they are in one.
+// Returns the mean of the corners. A corner of several faces counts once for each.
 Point CellMesh::middle_of_cell(Index cell, std::span<const std::size_t> first_face) const {
   Point sum = Point::Zero();
   double count = 0;
@@ -146,7 +148,9 @@ void CellMesh::take_outer_surface(MeshReadReport& report, const FailCell& fail) 
     if (normal.dot(vertices[around[0]] - middle) < 0) std::reverse(turned.begin(), turned.end());
     outer.add(turned, cell_at_[face.cell]);
   }
-  if (outer.empty()) fail(cell_at_.front(), "the volume cells from here on have no outer face");
+  if (outer.empty())
+    fail(cell_at_.front(),
+         "the volume cells from here on have no outer face; each of their faces belongs to two cells");
   report.volume_cells = static_cast<Index>(cell_at_.size());
   report.cells_beside = surface_cells_;
   surface_ = std::move(outer);
@@ -174,7 +178,7 @@ TriangleMesh CellMesh::finish(const std::string& name, const std::function<void(
     take_outer_surface(
         report, [&](std::size_t at, const char* fault) { throw InputError(name + ", " + place(at) + ": " + fault); });
   if (surface_.empty())
-    throw InputError(name + ": no triangles, polygons or volume cells in this file" +
+    throw InputError(name + ": the file has no triangles, polygons or volume cells" +
                      (lines_ > 0 ? ", only points or lines" : ""));
   report.faces_skipped = skipped_;
   if (skipped_.count > 0) report.faces_skipped.first = place(first_skipped_);

@@ -11,39 +11,40 @@
 
 namespace orchard {
 
-// What a cell of a mesh for simulations is, with the order of its corners as VTK has it.
+// The shape of a cell in a mesh for simulations. Its corners are in the order of VTK.
 enum class CellShape : std::uint8_t { ignored, polygon, strip, pixel, prism, tetrahedron, pyramid, voxel };
 
-// A kind of cell as a format numbers it. `corners`: how many of its nodes, the first ones, are corners; 0: all of them.
+// A kind of cell in a format. `corners` is the number of its nodes that are corners, which come first; 0 means all of
+// them.
 struct CellKind {
   CellShape shape = CellShape::ignored;
   std::uint8_t corners = 0;
-  bool curved = false;  // nodes besides the corners bend it
+  bool curved = false;  // further nodes bend the cell
 };
 
 // Collects cells of any dimension and turns them into triangles: the outer surface of the volume cells, or the surface
-// cells where there are none. The outer surface consists of the faces that belong to one volume cell alone, facing away
-// from its middle, so that neither the order of a cell's corners nor a border between two materials matters.
+// cells if there are no volume cells. The outer surface consists of the faces that belong to a single volume cell,
+// turned away from its middle. So neither the order of a cell's corners nor a border between two materials matters.
 class CellMesh {
  public:
   std::vector<Point> vertices;
   VertexFaults vertex_faults;
 
-  // `nodes`: of the cell, below vertices.size(); `at`: its byte in the file. A cell with too few nodes counts as
-  // skipped.
+  // Adds a cell. Its `nodes` are below vertices.size(), and `at` is its byte in the file. A cell with too few nodes is
+  // counted as skipped.
   void add(const CellKind& kind, std::span<const Index> nodes, std::size_t at);
-  // A volume cell by its faces.
+  // Begins a volume cell that is given by its faces.
   void begin_cell(std::size_t at);
   void add_face(std::span<const Index> corners);
 
-  // The triangles, with what was left out in the report. `fail` reports a fault at a byte and does not return, `place`
-  // names a byte. Throws InputError, beginning with `name`, if there is no face.
+  // Returns the triangles, and adds what was left out to the report. `fail` reports a fault at a byte and does not
+  // return; `place` names a byte. Throws InputError, beginning with `name`, if there is no face.
   TriangleMesh finish(const std::string& name, const std::function<void(std::size_t)>& fail,
                       const std::function<std::string(std::size_t)>& place, MeshReadReport& report) &&;
 
  private:
   struct Face {
-    std::size_t first = 0;  // in corners_ and sorted_
+    std::size_t first = 0;  // position in corners_ and sorted_
     Index count = 0, cell = 0;
   };
   std::span<const Index> sorted(const Face& face) const { return {sorted_.data() + face.first, face.count}; }
@@ -57,7 +58,7 @@ class CellMesh {
 
   FaceCollector surface_;
   std::vector<Face> faces_;              // of volume cells, by cell
-  std::vector<Index> corners_, sorted_;  // of these faces: in order around each; ascending
+  std::vector<Index> corners_, sorted_;  // the corners of these faces, in order around each, and ascending
   std::vector<std::size_t> cell_at_;     // of each volume cell
   Index surface_cells_ = 0, lines_ = 0, curved_ = 0;
   MeshReadReport::Occurrences skipped_;

@@ -64,7 +64,7 @@ class LineScanner {
     std::array<double, 3> result;
     for (double& coordinate : result) {
       const std::optional<double> value = number_or_none();
-      if (!value) fail("vertex needs three finite numbers");
+      if (!value) fail("a vertex needs three finite numbers");
       coordinate = *value;
     }
     return result;

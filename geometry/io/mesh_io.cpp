@@ -91,10 +91,11 @@ std::string read_bytes(const std::filesystem::path& file) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) throw InputError(file.string() + ": no such file");
-  if (status.type() == fs::file_type::directory) throw InputError(file.string() + ": a folder, not a mesh file");
+  if (status.type() == fs::file_type::not_found) throw InputError(file.string() + ": there is no such file");
+  if (status.type() == fs::file_type::directory)
+    throw InputError(file.string() + ": this is a folder; give a mesh file");
   if (status.type() != fs::file_type::regular)
-    throw InputError(file.string() + ": not a regular file that can be read");
+    throw InputError(file.string() + ": this is not a regular file; give a mesh file");
   const std::uintmax_t size = fs::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
   if (error || !stream) throw InputError(file.string() + ": cannot be opened for reading; check its permissions");
@@ -102,7 +103,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   std::string bytes(size, '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(stream.gcount()) != size)
-    throw InputError(file.string() + ": cannot be read to its end");
+    throw InputError(file.string() + ": the file cannot be read to its end; check the disk");
   return bytes;
 }
 

@@ -24,14 +24,14 @@ struct Soup {
 };
 
 std::vector<Point> vertices_of(const Soup& soup, const std::string& name) {
-  if (soup.points.size() >= kNone) throw InputError(name + ": too many vertices for 32-bit indices");
+  if (soup.points.size() >= kNone) throw InputError(name + ": the file has too many vertices for 32-bit indices");
   std::vector<Point> vertices;
   vertices.reserve(soup.points.size());
   for (const auto& point : soup.points) vertices.emplace_back(point.x(), point.y(), point.z());
   return vertices;
 }
 
-// face_at: byte of each polygon in the file; empty if they are triangles.
+// `face_at` has the byte of each polygon in the file; it is empty if all are triangles.
 FaceCollector faces_of(const Soup& soup, std::span<const std::size_t> face_at) {
   FaceCollector faces;
   std::vector<Index> corners;
@@ -54,9 +54,10 @@ std::istringstream stream_of(std::string bytes) {
 TriangleMesh read_stl(std::string_view bytes, const std::string& name, MeshReadReport& report) {
   Soup soup;
   std::istringstream stream = stream_of(checked_stl(bytes, name, report));
-  if (!CGAL::IO::read_STL(stream, soup.points, soup.polygons)) throw InputError(name + ": not a readable STL file");
+  if (!CGAL::IO::read_STL(stream, soup.points, soup.polygons))
+    throw InputError(name + ": this is not an STL file that can be read; export the mesh again");
   FaceCollector faces = faces_of(soup, {});
-  if (faces.empty()) throw InputError(name + ": no faces in this file");
+  if (faces.empty()) throw InputError(name + ": the file has no faces");
   TriangleMesh mesh{vertices_of(soup, name), {}};
   mesh.triangles = std::move(faces).finish(mesh.vertices).triangles;
   return mesh;
@@ -66,7 +67,8 @@ TriangleMesh read_off(std::string_view bytes, const std::string& name, MeshReadR
   Soup soup;
   CheckedOff checked = checked_off(bytes, name, report);
   std::istringstream stream = stream_of(std::move(checked.bytes));
-  if (!CGAL::IO::read_OFF(stream, soup.points, soup.polygons)) throw InputError(name + ": not a readable OFF file");
+  if (!CGAL::IO::read_OFF(stream, soup.points, soup.polygons))
+    throw InputError(name + ": this is not an OFF file that can be read; export the mesh again");
   FaceCollector faces = faces_of(soup, checked.face_at);
   TriangleMesh mesh{vertices_of(soup, name), {}};
   const auto place = [&](std::size_t at) { return line_place(bytes, at); };

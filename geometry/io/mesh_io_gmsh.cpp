@@ -17,7 +17,7 @@ struct GmshType {
   CellKind kind;
 };
 
-// The element types of Gmsh's manual, section "Node ordering": corners come first.
+// The element types of Gmsh's manual, section "Node ordering". Corners come before other nodes.
 constexpr CellKind kGmshTriangle{CellShape::polygon, 3}, kGmshQuad{CellShape::polygon, 4},
     kGmshTetrahedron{CellShape::tetrahedron, 4}, kGmshHexahedron{CellShape::prism, 8}, kGmshPrism{CellShape::prism, 6},
     kGmshPyramid{CellShape::pyramid, 5};
@@ -74,27 +74,27 @@ class GmshReader {
         read_nodes();
         nodes = true;
       } else if (section == "$Elements") {
-        if (!nodes) in_.fail(start, "$Elements come before $Nodes");
+        if (!nodes) in_.fail(start, "$Elements come before $Nodes; they have to come after them");
         read_elements();
         elements = true;
       } else if (!section.starts_with('$')) {
-        in_.fail(start, in_quotes(section) + " where a section begins, such as $Nodes");
+        in_.fail(start, in_quotes(section) + " stands where a section has to begin, such as $Nodes");
       }
       end_section(section, start);
     }
     if (!nodes || !elements) in_.fail(bytes_.size(), nodes ? "there are no $Elements" : "there are no $Nodes");
     return std::move(mesh_).finish(
-        name_, [&](std::size_t at) { in_.fail(at, "node needs three finite numbers, since an element uses it"); },
+        name_, [&](std::size_t at) { in_.fail(at, "the node needs three finite numbers, since an element uses it"); },
         [&](std::size_t at) { return in_.place(at); }, report);
   }
 
  private:
-  // Past the line that ends a section, whatever is left of the section.
+  // Skips the rest of a section and the line that ends it.
   void end_section(std::string_view section, std::size_t start) {
     const std::string end = "$End" + std::string(section.substr(1));
     const std::size_t found = bytes_.find(end, in_.position());
     if (found == std::string_view::npos) {
-      in_.fail(start, "the file ends within " + in_quotes(section) + ": it has no " + in_quotes(end));
+      in_.fail(start, "the file ends within " + in_quotes(section) + ", which needs the line " + in_quotes(end));
     }
     in_.move_to(found + end.size());
   }
@@ -105,7 +105,8 @@ class GmshReader {
     four_ = version >= 4;
     one_ = version >= 4.1;
     if (!((version >= 2 && version < 3) || (version >= 4 && version < 4.2)))
-      in_.fail(at, "version " + std::to_string(version) + " of the format; 2, 2.2, 4, 4.1 can be read");
+      in_.fail(at, "version " + std::to_string(version) +
+                       " of the format cannot be read; save the mesh in version 2, 2.2, 4 or 4.1");
     const bool binary = in_.integer() != 0;
     const std::int64_t size = in_.integer();
     if (!binary) return;
@@ -113,16 +114,18 @@ class GmshReader {
     if (in_.remaining() < 4) in_.fail_at_end();
     const bool little = MixedScanner::value_at<std::int32_t>(bytes_.data() + in_.position(), false) == 1;
     in_.set_binary(little == (std::endian::native == std::endian::little) ? std::endian::little : std::endian::big);
-    if (in_.raw<std::int32_t>() != 1) in_.fail(in_.position() - 4, "the number 1, which tells the order of bytes");
-    if (size != 8) in_.fail(at, "numbers of " + std::to_string(size) + " bytes; 8 can be read");
+    if (in_.raw<std::int32_t>() != 1)
+      in_.fail(in_.position() - 4, "the number 1, which tells the order of bytes, is missing");
+    if (size != 8)
+      in_.fail(at, "numbers of " + std::to_string(size) + " bytes cannot be read; save the mesh with 8 bytes");
   }
 
-  // As text, or with as many bytes.
+  // Reads a number as text, or as so many bytes.
   std::int64_t number32() { return in_.binary() ? in_.raw<std::int32_t>() : in_.integer(); }
   std::int64_t number64() { return in_.binary() ? in_.raw<std::int64_t>() : in_.integer(); }
   std::int64_t tag() { return one_ ? number64() : number32(); }
   double real() { return in_.binary() ? in_.raw<double>() : in_.number(); }
-  // A number of items in a head of version 2, which is text in binary files too.
+  // Reads a number of items in a header of version 2, which is text even in binary files.
   std::int64_t text_count() {
     const std::int64_t count = in_.integer();
     if (in_.binary()) in_.line();
@@ -134,9 +137,9 @@ class GmshReader {
     const std::size_t at = in_.position();
     Point point;
     for (double& coordinate : point) coordinate = real();
-    if (mesh_.vertices.size() + 1 >= kNone) in_.fail(at, "too many nodes for 32-bit indices");
+    if (mesh_.vertices.size() + 1 >= kNone) in_.fail(at, "the file has too many nodes for 32-bit indices");
     const auto index = static_cast<Index>(mesh_.vertices.size());
-    if (!nodes_.try_emplace(number, index).second) in_.fail(at, "node " + std::to_string(number) + " comes twice");
+    if (!nodes_.try_emplace(number, index).second) in_.fail(at, "node " + std::to_string(number) + " is defined twice");
     if (!point.allFinite()) mesh_.vertex_faults.add(index, at);
     mesh_.vertices.push_back(point);
   }
@@ -156,7 +159,7 @@ class GmshReader {
       std::array<std::int64_t, 3> head{number32(), number32(), number32()};
       const std::int64_t dimension = one_ ? head[0] : head[1];
       const std::uint64_t count = in_.checked_count(number64(), bytes_each(24, 6), "nodes");
-      if (count > all) in_.fail(in_.position(), "a block of more nodes than there are in all");
+      if (count > all) in_.fail(in_.position(), "the block has more nodes than the section promises in all");
       numbers.resize(one_ ? count : 0);
       for (std::int64_t& number : numbers) number = number64();
       for (std::uint64_t i = 0; i < count; ++i) {
@@ -180,7 +183,8 @@ class GmshReader {
     for (std::size_t i = 0; i < type.nodes; ++i) {
       const std::int64_t node = tag();
       const auto found = nodes_.find(node);
-      if (found == nodes_.end()) in_.fail(at, "element names node " + std::to_string(node) + ", which is not there");
+      if (found == nodes_.end())
+        in_.fail(at, "an element names node " + std::to_string(node) + ", which the file does not have");
       corners_.push_back(found->second);
     }
     mesh_.add(type.kind, corners_, at);
@@ -197,7 +201,8 @@ class GmshReader {
       const std::uint64_t rows = in_.binary() ? in_.checked_count(number32(), 8, "elements") : 1;
       const std::int64_t tags = number32();
       in_.checked_count(tags, bytes_each(4, 2), "tags");
-      if (rows == 0 || rows > count - done) in_.fail(at, "a block of no elements, or of more than there are in all");
+      if (rows == 0 || rows > count - done)
+        in_.fail(at, "the block has no elements, or more than the section promises in all");
       for (std::uint64_t row = 0; row < rows; ++row, ++done) {
         if (in_.binary()) number32();
         for (std::int64_t i = 0; i < tags; ++i) number32();
@@ -229,7 +234,7 @@ class GmshReader {
   std::string_view bytes_;
   const std::string& name_;
   MixedScanner in_;
-  bool four_ = false, one_ = false;  // version 4 or later, 4.1 or later
+  bool four_ = false, one_ = false;  // whether it is version 4 or later, and 4.1 or later
   CellMesh mesh_;
   std::unordered_map<std::int64_t, Index> nodes_;
   std::vector<Index> corners_;

@@ -9,8 +9,8 @@
 namespace orchard {
 namespace {
 
-// Elements of the format: their name in .mesh and number in .meshb. Their corners are in VTK's order but for what the
-// shape does not depend on.
+// Elements of the format: the name in .mesh files and the number in .meshb files. Their corners are in the order of
+// VTK, except for differences that do not change the shape.
 struct MeditElement {
   std::string_view name;
   std::int32_t code;
@@ -26,7 +26,7 @@ constexpr std::array kMeditElements{MeditElement{"Edges", 5, 2, {}},
                                     MeditElement{"Pyramids", 49, 5, {CellShape::pyramid, 5}}};
 constexpr std::int32_t kMeditDimension = 3, kMeditVertices = 4, kMeditEnd = 54;
 
-// Comments of .mesh files as blanks, so that places stay what they are.
+// Replaces comments of .mesh files by blanks, so that all bytes keep their positions.
 std::string without_medit_comments(std::string_view bytes) {
   std::string text(bytes);
   bool comment = false;
@@ -70,7 +70,9 @@ class MeditReader {
       if (in_.raw<std::int32_t>() != 1) in_.fail(0, "a binary Medit file begins with the number 1");
     }
     version_ = in_.raw<std::int32_t>();
-    if (version_ < 1 || version_ > 4) in_.fail(4, "version " + std::to_string(version_) + "; 1 to 4 can be read");
+    if (version_ < 1 || version_ > 4)
+      in_.fail(
+          4, "version " + std::to_string(version_) + " of the format cannot be read; save the mesh in version 1 to 4");
     while (in_.remaining() > 0) {
       const std::size_t start = in_.position();
       const std::int32_t code = in_.raw<std::int32_t>();
@@ -79,7 +81,8 @@ class MeditReader {
       read_section(code, start);
       if (next == 0) break;
       if (next < static_cast<std::int64_t>(in_.position()) || next > static_cast<std::int64_t>(size_))
-        in_.fail(start, "the next section's place is " + std::to_string(next) + ", which is not behind this one");
+        in_.fail(start, "the next section's place is " + std::to_string(next) +
+                            ", which does not come after this one; the file is damaged");
       in_.move_to(static_cast<std::size_t>(next));
     }
     return finish(report);
@@ -100,16 +103,16 @@ class MeditReader {
   }
 
   void require_three_dimensions(std::int64_t dimension, std::size_t at) const {
-    if (dimension != 3) in_.fail(at, std::to_string(dimension) + " dimensions; a surface needs 3");
+    if (dimension != 3) in_.fail(at, std::to_string(dimension) + " dimensions cannot be read; a surface needs 3");
   }
 
-  // Of a keyword that is not used.
+  // Skips the numbers of a keyword that is not used.
   void skip_numbers(std::string_view keyword, std::size_t start) {
     const auto begins_number = [](std::string_view word) {
       return !word.empty() && (is_digit(word[0]) || word[0] == '-' || word[0] == '+' || word[0] == '.');
     };
     if (keyword.empty() || begins_number(keyword))
-      in_.fail(start, in_quotes(keyword) + " where a keyword begins, such as Vertices");
+      in_.fail(start, in_quotes(keyword) + " stands where a keyword has to begin, such as Vertices");
     while (in_.more() && begins_number(in_.peek())) in_.word();
   }
   static bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -126,14 +129,14 @@ class MeditReader {
 
   void read_vertices(std::int64_t promised) {
     const std::uint64_t count = in_.checked_count(promised, bytes_for(4), "vertices");
-    if (!mesh_.vertices.empty()) in_.fail(in_.position(), "vertices come twice");
-    if (count >= kNone) in_.fail(in_.position(), "too many vertices for 32-bit indices");
+    if (!mesh_.vertices.empty()) in_.fail(in_.position(), "the file defines its vertices twice");
+    if (count >= kNone) in_.fail(in_.position(), "the file has too many vertices for 32-bit indices");
     for (std::uint64_t i = 0; i < count; ++i) {
       in_.more_of_text();
       const std::size_t at = in_.position();
       Point point;
       for (double& coordinate : point) coordinate = real();
-      integer();  // what the vertex belongs to
+      integer();  // skips the number of the region that the vertex belongs to
       if (!point.allFinite()) mesh_.vertex_faults.add(static_cast<Index>(i), at);
       mesh_.vertices.push_back(point);
     }
@@ -148,7 +151,7 @@ class MeditReader {
       for (Index& corner : corners) {
         const std::int64_t vertex = integer();
         if (vertex < 1 || vertex > static_cast<std::int64_t>(mesh_.vertices.size()))
-          in_.fail(at, "element names vertex " + std::to_string(vertex) + ", but those before it are 1 to " +
+          in_.fail(at, "an element names vertex " + std::to_string(vertex) + ", but those before it are 1 to " +
                            std::to_string(mesh_.vertices.size()));
         corner = static_cast<Index>(vertex - 1);
       }
@@ -159,7 +162,7 @@ class MeditReader {
 
   TriangleMesh finish(MeshReadReport& report) {
     return std::move(mesh_).finish(
-        name_, [&](std::size_t at) { in_.fail(at, "vertex needs three finite numbers, since an element uses it"); },
+        name_, [&](std::size_t at) { in_.fail(at, "the vertex needs three finite numbers, since an element uses it"); },
         [&](std::size_t at) { return in_.place(at); }, report);
   }
 

@@ -123,7 +123,7 @@ class ObjReader {
         finite = false;
       }
     }
-    if (mesh_.vertices.size() >= kNone) fail(statement, "too many vertices for 32-bit indices");
+    if (mesh_.vertices.size() >= kNone) fail(statement, "the file has too many vertices for 32-bit indices");
   }
 
   void read_face(const char* statement) {

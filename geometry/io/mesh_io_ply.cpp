@@ -25,16 +25,14 @@ class PlyReader {
       if (element.name == "vertex") vertex_count_ = element.rows;
     }
     for (const PlyElement& element : header_.elements) read_element(element);
-    if (needs_faces && faces_.empty()) throw InputError(name_ + ": no faces in this PLY file");
-    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices in this PLY file");
+    if (needs_faces && faces_.empty()) throw InputError(name_ + ": the PLY file has no faces");
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": the PLY file has no vertices");
     const auto place = [&](std::size_t at) { return body_.place(at); };
     vertex_faults_.settle(
         mesh_.vertices, faces_,
-        [&](std::size_t at) {
-          body_.fail(at, "a vertex coordinate that is not a finite number, and a face uses the vertex");
-        },
+        [&](std::size_t at) { body_.fail(at, "a coordinate of a vertex that a face uses is not a finite number"); },
         place, report_);
-    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices with finite coordinates in this PLY file");
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": the PLY file has no vertices with finite coordinates");
     mesh_.triangles = split_faces(std::move(faces_), mesh_.vertices, place, report_);
     return std::move(mesh_);
   }
@@ -45,7 +43,7 @@ class PlyReader {
   }
 
   void read_element(const PlyElement& element) {
-    // What a header promises is believed only as far as the bytes that follow can keep it.
+    // The count in a header is limited by the number of bytes that follow.
     const std::size_t row_bytes = element.min_row_bytes(header_.encoding);
     if (row_bytes > 0 && element.rows > body_.remaining() / row_bytes + (header_.encoding == PlyEncoding::ascii)) {
       fail_in_header(element, "promises " + std::to_string(element.rows) + " rows, but only " +
@@ -74,7 +72,7 @@ class PlyReader {
   }
 
   void read_vertices(const PlyElement& element) {
-    std::vector<int> axes(element.properties.size(), -1);  // which coordinate a property is
+    std::vector<int> axes(element.properties.size(), -1);  // the coordinate that each property holds
     for (const int axis : {0, 1, 2}) {
       const std::string coordinate(1, "xyz"[axis]);
       const std::optional<std::size_t> property = element.find(coordinate);
@@ -131,12 +129,12 @@ class PlyReader {
     faces_.add(corners_, start);
   }
 
-  // Strips of triangles one after another, each ended by -1 or by the list. Every corner after the second makes a
-  // triangle with the two before it; every second one of a strip is turned round, so that all face the same way.
-  // Corners that are repeated lead a strip elsewhere, and their triangles without area belong to no face.
+  // Reads strips of triangles one after another. Each ends with -1 or with the list. Every corner after the second
+  // forms a triangle with the two before it, and every second triangle of a strip is reversed, so that all face the
+  // same way. Repeated corners connect a strip to another place; their triangles have no area and belong to no face.
   void read_strips(const PlyProperty& property) {
     const std::uint64_t length = list_length(property);
-    std::uint64_t place = 0;  // in the strip
+    std::uint64_t place = 0;  // position in the strip
     Index before = 0, last = 0;
     for (std::uint64_t i = 0; i < length; ++i) {
       const std::size_t at = body_.position();

@@ -10,8 +10,8 @@
 
 namespace orchard {
 
-// Words, numbers and binary values one after the other, for formats that mix text and binary blocks. Messages name the
-// line of a text and the byte of a binary file.
+// Reads words, numbers and binary values one after another, for formats that mix text and binary blocks. Messages name
+// the line of a text and the byte of a binary file.
 class MixedScanner {
  public:
   MixedScanner(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
@@ -29,21 +29,21 @@ class MixedScanner {
     if (binary_) fail_at_byte(name_, position, fault);
     fail_at_line(name_, bytes_, position, fault);
   }
-  [[noreturn]] void fail_at_end() const { fail(bytes_.size(), "the file ends early"); }
+  [[noreturn]] void fail_at_end() const { fail(bytes_.size(), "the file ends early; it may be cut off"); }
   std::string place(std::size_t position) const {
     return binary_ ? "byte " + std::to_string(position) : line_place(bytes_, position);
   }
 
-  // Skips blanks and line ends; false at the end of the file.
+  // Skips blanks and line ends. Returns false at the end of the file.
   bool more() {
     while (at_ < bytes_.size() && (is_blank(bytes_[at_]) || is_line_end(bytes_[at_]))) ++at_;
     return at_ < bytes_.size();
   }
-  // The same in a text; in a binary file blanks are values.
+  // Does the same in a text only, because blanks in a binary file are values.
   void more_of_text() {
     if (!binary_) more();
   }
-  // The next word, on this line or a later one. Fails at the end of the file.
+  // Returns the next word, on this line or a later one. Fails at the end of the file.
   std::string_view word() {
     if (!more()) fail_at_end();
     const std::size_t start = at_;
@@ -56,7 +56,7 @@ class MixedScanner {
     at_ = start;
     return next;
   }
-  // The rest of the line, and past its end: \n, \r\n or \r.
+  // Returns the rest of the line and moves past its end, which is \n, \r\n or \r.
   std::string_view line() {
     const std::size_t start = at_;
     while (at_ < bytes_.size() && !is_line_end(bytes_[at_])) ++at_;
@@ -64,7 +64,7 @@ class MixedScanner {
     if (at_ < bytes_.size() && bytes_[at_++] == '\r' && at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
     return rest;
   }
-  // A number in text; it may be infinite or none (NaN).
+  // Reads a number from text. It may be infinite or NaN.
   double number() {
     const std::string_view text = word();
     const char* at = text.data();
@@ -81,7 +81,7 @@ class MixedScanner {
       fail(at_ - text.size(), in_quotes(text) + " is not an integer");
     return value;
   }
-  // A binary value.
+  // Reads a binary value.
   template <typename T>
   T raw() {
     if (remaining() < sizeof(T)) fail_at_end();
@@ -89,7 +89,7 @@ class MixedScanner {
     at_ += sizeof(T);
     return value;
   }
-  // Of a file's bytes at `data`; `swap`: in the other order than this machine's.
+  // Reads a value from the bytes at `data`. `swap` means that they are in the other byte order than the machine's.
   template <typename T>
   static T value_at(const char* data, bool swap) {
     char own[sizeof(T)];
@@ -103,9 +103,10 @@ class MixedScanner {
     at_ += count;
   }
 
-  // How many items follow, each of which takes `bytes_each` or more: refused where the file has no room for them.
+  // Returns a number of items that follow. It is refused if the file is too short for them, at `bytes_each` or more for
+  // each.
   std::uint64_t checked_count(std::int64_t count, std::size_t bytes_each, const char* items) const {
-    if (count < 0) fail(at_, "a negative number of " + std::string(items));
+    if (count < 0) fail(at_, "there is a negative number of " + std::string(items));
     if (static_cast<std::uint64_t>(count) > (remaining() + 1) / bytes_each)
       fail(at_, std::to_string(count) + " " + items + " are promised, but only " + std::to_string(remaining()) +
                     " bytes follow; the file is cut short or not of this format");

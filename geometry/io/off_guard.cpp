@@ -35,7 +35,7 @@ class OffChecker {
       if (!line_.next()) fail_at_end(i, faces_, "faces");
       read_face();
     }
-    if (checked_.face_at.empty()) throw InputError(name_ + ": no faces of three corners or more in this file");
+    if (checked_.face_at.empty()) throw InputError(name_ + ": the file has no faces with three or more corners");
     checked_.bytes = "OFF\n" + std::to_string(vertices_) + " " + std::to_string(checked_.face_at.size()) + " 0\n" +
                      vertices + face_lines_;
     return std::move(checked_);
@@ -54,7 +54,7 @@ class OffChecker {
   // Reads "OFF", which may be missing, and the numbers of vertices and faces after it. They may follow with or without
   // a blank, or on the next line.
   void read_counts() {
-    if (!line_.next()) throw InputError(name_ + ": nothing but comments; this is not an OFF file");
+    if (!line_.next()) throw InputError(name_ + ": the file has nothing but comments; this is not an OFF file");
     std::optional<std::uint64_t> vertices = line_.count();
     if (!vertices) {
       vertices = count_after(line_.word());
@@ -62,15 +62,16 @@ class OffChecker {
     }
     if (!vertices) {
       const std::string_view other = line_.word();
-      if (!other.empty()) line_.fail(in_quotes(other) + " after OFF; only text files are supported");
-      if (!line_.next()) line_.fail("the file ends after its first line");
+      if (!other.empty())
+        line_.fail(in_quotes(other) + " follows OFF, but only text files can be read; save the mesh as text");
+      if (!line_.next()) line_.fail("the file ends after its first line; it may be cut off");
       vertices = line_.count();
     }
     const std::optional<std::uint64_t> faces = line_.count();
     if (!vertices || !faces) line_.fail("expected the numbers of vertices, faces and edges");
     // The shortest vertex is "0 0 0" and the shortest face "3 0 0 0", each with a line end; the last may be missing.
     if (*vertices > line_.left() / 6 || *faces > line_.left() / 8 + 1) {
-      line_.fail("promises " + std::to_string(*vertices) + " vertices and " + std::to_string(*faces) +
+      line_.fail("the file promises " + std::to_string(*vertices) + " vertices and " + std::to_string(*faces) +
                  " faces, but only " + std::to_string(line_.left()) + " bytes are left");
     }
     vertices_ = *vertices;
@@ -88,7 +89,7 @@ class OffChecker {
     const bool good =
         number.empty() || (scan_integer(at, number.data() + number.size(), count) && at == number.end() && count >= 0);
     if (!keyword.substr(prefix).starts_with("OFF") || !good) {
-      line_.fail("expected OFF instead of " + in_quotes(keyword) + "; other dimensions are not supported");
+      line_.fail("expected OFF instead of " + in_quotes(keyword) + "; files of other dimensions cannot be read");
     }
     if (number.empty()) return std::nullopt;
     return static_cast<std::uint64_t>(count);
@@ -98,7 +99,7 @@ class OffChecker {
   void read_face() {
     const std::size_t start = line_.start();
     const std::optional<std::uint64_t> corners = line_.count();
-    if (!corners) line_.fail("a face begins with the number of its corners, 3 or more");
+    if (!corners) line_.fail("a face has to begin with the number of its corners, 3 or more");
     const bool skipped = *corners < 3;
     std::string face;
     append_digits(face, *corners);

@@ -30,14 +30,15 @@ OrientedPoints of_ply(const PlyTables& tables, const PlyTables::Table& vertices,
       return Vector(columns[from]->numbers[row], columns[from + 1]->numbers[row], columns[from + 2]->numbers[row]);
     };
     if (!vector(0).allFinite()) continue;
-    if (!is_normal(vector(3))) tables.fail(vertices, row, "the normal is zero or not finite");
+    if (!is_normal(vector(3)))
+      tables.fail(vertices, row, "the normal is zero or not finite; remove the point or compute the normals again");
     result.points.push_back(vector(0));
     result.normals.push_back(vector(3).normalized());
   }
   return result;
 }
 
-// The numbers that a line begins with, six at most.
+// Reads the numbers at the beginning of a line, at most six. Returns how many there are.
 std::size_t numbers_of(std::string_view line, std::array<double, 6>& numbers) {
   const char *at = line.data(), *end = line.data() + line.size();
   std::size_t count = 0;
@@ -59,7 +60,9 @@ OrientedPoints of_xyz(std::string_view bytes, const std::string& name) {
     const Vector normal(numbers[3], numbers[4], numbers[5]);
     if (count >= 3 && count < 6) fail_at_line(name, bytes, at, kNoNormals);
     if (count == 6 && point.allFinite()) {
-      if (!is_normal(normal)) fail_at_line(name, bytes, at, "the normal is zero or not finite");
+      if (!is_normal(normal))
+        fail_at_line(name, bytes, at,
+                     "the normal is zero or not finite; remove the point or compute the normals again");
       result.points.push_back(point);
       result.normals.push_back(normal.normalized());
     }
@@ -77,7 +80,7 @@ std::optional<OrientedPoints> read_oriented_points(const std::filesystem::path& 
   std::string bytes = read_bytes(file);
   MeshReadReport unused;
   if (kind == ".xyz") {
-    read_xyz(bytes, file.string(), unused);  // refuses what is no text of points
+    read_xyz(bytes, file.string(), unused);  // refuses everything that is not a text of points
     return of_xyz(bytes, file.string());
   }
   const PlyTables tables(file.string(), std::move(bytes));

@@ -14,17 +14,17 @@
 
 namespace orchard {
 
-// The numbers of a PLY file's body, one after another, as each encoding has them. What cannot be read throws InputError
-// naming the line (ASCII) or byte (binary).
+// Reads the numbers of a PLY file's body one after another, in each encoding. If they cannot be read, InputError names
+// the line (ASCII) or the byte (binary).
 
-// Numbers as text, parted by white space.
+// Numbers as text, separated by white space.
 class AsciiBody {
  public:
   AsciiBody(std::string_view bytes, std::size_t body, const std::string& name)
       : bytes_(bytes), name_(name), at_(bytes.data() + body), end_(bytes.data() + bytes.size()) {}
 
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
-  // Of the next number.
+  // Returns the position of the next number.
   std::size_t position() {
     skip_space();
     return bytes_.size() - remaining();
@@ -32,7 +32,7 @@ class AsciiBody {
   [[noreturn]] void fail(std::size_t position, const std::string& fault) const {
     fail_at_line(name_, bytes_, position, fault);
   }
-  // For a report.
+  // Names a position for a report.
   std::string place(std::size_t position) const { return line_place(bytes_, position); }
   double number(PlyType) {
     const char* token = next_token();
@@ -44,10 +44,10 @@ class AsciiBody {
     const char* token = next_token();
     std::int64_t value = 0;
     if (scan_integer(at_, end_, value) && at_token_end()) return value;
-    at_ = token;  // perhaps it is written as 3.0
+    at_ = token;  // it may be written as 3.0
     const double real = number(PlyType::float64);
     if (!(std::abs(real) < 0x1p53) || real != std::floor(real)) {
-      fail(static_cast<std::size_t>(token - bytes_.data()), "a list's length or index that is not an integer");
+      fail(static_cast<std::size_t>(token - bytes_.data()), "the length or an index of a list is not an integer");
     }
     return static_cast<std::int64_t>(real);
   }
@@ -66,7 +66,7 @@ class AsciiBody {
   }
   const char* next_token() {
     skip_space();
-    if (at_ == end_) fail(bytes_.size(), "the file ends early");
+    if (at_ == end_) fail(bytes_.size(), "the file ends before the rows that its header promises; it may be cut off");
     return at_;
   }
   [[noreturn]] void fail_not_a_number(const char* token) {
@@ -107,14 +107,15 @@ class BinaryBody {
     return visit<std::int64_t>(type, [&](auto value) {
       if constexpr (std::is_floating_point_v<decltype(value)>) {
         if (!(std::abs(value) < 0x1p53) || value != std::floor(value)) {
-          fail(start, "a list's length or index that is not an integer");
+          fail(start, "the length or an index of a list is not an integer");
         }
       }
       return static_cast<std::int64_t>(value);
     });
   }
   void skip(PlyType type, std::uint64_t count) {
-    if (count > remaining() / size_of(type)) fail(bytes_.size(), "the file ends early");
+    if (count > remaining() / size_of(type))
+      fail(bytes_.size(), "the file ends before the rows that its header promises; it may be cut off");
     at_ += count * size_of(type);
   }
   static std::size_t min_bytes(PlyType type) { return size_of(type); }
@@ -122,7 +123,8 @@ class BinaryBody {
  private:
   template <typename T>
   T take() {
-    if (remaining() < sizeof(T)) fail(bytes_.size(), "the file ends early");
+    if (remaining() < sizeof(T))
+      fail(bytes_.size(), "the file ends before the rows that its header promises; it may be cut off");
     T value;
     std::memcpy(&value, bytes_.data() + at_, sizeof(T));
     at_ += sizeof(T);

@@ -35,7 +35,7 @@ class HeaderReader {
 
   PlyHeader read() {
     if (next_line() != "ply") {
-      throw InputError(name_ + ": does not begin with \"ply\"; this is not a PLY file");
+      throw InputError(name_ + ": the file does not begin with \"ply\"; this is not a PLY file");
     }
     bool format_seen = false;
     while (true) {
@@ -61,15 +61,15 @@ class HeaderReader {
  private:
   [[noreturn]] void fail(const std::string& fault) const { fail_at_line(name_, bytes_, line_at_, fault); }
 
-  // The next line without its end, which at_ moves past.
+  // Returns the next line without its end, and moves at_ past it.
   std::string_view next_line() {
     line_at_ = at_;
     const std::size_t stop = bytes_.find_first_of("\r\n", at_);
     if (stop == std::string_view::npos) {
-      fail(at_ == 0 ? "not a PLY file" : "the PLY header ends without \"end_header\"");
+      fail(at_ == 0 ? "this is not a PLY file" : "the PLY header ends without \"end_header\"");
     }
     at_ = stop + 1;
-    // In a file whose lines end with \r alone, a \n after the header is the first byte of the body.
+    // If lines end with a single \r, a \n after the header is the first byte of the body.
     if (line_at_ == 0) lone_returns_ = bytes_[stop] == '\r' && !(at_ < bytes_.size() && bytes_[at_] == '\n');
     if (!lone_returns_ && bytes_[stop] == '\r' && at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
     return bytes_.substr(line_at_, stop - line_at_);
@@ -119,7 +119,7 @@ class HeaderReader {
   }
 
   void read_property(const std::vector<std::string_view>& words) {
-    if (header_.elements.empty()) fail("a property before the first element");
+    if (header_.elements.empty()) fail("a property comes before the first element");
     PlyProperty property;
     if (words.size() == 5 && words[1] == "list") {
       property.length_type = read_type(words[2]);
@@ -171,7 +171,7 @@ std::optional<std::size_t> PlyElement::find(std::string_view property) const {
 std::size_t PlyElement::min_row_bytes(PlyEncoding encoding) const {
   std::size_t bytes = 0;
   for (const PlyProperty& property : properties) {
-    // In ASCII a digit and a space, but for the last number of the file.
+    // in ASCII, a number takes a digit and a space, except for the last number of the file
     bytes += encoding == PlyEncoding::ascii ? 2 : size_of(property.length_type.value_or(property.type));
   }
   return bytes;

@@ -11,9 +11,9 @@ namespace orchard {
 namespace {
 
 std::string bytes_of(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": is a directory, not a file");
+  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": this is a folder; give a file");
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
+  if (!in) throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 bool separates(char c) { return is_blank(c) || c == ',' || c == ';'; }
 
-// One pass over the bytes; a statement is a line.
+// Reads the file in one pass. A statement is a line.
 class XyzReader {
  public:
   XyzReader(std::string_view bytes, const std::string& name, MeshReadReport& report)
@@ -26,10 +26,10 @@ class XyzReader {
       while (at_ != end_ && !is_line_end(*at_)) ++at_;
       while (at_ != end_ && is_line_end(*at_)) ++at_;
     }
-    // Then what was taken for a header is all that there is.
+    // what looked like a header is all that the file contains
     if (header_) fail(*header_);
     if (mesh_.vertices.empty())
-      throw InputError(name_ + ": no points in " + std::to_string(bytes_.size()) + " bytes of XYZ");
+      throw InputError(name_ + ": there are no points in the " + std::to_string(bytes_.size()) + " bytes of XYZ");
     return std::move(mesh_);
   }
 
@@ -45,7 +45,8 @@ class XyzReader {
     while (at_ != end_ && separates(*at_)) ++at_;
   }
 
-  // Lines before the first point that are none are a header: names of columns, or how many points there are.
+  // Lines before the first point that are not points themselves are a header: names of columns, or the number of
+  // points.
   void read_line() {
     if (mesh_.vertices.size() + 1 >= kNone)
       fail_at_line(name_, bytes_, offset(at_), "too many points for 32-bit indices");
@@ -65,7 +66,7 @@ class XyzReader {
     }
   }
 
-  // What is wrong with the line, if anything is.
+  // Returns what is wrong with the line, if anything.
   std::optional<Fault> read_point(Point& point) {
     const char* line = at_;
     for (int axis = 0; axis < 3; ++axis) {
@@ -84,8 +85,8 @@ class XyzReader {
   MeshReadReport& report_;
   const char* at_;
   const char* end_;
-  std::uint64_t points_ = 0;     // with those that are skipped
-  std::optional<Fault> header_;  // why its first line is no point, until there is one
+  std::uint64_t points_ = 0;     // including those that are skipped
+  std::optional<Fault> header_;  // why the first line is not a point; empty once a point has been read
   TriangleMesh mesh_;
 };
 

@@ -16,12 +16,12 @@ namespace {
 
 using detail::CgalKernel;
 using Triangle = std::array<Index, 3>;
-constexpr int kUnnumbered = -1000;  // of a winding number
+constexpr int kUnnumbered = -1000;  // marks a winding number that is not known yet
 
 struct Winding {
   int number = kUnnumbered;
 };
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, CgalKernel>;  // a corner at the place
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, CgalKernel>;  // the corner at this place
 using FaceBase = CGAL::Triangulation_face_base_with_info_2<Winding, CgalKernel,
                                                            CGAL::Constrained_triangulation_face_base_2<CgalKernel>>;
 using Cdt =
@@ -29,10 +29,11 @@ using Cdt =
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Vertex = Cdt::Vertex_handle;
 
-// The place of a point in a plane, where the polygon turns counter-clockwise.
+// The projection of a point to a plane in which the polygon is counter-clockwise.
 class Projection {
  public:
-  // Along the axis that is nearest to the normal: keeps coordinates as they are, and so what lies on a line.
+  // Projects along the axis that is nearest to the normal. This keeps two coordinates exactly, and so keeps points on a
+  // line.
   static Projection along_axis(const Vector& normal) {
     Eigen::Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
@@ -74,7 +75,7 @@ class PolygonTriangulation {
   }
 
  private:
-  // False if two corners that are apart have the same place.
+  // Returns false if two different corners are projected to the same place.
   bool insert(const Projection& projection) {
     for (const Index corner : corners_) {
       const std::size_t before = cdt_.number_of_vertices();
@@ -94,8 +95,8 @@ class PolygonTriangulation {
 
   std::pair<Vertex, Vertex> edge(std::size_t i) const { return {outline_[i], outline_[(i + 1) % outline_.size()]}; }
 
-  // The pieces of the outline's edges between the corners that lie on them, and how often each is passed: once more
-  // from `first` to `second` than back.
+  // Divides the edges of the outline at corners that lie on them. Counts how often each piece is passed from `first` to
+  // `second`, minus how often it is passed back.
   bool cut_edges() {
     for (std::size_t i = 0; i < outline_.size(); ++i) {
       const auto [from, to] = edge(i);
@@ -120,7 +121,8 @@ class PolygonTriangulation {
     return at == passes_.end() ? 0 : at->second;
   }
 
-  // How often the outline winds around each face, from the outside in. False if that is neither 0 nor 1 somewhere.
+  // Computes how often the outline winds around each face, from the outside in. Returns false if that is neither 0 nor
+  // 1 somewhere.
   bool wind() {
     std::vector<Cdt::Face_handle> open{cdt_.infinite_face()};
     open.back()->info().number = 0;
@@ -130,7 +132,7 @@ class PolygonTriangulation {
       for (int i = 0; i < 3; ++i) {
         const Cdt::Face_handle across = face->neighbor(i);
         if (across->info().number != kUnnumbered) continue;
-        // The face lies to the left of this edge, what is across it to the right.
+        // The face lies to the left of this edge, and the other face to the right.
         const int number = face->info().number - passes(face->vertex(Cdt::ccw(i)), face->vertex(Cdt::cw(i)));
         if (number != 0 && number != 1) return false;
         across->info().number = number;
@@ -140,12 +142,14 @@ class PolygonTriangulation {
     return true;
   }
 
-  // A neighbour has an edge in one piece where corners lie on it here: triangles without area lie between.
+  // The adjacent face has a whole edge where corners lie on the edge here, so triangles without area are added between
+  // them.
   void keep_edges_whole(std::vector<Triangle>& triangles) const {
     std::set<std::pair<Vertex, Vertex>> ends;
     for (const auto& passed : cut_) ends.insert({passed.front(), passed.back()});
     for (const auto& passed : cut_) {
-      if (ends.contains({passed.back(), passed.front()})) continue;  // a bridge, which nothing is beside
+      // It is a bridge to a hole, with the polygon on both sides.
+      if (ends.contains({passed.back(), passed.front()})) continue;
       for (std::size_t i = passed.size() - 1; i > 1; --i)
         triangles.push_back({passed.front()->info(), passed[i]->info(), passed[i - 1]->info()});
     }
@@ -165,7 +169,7 @@ std::optional<std::vector<Triangle>> triangulate_polygon(std::span<const Index> 
                                                          std::span<const Point> vertices, const Vector& normal) {
   if (corners.size() == 3) return std::vector<Triangle>{{corners[0], corners[1], corners[2]}};
   auto triangles = PolygonTriangulation(corners, vertices).run(Projection::along_axis(normal));
-  // Where the polygon is not quite flat, its outline may cross itself in one projection only.
+  // If the polygon is not quite planar, its outline may cross itself in one projection and not in another.
   if (!triangles) triangles = PolygonTriangulation(corners, vertices).run(Projection::along(normal));
   return triangles;
 }

@@ -8,27 +8,27 @@
 
 namespace orchard {
 
-// Collects faces of three corners or more as triangles. Corners may name vertices that are not known yet: finish()
-// splits the polygons.
+// Collects faces of three or more corners as triangles. Corners may refer to vertices that are not known yet, because
+// polygons are divided in finish().
 class FaceCollector {
  public:
-  // `at`: byte of the file where the face is. Precondition: at least three corners. Throws InputError if the triangles
-  // become too many for 32-bit indices.
+  // `at` is the byte of the face in the file. Precondition: at least three corners. Throws InputError if there are too
+  // many triangles for 32-bit indices.
   void add(std::span<const Index> corners, std::size_t at = 0);
   bool empty() const { return triangles_.empty(); }
-  // Triangles between them that name every corner of every face.
+  // Returns triangles that together name every corner of every face.
   std::span<const std::array<Index, 3>> corners() const { return triangles_; }
 
   struct Split {
     std::vector<std::array<Index, 3>> triangles;
-    Index triangulated = 0;             // polygons that no fan fills
-    Index overlapping = 0;              // polygons that nothing fills without overlap: they are fans all the same
-    std::size_t first_overlapping = 0;  // the byte of the first of those
+    Index triangulated = 0;             // polygons that no fan of triangles fills
+    Index overlapping = 0;              // polygons that nothing fills without overlap; they become fans
+    std::size_t first_overlapping = 0;  // the byte of the first of these
   };
-  // Each polygon becomes the fan of triangles, around one of its corners, that agrees best with the polygon's normal;
-  // the first corner wins unless another is clearly better. Where no fan of those tried fills it (polygons of more than
-  // kTrials corners try that many), it is triangulated instead. A corner that repeats the one before it is left out
-  // there. O(n log n). Precondition: corners < vertices.size(), all of these finite.
+  // Divides each polygon into the fan of triangles around one of its corners that agrees best with the polygon's
+  // normal; the first corner is taken unless another is clearly better. If no fan that is tried fills it (at most
+  // kTrials corners are tried), the polygon is triangulated instead, without corners that repeat the previous one. O(n
+  // log n). Precondition: corners < vertices.size(), and all vertices are finite.
   Split finish(std::span<const Point> vertices) &&;
 
  private:
@@ -38,14 +38,15 @@ class FaceCollector {
     Index corners;
     std::size_t at;
   };
-  std::vector<std::array<Index, 3>> triangles_;  // polygons: the fan around corner 0
-  std::vector<Face> faces_;                      // of four corners or more
+  std::vector<std::array<Index, 3>> triangles_;  // polygons as fans around corner 0
+  std::vector<Face> faces_;                      // faces with four or more corners
 };
 
-// A constrained Delaunay triangulation of a polygon in its best plane, which Newell's normal names (CGAL). Corners may
-// repeat, as those of a polygon that goes around a hole along a bridge do. Triangles turn as the polygon does; where a
-// corner lies on an edge, one without area keeps the edge whole. Nothing if the outline crosses itself or encloses a
-// place twice. polygon_triangulation_cgal.cpp. Precondition: the normal has length 1.
+// Returns a constrained Delaunay triangulation (by CGAL) of a polygon in its best plane, which is that of Newell's
+// normal. Corners may repeat, as in a polygon that goes around a hole along a bridge. Triangles have the orientation of
+// the polygon. If a corner lies on an edge, a triangle without area keeps the edge whole. Returns nullopt if the
+// outline crosses itself or encloses a place twice. Precondition: the normal has length 1. See
+// polygon_triangulation_cgal.cpp.
 std::optional<std::vector<std::array<Index, 3>>> triangulate_polygon(std::span<const Index> corners,
                                                                      std::span<const Point> vertices,
                                                                      const Vector& normal);

@@ -8,24 +8,24 @@
 
 namespace orchard {
 
-// CGAL's readers of STL and OFF take a file at its word: they make room for as many vertices as it promises, convert
-// any number to an index, know one spelling of STL, and say only that something went wrong, not where. These check a
-// file first, and return bytes that are safe to read, or throw InputError naming line or byte. What they leave out is
-// in the report. Linear, but for binary STL whose count and length disagree: n log n.
+// CGAL's readers of STL and OFF trust a file: they allocate memory for as many vertices as it announces, convert any
+// number to an index, accept a single spelling of STL, and report that something went wrong but not where. These
+// functions check a file first. They return bytes that are safe to read, or throw InputError with the line or byte.
+// Parts that they leave out are in the report. Linear, except for binary STL whose count and length disagree: n log n.
 
-// STL in the plain form of either encoding. Binary: as many facets as the header counts; where the length of the file
-// says otherwise, those behind them that are facets too, or without the attributes between them. Text: keywords in
-// capitals or not, in two words ("end loop"), several on a line.
+// Returns STL in the plain form of either encoding. In a binary file, there are as many facets as the header counts; if
+// the length of the file disagrees, the bytes that follow count as facets if they are facets, with or without the
+// attributes between them. In a text, keywords may be in capitals, in two words ("end loop"), and several on a line.
 std::string checked_stl(std::string_view bytes, const std::string& name, MeshReadReport& report);
 
 struct CheckedOff {
   std::string bytes = {};
   std::vector<std::size_t> face_at = {};  // byte of each face's line in the file
-  VertexFaults vertex_faults = {};        // which vertices are at the origin since the file has no place for them
+  VertexFaults vertex_faults = {};  // the vertices that the file has no place for, and that are at the origin therefore
 };
 CheckedOff checked_off(std::string_view bytes, const std::string& name, MeshReadReport& report);
 
-// stl_binary.cpp and stl_ascii.cpp: the two halves of checked_stl().
+// The two halves of checked_stl(), in stl_binary.cpp and stl_ascii.cpp.
 std::string checked_binary_stl(std::string_view bytes, const std::string& name, MeshReadReport& report);
 std::string checked_ascii_stl(std::string_view bytes, const std::string& name, MeshReadReport& report);
 

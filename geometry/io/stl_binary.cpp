@@ -165,7 +165,9 @@ std::string checked_binary_stl(std::string_view bytes, const std::string& name, 
 std::string checked_stl(std::string_view bytes, const std::string& name, MeshReadReport& report) {
   if (is_text(bytes)) return checked_ascii_stl(bytes, name, report);
   if (bytes.size() < kHeader)
-    throw InputError(name + ": neither \"solid\" nor the 84 bytes that a binary STL file begins with");
+    throw InputError(
+        name +
+        ": the file begins neither with \"solid\" nor with the 84 bytes of a binary STL file; this is not an STL file");
   return checked_binary_stl(bytes, name, report);
 }
 

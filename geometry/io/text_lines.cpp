@@ -14,11 +14,11 @@ namespace orchard {
 namespace {
 
 std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": is a directory, not a file");
+  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": this is a folder; give a file");
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
+  if (!in) throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   std::string text(std::istreambuf_iterator<char>(in), {});
-  if (in.bad()) throw InputError(file.string() + ": cannot be read");
+  if (in.bad()) throw InputError(file.string() + ": the file cannot be read; check the disk");
   return text;
 }
 
@@ -57,7 +57,7 @@ void TextLines::expect(std::string_view word) {
   at_ += word.size();
 }
 
-// Reads what is next on the line with one of the functions of text_scan.h.
+// Reads the next item on the line with one of the functions of text_scan.h.
 template <class Scan, class Number>
 bool TextLines::scan(Scan&& number, Number& value) {
   const std::string_view rest = line();
@@ -107,7 +107,7 @@ double TextLines::real(std::string_view what) {
   skip_space();
   double value = 0;
   if (!scan(scan_double, value)) fail_to_find(what);
-  if (!std::isfinite(value)) fail("a number that is not finite");
+  if (!std::isfinite(value)) fail("the number is not finite");
   return value;
 }
 
@@ -142,7 +142,7 @@ std::string_view TextLines::word() {
 void append_number(std::string& text, double value) {
   char digits[32];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
-  (void)error;  // 32 characters hold every double
+  (void)error;  // 32 characters are enough for every double
   text += ' ';
   text.append(digits, end);
 }

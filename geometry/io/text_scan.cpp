@@ -35,7 +35,7 @@ void fail_at_byte(const std::string& name, std::size_t offset, const std::string
 bool is_tiny(std::string_view number) {
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
   const std::string_view digits = number.substr(0, exponent_at);
-  // Decimal order of the first digit that is not zero.
+  // The decimal order of the first digit that is not zero.
   const auto point = static_cast<std::ptrdiff_t>(std::min(digits.find('.'), digits.size()));
   const auto first = static_cast<std::ptrdiff_t>(std::min(digits.find_first_of("123456789"), digits.size()));
   const std::ptrdiff_t order = first < point ? point - first : point - first + 1;
@@ -43,10 +43,10 @@ bool is_tiny(std::string_view number) {
   std::int64_t exponent = 0;
   const char* at = number.data() + exponent_at + 1;
   if (scan_integer(at, number.data() + number.size(), exponent)) {
-    // Both are bounded by what fits in memory and in 64 bits: compare without adding.
+    // Both are bounded by the memory and by 64 bits. They are compared without adding, which might overflow.
     return exponent < -order;
   }
-  return number.substr(exponent_at + 1).starts_with('-');  // an exponent beyond 64 bits
+  return number.substr(exponent_at + 1).starts_with('-');  // the exponent does not fit into 64 bits
 }
 
 }  // namespace orchard

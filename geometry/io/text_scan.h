@@ -13,24 +13,24 @@ namespace orchard {
 inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-// Number of the line, counted from 1, that `offset` lies on. Lines end with \n, \r\n or \r.
+// Returns the number of the line, counted from 1, that contains `offset`. Lines end with \n, \r\n or \r.
 std::size_t line_number(std::string_view bytes, std::size_t offset);
 
-// The same for a report: "line 7".
+// Returns the same as text for a report: "line 7".
 std::string line_place(std::string_view bytes, std::size_t offset);
 
-// `text` cut to a length and to characters that are fit for a message, in quotes.
+// Returns `text` in quotes, cut to a length and to characters that are suitable for a message.
 std::string in_quotes(std::string_view text);
 
 [[noreturn]] void fail_at_line(const std::string& name, std::string_view bytes, std::size_t offset,
                                const std::string& fault);
 [[noreturn]] void fail_at_byte(const std::string& name, std::size_t offset, const std::string& fault);
 
-// Whether a well-formed decimal number, which no double can hold, is too small rather than too large.
+// Whether a well-formed decimal number that does not fit into a double is too small rather than too large.
 bool is_tiny(std::string_view number);
 
-// Reads the number at `at`, which moves past it: any form of C, an optional plus sign, never the locale. False, with
-// `at` unmoved, if there is none or it is too large. Reads "inf" and "nan" too.
+// Reads the number at `at` and moves `at` past it. All forms of C are accepted, with an optional plus sign and also
+// "inf" and "nan", whatever the locale. Returns false and leaves `at` unmoved if there is none or if it is too large.
 inline bool scan_double(const char*& at, const char* end, double& value) {
   const char* first = at;
   if (first != end && *first == '+' && first + 1 != end && first[1] != '-') ++first;
@@ -45,7 +45,7 @@ inline bool scan_double(const char*& at, const char* end, double& value) {
   return true;
 }
 
-// The same, but a number that is too large for a double is read as infinite.
+// Does the same, but reads a number that is too large for a double as infinite.
 inline bool scan_any_double(const char*& at, const char* end, double& value) {
   if (scan_double(at, end, value)) return true;
   const char* first = at;

@@ -13,7 +13,7 @@ void VertexFaults::settle(std::vector<Point>& vertices, const FaceCollector& fac
   Index a_used_vertex = kNone;
   for (const auto& corners : faces.corners())
     for (const Index vertex : corners) {
-      if (vertex >= used.size()) continue;  // the reader's own complaint
+      if (vertex >= used.size()) continue;  // the reader reports this error
       used[vertex] = true;
       a_used_vertex = vertex;
     }

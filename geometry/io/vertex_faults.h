@@ -12,14 +12,14 @@
 
 namespace orchard {
 
-// Vertices with a coordinate that is not a finite number. They are a fault of the file only if a face uses them.
+// Vertices with a coordinate that is not a finite number. They are an error of the file only if a face uses them.
 class VertexFaults {
  public:
-  // `at`: byte of the file where the coordinate is.
+  // `at` is the byte of the coordinate in the file.
   void add(Index vertex, std::size_t at) { faults_.push_back({vertex, at}); }
-  // Calls `fail` with the byte of the first one that a face uses. The others keep their numbers and get the place of a
-  // vertex that is used, so that they change neither the bounding box nor any length; without faces they are erased.
-  // `place` names a byte for the report. Call it before the faces are split.
+  // Calls `fail` with the byte of the first such vertex that a face uses. The others keep their numbers and get the
+  // coordinates of a vertex that is used, so that they change neither the bounding box nor any length; if there are no
+  // faces, they are erased. `place` names a byte for the report. Call it before the faces are divided.
   void settle(std::vector<Point>& vertices, const FaceCollector& faces, const std::function<void(std::size_t)>& fail,
               const std::function<std::string(std::size_t)>& place, MeshReadReport& report) const;
 
@@ -31,7 +31,7 @@ class VertexFaults {
   std::vector<Fault> faults_;  // ascending
 };
 
-// FaceCollector::finish(), with its counts added to the report; `place` names a byte.
+// Calls FaceCollector::finish() and adds its counts to the report. `place` names a byte.
 std::vector<std::array<Index, 3>> split_faces(FaceCollector&& faces, std::span<const Point> vertices,
                                               const std::function<std::string(std::size_t)>& place,
                                               MeshReadReport& report);

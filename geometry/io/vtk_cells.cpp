@@ -20,7 +20,7 @@ const std::array kVtkTypes{
     VtkType{10, kVtkTetrahedron}, VtkType{11, {CellShape::voxel, 8}}, VtkType{12, kVtkHexahedron},
     VtkType{13, kVtkWedge}, VtkType{14, kVtkPyramid}, VtkType{15, {CellShape::prism, 10}},
     VtkType{16, {CellShape::prism, 12}},
-    // Curved ones: quadratic, and Lagrange's and Bezier's of any degree.
+    // Curved cells: quadratic ones, and those of Lagrange and Bezier of any degree.
     VtkType{22, vtk_curved(kVtkTriangle)}, VtkType{34, vtk_curved(kVtkTriangle)}, VtkType{69, vtk_curved(kVtkTriangle)},
     VtkType{76, vtk_curved(kVtkTriangle)}, VtkType{23, vtk_curved(kVtkQuad)}, VtkType{28, vtk_curved(kVtkQuad)},
     VtkType{30, vtk_curved(kVtkQuad)}, VtkType{70, vtk_curved(kVtkQuad)}, VtkType{77, vtk_curved(kVtkQuad)},
@@ -69,7 +69,9 @@ void add_vtk_polygons(const VtkCells& cells, CellShape shape, CellMesh& mesh) {
 }
 
 void add_vtk_polyhedron(const VtkCells& cells, std::size_t cell, std::span<const std::int64_t> stream, CellMesh& mesh) {
-  const auto cut_short = [&] { cells.fail(cells.at, "the faces of a polyhedron are cut short"); };
+  const auto cut_short = [&] {
+    cells.fail(cells.at, "the numbers of a polyhedron end within its faces; the file is damaged");
+  };
   if (stream.empty()) cut_short();
   std::int64_t faces = stream.front();
   std::vector<Index> corners;
@@ -102,7 +104,8 @@ void add_vtk_cells(const VtkCells& cells, std::span<const std::int64_t> types, s
     }
     const CellKind* kind = vtk_cell_kind(types[cell]);
     if (kind == nullptr)
-      cells.fail(cells.at, "cells of type " + std::to_string(types[cell]) + " of VTK cannot be read");
+      cells.fail(cells.at,
+                 "cells of type " + std::to_string(types[cell]) + " of VTK cannot be read; save the surface as .vtp");
     cells.corners_of(cell, corners);
     mesh.add(*kind, corners, cells.at);
   }

@@ -19,7 +19,7 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-// A number of a file as wide as the name of its type says.
+// The width of a number in the file, by the name of its type.
 struct LegacyNumber {
   std::string_view name;
   std::size_t bytes;
@@ -56,7 +56,7 @@ class LegacyVtkReader {
     }
     if (!types_.empty() || grid_) add_cells();
     return std::move(mesh_).finish(
-        name_, [&](std::size_t at) { in_.fail(at, "point needs three finite numbers, since a cell uses it"); },
+        name_, [&](std::size_t at) { in_.fail(at, "the point needs three finite numbers, since a cell uses it"); },
         [&](std::size_t at) { return in_.place(at); }, report);
   }
 
@@ -69,19 +69,20 @@ class LegacyVtkReader {
     in_.line();
     const std::size_t at = in_.position();
     const std::string encoding = lower_case(in_.word());
-    if (encoding != "ascii" && encoding != "binary") in_.fail(at, in_quotes(encoding) + " in place of ASCII or BINARY");
+    if (encoding != "ascii" && encoding != "binary")
+      in_.fail(at, in_quotes(encoding) + " stands in place of ASCII or BINARY");
     const std::size_t dataset = in_.position();
-    if (lower_case(in_.word()) != "dataset") in_.fail(dataset, "no DATASET");
+    if (lower_case(in_.word()) != "dataset") in_.fail(dataset, "the line DATASET is missing");
     const std::string kind = lower_case(in_.word());
     grid_ = kind == "unstructured_grid";
     if (!grid_ && kind != "polydata")
-      in_.fail(dataset, "a dataset of the kind " + in_quotes(kind) +
-                            "; POLYDATA and UNSTRUCTURED_GRID can be read: save its surface as .vtp or .stl");
+      in_.fail(dataset, "the dataset is of the kind " + in_quotes(kind) +
+                            ", but only POLYDATA and UNSTRUCTURED_GRID can be read; save its surface as .vtp or .stl");
     in_.line();
     if (encoding == "binary") in_.set_binary(std::endian::big);
   }
 
-  // False where the geometry ends.
+  // Returns false at the end of the geometry.
   bool read_section() {
     const std::size_t at = in_.position();
     const std::string keyword = lower_case(in_.word());
@@ -94,7 +95,7 @@ class LegacyVtkReader {
     if (keyword == "cell_types") return read_types(), true;
     if (keyword == "field") return skip_field(), true;
     if (keyword == "metadata") return skip_metadata(), true;
-    in_.fail(at, in_quotes(keyword) + " where a section such as POINTS begins");
+    in_.fail(at, in_quotes(keyword) + " stands where a section such as POINTS has to begin");
   }
 
   const LegacyNumber& type_named(std::string_view name, std::size_t at) const {
@@ -113,7 +114,8 @@ class LegacyVtkReader {
     const LegacyNumber& type = type_named(in_.word(), at);
     in_.line();
     const std::uint64_t count = in_.checked_count(promised, bytes_each(type.bytes) * 3, "points");
-    if (!mesh_.vertices.empty() || count >= kNone) in_.fail(at, "points come twice, or too many");
+    if (!mesh_.vertices.empty() || count >= kNone)
+      in_.fail(at, "the points are defined twice, or are too many for 32-bit indices");
     for (std::uint64_t i = 0; i < count; ++i) {
       in_.more_of_text();
       const std::size_t place = in_.position();
@@ -137,7 +139,7 @@ class LegacyVtkReader {
     for (std::int64_t& number : numbers) number = integer(type);
     return numbers;
   }
-  // "OFFSETS vtktypeint64" and the numbers, of version 5.
+  // Reads "OFFSETS vtktypeint64" and the numbers, in the form of version 5.
   std::vector<std::int64_t> named_integers(const char* name, std::int64_t promised) {
     in_.more();
     const std::size_t at = in_.position();
@@ -147,7 +149,7 @@ class LegacyVtkReader {
     return integers(promised, type);
   }
 
-  // Cells as version 5 has them, or each as its number of points and these.
+  // Reads cells in the form of version 5, or each as its number of points followed by the points.
   VtkCells read_cell_arrays(std::size_t at) {
     const std::int64_t first = in_.integer(), second = in_.integer();
     in_.line();
@@ -183,9 +185,9 @@ class LegacyVtkReader {
     types_ = integers(promised, type_named("int", in_.position()));
   }
 
-  // Polyhedra have the numbers of their faces in place of their points.
+  // Polyhedra have the numbers of their faces where other cells have their points.
   void add_cells() {
-    if (!cells_) in_.fail(bytes_.size(), "no CELLS");
+    if (!cells_) in_.fail(bytes_.size(), "the section CELLS is missing");
     cells_->check();
     if (types_.size() != cells_->size())
       in_.fail(cells_->at,
@@ -200,13 +202,14 @@ class LegacyVtkReader {
       }
       const CellKind* kind = vtk_cell_kind(types_[cell]);
       if (kind == nullptr)
-        in_.fail(cells_->at, "cells of type " + std::to_string(types_[cell]) + " of VTK cannot be read");
+        in_.fail(cells_->at,
+                 "cells of type " + std::to_string(types_[cell]) + " of VTK cannot be read; save the surface as .vtp");
       cells_->corners_of(cell, corners);
       mesh_.add(*kind, corners, cells_->at);
     }
   }
 
-  // "FIELD name arrays", then "name components tuples type" and the numbers of each.
+  // Skips "FIELD name arrays", and then "name components tuples type" with the numbers of each array.
   void skip_field() {
     in_.word();
     const std::uint64_t arrays = in_.checked_count(in_.integer(), 8, "arrays");
@@ -228,7 +231,7 @@ class LegacyVtkReader {
         for (std::uint64_t column = 0; column < columns; ++column) real(type);
     }
   }
-  // To the next empty line.
+  // Skips everything up to the next empty line.
   void skip_metadata() {
     in_.line();
     while (in_.remaining() > 0 && !in_.line().empty()) {

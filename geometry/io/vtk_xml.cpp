@@ -13,7 +13,7 @@
 namespace orchard {
 namespace {
 
-// A <Piece>: its arrays by the section that they are in and their name, such as "Polys/connectivity".
+// A <Piece> with its arrays, by the name of their section and their own name, such as "Polys/connectivity".
 struct VtkPiece {
   std::size_t at = 0;
   std::uint64_t points = 0;
@@ -28,8 +28,8 @@ class VtkXmlReader {
     read_head();
     while (tags_.next() && take_tag()) {
     }
-    if (!closed_) fail(bytes_.size(), "the file ends before </VTKFile>");
-    if (pieces_.empty()) throw InputError(name_ + ": no <Piece> in this file");
+    if (!closed_) fail(bytes_.size(), "the file ends before </VTKFile>; it may be cut off");
+    if (pieces_.empty()) throw InputError(name_ + ": the file has no <Piece>");
     for (const VtkPiece& piece : pieces_) add(piece);
     return std::move(mesh_).finish(
         name_, [&](std::size_t at) { fail(at, "a point needs three finite numbers, since a cell uses it"); },
@@ -40,21 +40,23 @@ class VtkXmlReader {
   [[noreturn]] void fail(std::size_t at, const std::string& fault) const { fail_at_line(name_, bytes_, at, fault); }
 
   void read_head() {
-    if (!tags_.next() || tags_.tag().name != "VTKFile") fail(0, "no XML file of VTK: it begins without <VTKFile>");
+    if (!tags_.next() || tags_.tag().name != "VTKFile")
+      fail(0, "this is no XML file of VTK, since it does not begin with <VTKFile>");
     const XmlTags::Tag& tag = tags_.tag();
     const std::string_view type = tag.value("type"), compressor = tag.value("compressor");
     grid_ = type == "UnstructuredGrid";
     if (!grid_ && type != "PolyData")
-      fail(tag.at, "a file of the type " + in_quotes(type) +
-                       "; PolyData and UnstructuredGrid can be read: save its surface as .vtp");
+      fail(tag.at, "the file has the type " + in_quotes(type) +
+                       ", but only PolyData and UnstructuredGrid can be read; save its surface as .vtp");
     if (tag.value("byte_order") == "BigEndian") encoding_.order = std::endian::big;
     encoding_.wide_heads = tag.value("header_type") == "UInt64";
     encoding_.compressed = !compressor.empty();
     if (encoding_.compressed && compressor != "vtkZLibDataCompressor")
-      fail(tag.at, "compressed by " + in_quotes(compressor) + "; save it with zlib or without compression");
+      fail(tag.at,
+           "the data are compressed by " + in_quotes(compressor) + "; save it with zlib or without compression");
   }
 
-  // False where appended data begin, which end the text.
+  // Returns false where appended data begin, because the text ends there.
   bool take_tag() {
     const XmlTags::Tag& tag = tags_.tag();
     if (tag.name == "VTKFile") return closed_ = tag.closes, !closed_;
@@ -70,7 +72,7 @@ class VtkXmlReader {
     return true;
   }
 
-  // Other tags, such as the <InformationKey> of an array, belong to what they are in.
+  // Other tags, such as the <InformationKey> of an array, belong to the array or section that contains them.
   static bool is_section(std::string_view name) {
     for (const std::string_view section :
          {"Points", "Polys", "Strips", "Lines", "Verts", "Cells", "PointData", "CellData", "FieldData"})
@@ -83,9 +85,9 @@ class VtkXmlReader {
     encoding_.base64 = tag.value("encoding", "base64") != "raw";
     const std::size_t mark = bytes_.find_first_not_of(" \t\r\n", tag.end);
     if (mark == std::string_view::npos || bytes_[mark] != '_')
-      fail(tag.at, "appended data that do not begin with an underscore");
+      fail(tag.at, "the appended data do not begin with an underscore");
     encoding_.appended = mark + 1;
-    closed_ = true;  // arrays say where their data end
+    closed_ = true;  // the end of the data of an array is where this tag begins
   }
 
   std::uint64_t number_of(const XmlTags::Tag& tag, std::string_view attribute) const {
@@ -104,7 +106,7 @@ class VtkXmlReader {
     array.begin = array.end = tag.end;
     if (!tag.closes) {
       array.end = std::min(bytes_.find('<', tag.end), bytes_.size());
-      if (array.end == bytes_.size()) fail(tag.at, "the file ends within this array");
+      if (array.end == bytes_.size()) fail(tag.at, "the file ends within this array; it may be cut off");
     }
     const std::string name = section_ == "Points" ? "" : std::string(tag.value("Name"));
     pieces_.back().arrays.try_emplace(section_ + "/" + name, array);
@@ -117,11 +119,13 @@ class VtkXmlReader {
 
   void add_points(const VtkPiece& piece, const VtkXmlData& data) {
     const VtkArray* array = find(piece, "Points/");
-    if (array == nullptr) fail(piece.at, "a piece without <Points>");
+    if (array == nullptr) fail(piece.at, "the piece has no <Points>");
     const std::vector<double> numbers = data.reals(*array);
     if (numbers.size() % 3 != 0 || numbers.size() / 3 != piece.points)
-      fail(array->at, std::to_string(numbers.size()) + " coordinates of " + std::to_string(piece.points) + " points");
-    if (mesh_.vertices.size() + piece.points >= kNone) fail(piece.at, "too many points for 32-bit indices");
+      fail(array->at,
+           std::to_string(numbers.size()) + " coordinates do not fit " + std::to_string(piece.points) + " points");
+    if (mesh_.vertices.size() + piece.points >= kNone)
+      fail(piece.at, "the file has too many points for 32-bit indices");
     for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
       const Point point(numbers[i], numbers[i + 1], numbers[i + 2]);
       if (!point.allFinite()) mesh_.vertex_faults.add(static_cast<Index>(mesh_.vertices.size()), array->at);
@@ -158,7 +162,7 @@ class VtkXmlReader {
   void add_grid(const VtkPiece& piece, const VtkXmlData& data) {
     const std::optional<VtkCells> cells = cells_of(piece, data, "Cells");
     const VtkArray* types = find(piece, "Cells/types");
-    if (!cells || types == nullptr) fail(piece.at, "a piece without the connectivity, offsets and types of <Cells>");
+    if (!cells || types == nullptr) fail(piece.at, "the piece lacks the connectivity, offsets or types of <Cells>");
     const VtkArray *faces = find(piece, "Cells/faces"), *ends = find(piece, "Cells/faceoffsets");
     using Numbers = std::vector<std::int64_t>;
     add_vtk_cells(*cells, data.integers(*types), faces == nullptr ? Numbers() : data.integers(*faces),

@@ -11,9 +11,9 @@
 namespace orchard {
 namespace {
 
-constexpr std::uint64_t kZlibRatio = 1032;  // more than zlib can make of a byte
+constexpr std::uint64_t kZlibRatio = 1032;  // the largest factor by which zlib can compress
 
-// Bytes in a file, as they are or in base64; streams in base64 may follow each other, each with its own padding.
+// Bytes in a file, either plain or in base64. Several base64 streams may follow each other, each with its own padding.
 class ByteSource {
  public:
   ByteSource(std::string_view bytes, std::size_t begin, std::size_t end, bool base64, const std::string& name)
@@ -54,9 +54,9 @@ class ByteSource {
     int digits = 0, padding = 0;
     while (digits + padding < 4) {
       while (at_ < bytes_.size() && (is_blank(bytes_[at_]) || is_line_end(bytes_[at_]))) ++at_;
-      if (at_ >= bytes_.size()) fail("the data end early");
+      if (at_ >= bytes_.size()) fail("the data end early; the file may be cut off");
       const int value = digit(bytes_[at_]);
-      if (value < 0 || (value == 64 && digits < 2) || (value < 64 && padding > 0)) fail("no base64");
+      if (value < 0 || (value == 64 && digits < 2) || (value < 64 && padding > 0)) fail("the data are not base64");
       bits = bits << 6 | static_cast<std::uint32_t>(value & 63);
       value == 64 ? ++padding : ++digits;
       ++at_;
@@ -68,7 +68,7 @@ class ByteSource {
   std::size_t at_;
   bool base64_;
   const std::string& name_;
-  std::string kept_;  // decoded, but not yet taken
+  std::string kept_;  // decoded bytes that have not been read yet
 };
 
 class BlockReader {
@@ -81,7 +81,7 @@ class BlockReader {
     if (first == 0) return {};
     const std::uint64_t size = head(), last = head();
     if (first > source_.room() / 4)
-      source_.fail(std::to_string(first) + " blocks are more than the data have room for");
+      source_.fail(std::to_string(first) + " blocks do not fit into the data; the file is damaged");
     std::vector<std::uint64_t> packed(first);
     for (std::uint64_t& bytes : packed) bytes = head();
     std::string result;
@@ -106,14 +106,14 @@ class BlockReader {
     uLongf length = size;
     const int result = uncompress(reinterpret_cast<Bytef*>(out.data() + before), &length,
                                   reinterpret_cast<const Bytef*>(bytes.data()), packed);
-    if (result != Z_OK || length != size) source_.fail("a block that zlib cannot decompress");
+    if (result != Z_OK || length != size) source_.fail("zlib cannot decompress a block; the file is damaged");
   }
 
   ByteSource source_;
   const VtkEncoding& encoding_;
 };
 
-// A type of numbers, with how one is read.
+// A type of numbers, and the function that reads one.
 template <typename Result>
 struct VtkNumber {
   std::string_view name;

@@ -8,25 +8,25 @@
 
 namespace orchard {
 
-// What <VTKFile> says of how numbers are stored.
+// How numbers are stored, as <VTKFile> says.
 struct VtkEncoding {
   std::endian order = std::endian::little;
-  bool wide_heads = false;   // 64-bit numbers before arrays
+  bool wide_heads = false;   // the numbers before arrays have 64 bits
   bool compressed = false;   // by zlib
-  bool base64 = true;        // of the appended data
-  std::size_t appended = 0;  // byte behind the "_" of <AppendedData>; 0: there is none
+  bool base64 = true;        // whether appended data are in base64
+  std::size_t appended = 0;  // the byte after the "_" of <AppendedData>; 0 if there is none
 };
 
 // A <DataArray>.
 struct VtkArray {
   std::string_view type, format;
   std::size_t at = 0;                   // byte of the tag
-  std::size_t begin = 0, end = 0;       // bytes of what is between the tags
+  std::size_t begin = 0, end = 0;       // the bytes between the tags
   std::optional<std::uint64_t> offset;  // from the beginning of the appended data
 };
 
-// The numbers of the arrays of a file, whichever way they are encoded. Throws InputError, which names the byte or line;
-// the memory is bounded by the size of the file, and 1032 times that where it is compressed.
+// Reads the numbers of a file's arrays in any encoding. Throws InputError, which names the byte or line. The memory is
+// bounded by the size of the file, or 1032 times that if it is compressed.
 class VtkXmlData {
  public:
   VtkXmlData(std::string_view bytes, const std::string& name, const VtkEncoding& encoding)

@@ -20,7 +20,7 @@ void XmlTags::skip_blanks() {
 
 void XmlTags::skip_to(std::string_view end, std::size_t start) {
   const std::size_t found = bytes_.find(end, at_);
-  if (found == std::string_view::npos) fail(start, "a tag that the file ends within");
+  if (found == std::string_view::npos) fail(start, "the file ends within a tag; it may be cut off");
   at_ = found + end.size();
 }
 
@@ -50,7 +50,7 @@ bool XmlTags::next() {
   const std::size_t stop = std::min(bytes_.find_first_of(" \t\r\n/>", at_), bytes_.size());
   tag_.name = bytes_.substr(at_, stop - at_);
   at_ = stop;
-  if (tag_.name.empty()) fail(tag_.at, "a tag without a name");
+  if (tag_.name.empty()) fail(tag_.at, "a tag has no name");
   read_attributes();
   return true;
 }
@@ -58,7 +58,7 @@ bool XmlTags::next() {
 void XmlTags::read_attributes() {
   while (true) {
     skip_blanks();
-    if (at_ >= bytes_.size()) fail(tag_.at, "a tag that the file ends within");
+    if (at_ >= bytes_.size()) fail(tag_.at, "the file ends within a tag; it may be cut off");
     if (bytes_[at_] == '>') break;
     if (bytes_[at_] == '/') {
       tag_.closes = true;
@@ -66,12 +66,12 @@ void XmlTags::read_attributes() {
       continue;
     }
     const std::size_t start = at_, equals = bytes_.find('=', at_);
-    if (equals == std::string_view::npos) fail(start, "an attribute without a value");
+    if (equals == std::string_view::npos) fail(start, "an attribute has no value");
     const std::size_t quote = bytes_.find_first_not_of(" \t\r\n", equals + 1);
     if (quote == std::string_view::npos || (bytes_[quote] != '"' && bytes_[quote] != '\''))
-      fail(start, "an attribute without a value in quotes");
+      fail(start, "the value of an attribute is not in quotes");
     const std::size_t close = bytes_.find(bytes_[quote], quote + 1);
-    if (close == std::string_view::npos) fail(start, "an attribute whose quotes do not close");
+    if (close == std::string_view::npos) fail(start, "the quotes of an attribute do not close");
     std::string_view name = bytes_.substr(start, equals - start);
     name = name.substr(0, std::min(name.find_first_of(" \t\r\n"), name.size()));
     tag_.attributes.emplace_back(name, bytes_.substr(quote + 1, close - quote - 1));

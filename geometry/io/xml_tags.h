@@ -6,24 +6,24 @@
 
 namespace orchard {
 
-// The tags of an XML text, one after the other, with their places: enough for formats of which data are a part, and
-// which put binary data behind a tag, where no parser of whole documents could go on.
+// Reads the tags of an XML text one after another, with their places. It is made for formats that contain data, and
+// binary data after a tag, where a parser of whole documents would fail.
 class XmlTags {
  public:
   struct Tag {
-    std::string_view name;               // "Piece" of <Piece> and of </Piece>
-    bool opens = false, closes = false;  // <A>: opens; </A>: closes; <A/>: both
-    std::size_t at = 0, end = 0;         // bytes of "<" and behind ">"
+    std::string_view name;               // "Piece" for <Piece> and for </Piece>
+    bool opens = false, closes = false;  // <A> opens, </A> closes, and <A/> does both
+    std::size_t at = 0, end = 0;         // the byte of "<" and the one after ">"
     std::vector<std::pair<std::string_view, std::string_view>> attributes;
 
-    // Of an attribute; `otherwise` if there is none.
+    // Returns the value of an attribute, or `otherwise` if there is none.
     std::string_view value(std::string_view attribute, std::string_view otherwise = {}) const;
   };
 
   XmlTags(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-  // Moves to the next tag, past comments and declarations; false at the end of the file. Throws InputError, which names
-  // the line, if a tag is broken.
+  // Moves to the next tag, past comments and declarations. Returns false at the end of the file. Throws InputError,
+  // which names the line, if a tag is broken.
   bool next();
   const Tag& tag() const { return tag_; }
 

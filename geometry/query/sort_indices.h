@@ -7,7 +7,8 @@
 
 namespace orchard::detail {
 
-// Sorts numbers below 2^22 in two passes, 11 bits each, where that is faster than by comparisons; all others by these.
+// Sorts numbers. If all are below 2^22 and two passes of a radix sort with 11 bits each are faster than comparisons, it
+// uses these passes.
 inline void sort_indices(std::vector<Index>& numbers) {
   constexpr std::size_t kMany = 1024;
   constexpr unsigned kBits = 11;

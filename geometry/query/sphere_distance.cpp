@@ -7,7 +7,8 @@
 namespace orchard {
 namespace {
 
-// The 8 corners of a cube and the 12 of three golden rectangles, on the unit sphere.
+// Returns the 20 vertices of a dodecahedron on the unit sphere: the 8 corners of a cube and the 12 of three golden
+// rectangles.
 std::array<Vector, 20> dodecahedron() {
   constexpr double kPhi = 1.618033988749895, kCube = 0.5773502691896258;
   std::array<Vector, 20> vertices;
@@ -23,7 +24,7 @@ std::array<Vector, 20> dodecahedron() {
   return vertices;
 }
 
-// Negative if all vertices lie inside the solid.
+// The result is negative if all vertices lie inside the solid.
 double max_signed_distance(const Surface& surface, const Sphere& sphere) {
   static const std::array<Vector, 20> directions = dodecahedron();
   double max = -std::numeric_limits<double>::infinity();

@@ -8,20 +8,20 @@
 
 namespace orchard::detail {
 
-// Every triangle that may hold the surface's point nearest to a query, and a few more: those that floats cannot tell
-// apart.
+// Every triangle that may contain the point of the surface nearest to a query, and possibly a few more that floats
+// cannot exclude.
 struct NearestTriangles {
   std::array<Index, 16> triangles;
   std::size_t count = 0;
-  bool complete = false;  // there was room for all
+  bool complete = false;  // whether all of them are listed
 };
 
-// A four-wide tree over the triangles of a mesh, for distance queries. What bounds a child is a box, and a slab across
-// the mean normal of its triangles, cut to a disk around the box's middle: a sheet that is oblique to the axes is far
-// thinner than its box, and from a place above it the box alone could not tell it from what lies beside it. Bounds and
-// flattened triangles are floats around the centre of the mesh, scaled to size one; they only sort out which triangles
-// can matter. Those few are then measured by closest_point_of_triangle, so an answer is what a loop over all triangles
-// would give, bit for bit.
+// A tree with four children a node over the triangles of a mesh, for distance queries. The bounds of a child are a box,
+// and a slab across the mean normal of its triangles, cut to a disk around the middle of the box. A part of the surface
+// that is oblique to the axes is much thinner than its box, and for a place above it, the box alone could not exclude
+// what lies next to it. Bounds and flattened triangles are floats relative to the centre of the mesh, scaled to size
+// one, and only select the triangles that can matter. These few are then measured by closest_point_of_triangle, so a
+// result has the same bits as that of a loop over all triangles.
 class TriangleTree {
  public:
   // Keeps a reference to `mesh`. Precondition: at least one triangle.
@@ -29,10 +29,10 @@ class TriangleTree {
 
   ClosestPoint closest(const Point& query) const;
   ClosestPoint closest(const Point& query, NearestTriangles& nearest) const;
-  // The same if it is within `distance`; else infinitely far, and no triangle.
+  // Returns the same if it is within `distance`; otherwise an infinite distance and no triangle.
   ClosestPoint closest_within(const Point& query, double distance) const;
-  // How often the surface winds around the query: exact if the mesh is closed and consistently oriented and the query
-  // is not on it. Precondition: the query lies in the mesh's box.
+  // Returns how often the surface winds around the query. It is exact if the mesh is closed and consistently oriented
+  // and the query is not on it. Precondition: the query lies in the mesh's box.
   int winding_number(const Point& query) const;
   void visit_nearest(const Point& query, const std::function<double(Index)>& visit) const;         // see Surface
   double max_reach(const std::array<Sphere, 3>& balls, const Point& middle, double enough) const;  // see Surface
@@ -40,22 +40,24 @@ class TriangleTree {
   void near(const Sphere& ball, const std::function<bool(const Box&)>& is_out,
             std::vector<Index>& out) const;                                               // see Surface
   void overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;  // ascending; cleared first
-  // Every two triangles whose boxes meet, once, and some others. Linear in their number where the mesh is well shaped.
+  // Visits every two triangles whose boxes meet, once, and some others. The time is linear in the number of pairs if
+  // the mesh is well shaped.
   void visit_pairs(const std::function<void(Index, Index)>& visit) const;
 
  private:
   struct Node {
     Float4 lower[3], upper[3];
-    Float4 normal[3], low, high;  // of length one or 0: what it spans along it
-    Float4 radius;                // and across it, around the box's middle
+    Float4 normal[3], low, high;  // of length one or 0, and the range along it
+    Float4 radius;                // the extent across the normal, around the middle of the box
     Index child[4];               // into nodes_, or kLeaf + an index into leaves_
   };
-  // Triangle k has its longest edge on the first axis of a frame (origin, u, v, n): corners (0, 0), (base, 0), (foot,
-  // height).
+  // Triangle k in a frame (origin, u, v, n) with its longest edge on the first axis: its corners are (0, 0), (base, 0)
+  // and (foot, height).
   struct Leaf {
     Float4 origin[3], u[3], v[3], n[3];
-    Float4 base, foot, height, inverse_left, inverse_right;  // of the squared lengths of the edges to the apex
-    Index triangle[4];                                       // kNone: nothing here
+    // The last two are those of the squared lengths of the edges to the apex.
+    Float4 base, foot, height, inverse_left, inverse_right;
+    Index triangle[4];  // kNone for an empty place
   };
   struct Query {
     Float4 p[3];
@@ -68,7 +70,7 @@ class TriangleTree {
   class Reach;
 
   bool localize(const Point& point, Query& query) const;
-  // Of each child's box.
+  // The middle of each child's box.
   static Float4 middle(const Node& node, int axis) {
     return Float4{0.5f, 0.5f, 0.5f, 0.5f} * (node.lower[axis] + node.upper[axis]);
   }

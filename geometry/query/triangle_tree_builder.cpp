@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr Index kLeafSize = 4;
-constexpr int kDepthOfHalving = 20;  // below it ranges are halved, which bounds the depth of any tree
+// Below this depth, ranges are halved by number, which bounds the depth of the tree.
+constexpr int kDepthOfHalving = 20;
 
 float half_area(const Eigen::AlignedBox3f& box) {
   const Eigen::Vector3f s = box.sizes();
@@ -17,8 +18,8 @@ float half_area(const Eigen::AlignedBox3f& box) {
 }
 Index groups(Index count) { return (count + kLeafSize - 1) / kLeafSize; }
 
-// An orthonormal frame whose first axis is the longest edge and whose second points from it to the apex, and the
-// corners in it. Works for needles and points too.
+// An orthonormal frame whose first axis is along the longest edge and whose second axis points from it to the apex, and
+// the corners in this frame. It works for needles and points, too.
 struct Flattened {
   Point origin;
   Vector u = Vector::UnitX(), v = Vector::UnitY();
@@ -114,7 +115,8 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
   return node;
 }
 
-// Across the mean normal, by area, and a disk. Any direction is right; where there is none, the slab says nothing.
+// Adds a slab across the mean normal, weighted by area, and a disk. Any direction makes a valid slab; if there is none,
+// the slab excludes nothing.
 void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) const {
   Vector sum = Vector::Zero();
   for (Index i = range.begin; i < range.end; ++i) {
@@ -181,7 +183,7 @@ TriangleTree::Builder::Split TriangleTree::Builder::best_split(Range range, cons
   return best;
 }
 
-// Orders the range so that its two halves are [begin, result) and [result, end), neither empty.
+// Reorders the range so that its halves are [begin, result) and [result, end), both not empty.
 Index TriangleTree::Builder::split(Range range, int depth) {
   Box3f centers;
   for (Index i = range.begin; i < range.end; ++i) centers.extend(order_[i].center);

@@ -7,9 +7,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr float kSlabSlack = 1e-5f;   // more than all float roundings of a slab test beside a mesh of size one
-constexpr double kSlabReach = 1e6;    // farther corners would cost the slab its digits
-constexpr double kFloatReach = 1e30;  // farther corners are no floats
+// Larger than all float rounding errors of a slab test, in a mesh scaled to size one.
+constexpr float kSlabSlack = 1e-5f;
+constexpr double kSlabReach = 1e6;    // corners farther away would make the slab too imprecise
+constexpr double kFloatReach = 1e30;  // corners farther away do not fit into floats
 
 bool boxes_meet(const Box& box, const std::array<Point, 3>& p) {
   return !box.intersection(Box(p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2]))).isEmpty();
@@ -17,8 +18,9 @@ bool boxes_meet(const Box& box, const std::array<Point, 3>& p) {
 
 }  // namespace
 
-// A triangle in the tree's coordinates: what it spans along the axes, along its normal, and in its plane along the
-// normals of its edges. Any direction makes a valid slab, so a needle's poor normals only make a poor filter.
+// A triangle in the tree's coordinates: its ranges along the axes, along its normal, and along the normals of its edges
+// in its plane. Any direction makes a valid slab, so imprecise normals of a needle make the filter weaker but not
+// wrong.
 class TriangleTree::TriangleQuery {
  public:
   TriangleQuery(const std::array<Point, 3>& corners, const Point& center, double scale) {
@@ -43,7 +45,7 @@ class TriangleTree::TriangleQuery {
   }
   bool usable() const { return usable_; }
 
-  // For each child, all bits set if it may hold something that meets the triangle.
+  // Sets all bits of each child that may contain something that meets the triangle.
   auto meets(const Node& node) const {
     auto result = node.lower[0] <= upper_[0];
     Float4 middle[3], half[3];
@@ -62,7 +64,7 @@ class TriangleTree::TriangleQuery {
 
  private:
   struct Slab {
-    Float4 direction[3], size[3];  // unit; its absolute values
+    Float4 direction[3], size[3];  // unit vectors, and their absolute values
     Float4 lower, upper;
   };
 

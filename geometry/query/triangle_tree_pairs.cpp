@@ -6,12 +6,12 @@
 
 namespace orchard::detail {
 
-// Walks down the tree in two places at a time, wherever their boxes meet.
+// Descends the tree at two places at once, as long as their boxes meet.
 class TriangleTree::Pairs {
-  // One box, four times.
+  // One box, repeated four times.
   struct BoxOfFour {
     Float4 lower[3], upper[3];
-    // For each of four boxes, all bits set if it meets this one. A box without anything in it meets none.
+    // Sets all bits for each of four boxes that meets this one. An empty box meets none.
     auto meets(const Float4* other_lower, const Float4* other_upper) const {
       auto result = lower[0] <= other_upper[0];
       for (int axis = 0; axis < 3; ++axis)
@@ -86,7 +86,7 @@ class TriangleTree::Pairs {
   }
   static Place place(const Node& node, int k) { return {node.child[k], one_of(node.lower, node.upper, k)}; }
 
-  // The larger one is opened first.
+  // The larger of the two is opened first.
   void between(const Place& a, const Place& b) const {
     const bool a_is_leaf = a.child >= Builder::kLeaf, b_is_leaf = b.child >= Builder::kLeaf;
     if (a_is_leaf && b_is_leaf) {
@@ -100,7 +100,7 @@ class TriangleTree::Pairs {
       if (meets[k]) between(place(node, k), b);
   }
 
-  // A leaf's triangle with those of a leaf, from a lane on.
+  // Visits the pairs of one triangle of a leaf with the triangles of a leaf, beginning at a lane.
   void visit_met(Index leaf, int lane, Index other, int from) const {
     const Index triangle = tree_.leaves_[leaf].triangle[lane];
     if (triangle == kNone) return;
@@ -112,7 +112,7 @@ class TriangleTree::Pairs {
 
   const TriangleTree& tree_;
   const std::function<void(Index, Index)>& visit_;
-  std::vector<LeafBoxes> boxes_;  // as leaves_
+  std::vector<LeafBoxes> boxes_;  // in the order of leaves_
 };
 
 void TriangleTree::visit_pairs(const std::function<void(Index, Index)>& visit) const { Pairs(*this, visit).within(0); }

@@ -20,12 +20,12 @@ using PointWithNormal = std::pair<PoissonKernel::Point_3, PoissonKernel::Vector_
 
 constexpr std::size_t kFewestPoints = 16;
 constexpr unsigned kNeighbors = 6;
-constexpr double kMinAngle = 20;  // degrees, of the triangles
-// Mean distances between points that each is moved by at most: CGAL's refinement of a triangulation fails where the
-// centres of all its balls are one place, as for points of an exact sphere.
+constexpr double kMinAngle = 20;  // of the triangles, in degrees
+// Over the mean distance of points: how far each point is moved at most. CGAL's refinement of a triangulation fails if
+// the centres of all balls coincide, as for the points of an exact sphere.
 constexpr double kUnlike = 5e-3;
 
-// CGAL's own checks end a call without a word, and its random numbers are the same in each.
+// Prevents CGAL's own checks from printing, and gives it the same random numbers in each call.
 class QuietCgal {
  public:
   QuietCgal() : before_(CGAL::set_error_handler(silent)) { CGAL::get_default_random() = CGAL::Random(0); }
@@ -47,7 +47,7 @@ void make_unlike(std::vector<PointWithNormal>& points, double spacing) {
   }
 }
 
-// Distances to points are those to a mesh of triangles without extent.
+// Makes degenerate triangles of points, so that distances to points are those to a mesh.
 Surface surface_of_points(const std::vector<Point>& points) {
   TriangleMesh mesh{points, {}};
   for (Index i = 0; i < points.size(); ++i) mesh.triangles.push_back({i, i, i});
@@ -69,10 +69,10 @@ void measure(const std::vector<Point>& points, ReconstructedMesh& result, const 
 ReconstructedMesh reconstruct_surface(const OrientedPoints& points, const ReconstructOptions& options,
                                       const Progress& progress) {
   if (points.points.size() < kFewestPoints)
-    throw InputError(std::to_string(points.points.size()) + " points with normals; a surface needs " +
+    throw InputError(std::to_string(points.points.size()) + " points with normals are too few; a surface needs " +
                      std::to_string(kFewestPoints));
   if (!(options.distance > 0) || !(options.radius > 0))
-    throw InputError("the distance and the radius of a reconstruction are above 0");
+    throw InputError("the distance and the radius of a surface reconstruction must be above 0");
   report_progress(progress, "reconstruction", 0);
   std::vector<PointWithNormal> input;
   for (std::size_t i = 0; i < points.points.size(); ++i) {
@@ -84,7 +84,7 @@ ReconstructedMesh reconstruct_surface(const OrientedPoints& points, const Recons
   ReconstructedMesh result;
   result.spacing =
       CGAL::compute_average_spacing<CGAL::Sequential_tag>(input, kNeighbors, CGAL::parameters::point_map(place));
-  if (!(result.spacing > 0)) throw InputError("all points lie in one place");
+  if (!(result.spacing > 0)) throw InputError("all points lie in one place; a surface needs points around a solid");
   make_unlike(input, result.spacing);
   const QuietCgal quiet;
   detail::CgalMesh mesh;
@@ -94,7 +94,7 @@ ReconstructedMesh reconstruct_surface(const OrientedPoints& points, const Recons
                                                          CGAL::Second_of_pair_property_map<PointWithNormal>(), mesh,
                                                          result.spacing, kMinAngle, options.radius, options.distance);
   } catch (const std::exception&) {
-    made = false;  // CGAL's own checks: no surface surrounds a place that is inside
+    made = false;  // one of CGAL's own checks has failed: no surface surrounds a place that is inside
   }
   if (!made || mesh.is_empty())
     throw InputError("no closed surface fits the points and their normals; check that all normals point outward");

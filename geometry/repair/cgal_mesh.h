@@ -10,7 +10,7 @@ namespace orchard::detail {
 
 using CgalMesh = CGAL::Surface_mesh<CgalKernel::Point_3>;
 
-// The triangles as CGAL has them, without what it has removed.
+// Returns the triangles of a mesh of CGAL without those that it has removed.
 inline TriangleMesh from_cgal(const CgalMesh& from) {
   TriangleMesh mesh;
   std::vector<Index> number(from.number_of_vertices() + from.number_of_removed_vertices(), kNone);

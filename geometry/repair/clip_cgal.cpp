@@ -38,7 +38,7 @@ TriangleMesh clip_solid(TriangleMesh mesh, const HalfSpace& kept) {
   if (static_cast<std::size_t>(out) == mesh.vertices.size())
     throw InputError("nothing of the solid lies on the side of the plane that is to be kept");
   detail::CgalMesh part = to_cgal(mesh);
-  // The side that CGAL keeps is the one that the plane's normal points away from.
+  // CGAL keeps the side that the plane's normal points away from.
   const detail::CgalKernel::Plane_3 plane(-kept.normal.x(), -kept.normal.y(), -kept.normal.z(), kept.offset);
   try {
     processing::clip(part, plane, CGAL::parameters::clip_volume(true).throw_on_self_intersection(true));

@@ -11,21 +11,25 @@ namespace orchard {
 namespace {
 
 constexpr int kMovesPerRound = 3;
-constexpr double kFarthestMove = 3;  // levels: of normal noise, 0.3 % lies beyond
-// Of the level: where rounds end. A smooth surface through noisy vertices keeps a part of their displacements, as a fit
-// with a tenth as many parameters as vertices keeps sqrt(1 - 1 / 10).
+constexpr double kFarthestMove = 3;  // in deviations; 0.3 % of normally distributed noise is farther
+// Over the deviation: where rounds end. A smooth surface through noisy vertices keeps a part of their displacements: a
+// fit with a tenth as many parameters as vertices keeps sqrt(1 - 1 / 10).
 constexpr double kWholeMove = 0.95;
 
 struct Facet {
-  Vector normal = Vector::Zero();  // of length 1, or 0 of a triangle without area
+  Vector normal = Vector::Zero();  // of length 1, or 0 for a triangle without area
   Point center = Point::Zero();
   double area = 0;
 };
 
 class Denoiser {
  public:
-  Denoiser(const TriangleMesh& mesh, double level)
-      : given_(mesh), mesh_(mesh), rings_(mesh), level_(level * diagonal_of(mesh)), facets_(mesh.triangles.size()) {
+  Denoiser(const TriangleMesh& mesh, double deviation)
+      : given_(mesh),
+        mesh_(mesh),
+        rings_(mesh),
+        deviation_(deviation * diagonal_of(mesh)),
+        facets_(mesh.triangles.size()) {
     measure_facets();
     find_neighbors();
     set_widths();
@@ -34,8 +38,8 @@ class Denoiser {
   DenoisedMesh run(int max_rounds, const Progress& progress) {
     DenoisedMesh result;
     double moved = 0;
-    while (result.rounds < max_rounds && moved < kWholeMove * level_) {
-      report_progress(progress, "noise", std::min(1.0, moved / level_));
+    while (result.rounds < max_rounds && moved < kWholeMove * deviation_) {
+      report_progress(progress, "noise", std::min(1.0, moved / deviation_));
       filter_normals();
       for (int move = 0; move < kMovesPerRound; ++move) {
         move_vertices();
@@ -73,7 +77,7 @@ class Denoiser {
     });
   }
 
-  // Of each triangle those that share a corner with it, in ascending order.
+  // Finds the triangles that share a corner with each triangle, in ascending order.
   void find_neighbors() {
     neighbors_.resize(facets_.size());
     tbb::parallel_for(std::size_t{0}, facets_.size(), [&](std::size_t t) {
@@ -88,8 +92,8 @@ class Denoiser {
     });
   }
 
-  // The widths of the two Gaussians: the mean distance of neighbours, and the root mean square of the differences of
-  // their normals, which noise makes all over the mesh and sharp edges in few places.
+  // Sets the widths of the two Gaussians: the mean distance of neighbours, and the root mean square difference of their
+  // normals, which is due to noise everywhere and to sharp edges in few places.
   void set_widths() {
     double distances = 0, differences = 0, count = 0;
     for (std::size_t t = 0; t < facets_.size(); ++t)
@@ -98,7 +102,7 @@ class Denoiser {
         differences += (facets_[t].normal - facets_[other].normal).squaredNorm();
         ++count;
       }
-    // Without a width, neighbours differ in nothing: a flat mesh has one normal.
+    // A width of 0 means that all neighbours are equal; a flat mesh has a single normal.
     if (distances > 0) per_distance_ = 1 / (2 * (distances / count) * (distances / count));
     if (differences > 0) per_difference_ = 1 / (2 * differences / count);
   }
@@ -120,7 +124,7 @@ class Denoiser {
     for (std::size_t t = 0; t < facets_.size(); ++t) facets_[t].normal = filtered[t];
   }
 
-  // Each vertex by the mean of its distances from the planes of its triangles.
+  // Moves each vertex by the mean of its distances from the planes of its triangles.
   void move_vertices() {
     std::vector<Point> moved(mesh_.vertices.size());
     tbb::parallel_for(std::size_t{0}, moved.size(), [&](std::size_t v) {
@@ -133,9 +137,9 @@ class Denoiser {
     mesh_.vertices = std::move(moved);
   }
 
-  // No farther from the given places than noise goes.
+  // Limits the distance of vertices from their given places to what noise explains.
   void stay_near() {
-    const double farthest = kFarthestMove * level_;
+    const double farthest = kFarthestMove * deviation_;
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
       const Vector way = mesh_.vertices[v] - given_.vertices[v];
       if (const double length = way.norm(); length > farthest)
@@ -159,7 +163,7 @@ class Denoiser {
   const TriangleMesh& given_;
   TriangleMesh mesh_;
   const VertexRings rings_;
-  const double level_;  // in mesh units
+  const double deviation_;  // in mesh units
   std::vector<Facet> facets_;
   std::vector<std::vector<Index>> neighbors_;
   double per_distance_ = 0, per_difference_ = 0;
@@ -168,11 +172,11 @@ class Denoiser {
 }  // namespace
 
 DenoisedMesh denoise(const TriangleMesh& mesh, const DenoiseOptions& options, const Progress& progress) {
-  if (!(options.level >= 0 && options.level <= kMaxNoise))
-    throw InputError("the level of noise must lie between 0 and 0.05 of the diagonal");
+  if (!(options.deviation >= 0 && options.deviation <= kMaxNoise))
+    throw InputError("the deviation of the noise must lie between 0 and 0.05 of the diagonal");
   if (options.max_rounds < 0) throw InputError("the number of rounds must be at least 0");
-  if (options.level == 0) return {.mesh = mesh};
-  return Denoiser(mesh, options.level).run(options.max_rounds, progress);
+  if (options.deviation == 0) return {.mesh = mesh};
+  return Denoiser(mesh, options.deviation).run(options.max_rounds, progress);
 }
 
 }  // namespace orchard

@@ -9,11 +9,11 @@
 namespace orchard::detail {
 namespace {
 
-using Edge = std::pair<Index, Index>;  // low, high
+using Edge = std::pair<Index, Index>;  // lower vertex, higher vertex
 
 Edge edge_between(Index a, Index b) { return std::minmax(a, b); }
 
-// Loops of boundary edges as the triangles run along them, none of which passes a vertex twice.
+// Loops of boundary edges in the direction of the triangles. No loop passes a vertex twice.
 class BoundaryLoops {
  public:
   BoundaryLoops(const TriangleMesh& mesh, std::span<const EdgeUse> uses) : place_(mesh.vertices.size(), kNone) {
@@ -31,7 +31,7 @@ class BoundaryLoops {
   const std::vector<std::vector<Index>>& loops() const { return loops_; }
 
  private:
-  // Where the path meets itself, a loop is complete. A path that ends elsewhere bounds nothing.
+  // A loop is complete where the path meets itself. A path that ends elsewhere bounds no hole.
   void walk_from(Index vertex) {
     path_.assign(1, vertex);
     place_[vertex] = 0;
@@ -60,17 +60,17 @@ class BoundaryLoops {
 
   std::vector<std::pair<Index, Index>> edges_;  // from, to; sorted
   std::vector<bool> walked_;
-  std::vector<Index> path_, place_;  // of a vertex on the path
+  std::vector<Index> path_, place_;  // the position of each vertex on the path
   std::vector<std::vector<Index>> loops_;
 };
 
 struct Extent {
-  double diameter = 0, width = 0;  // width: the largest distance of a point from the diameter
+  double diameter = 0, width = 0;  // `width` is the largest distance of a point from the diameter
 };
 
-constexpr std::size_t kMaxForPairs = 2000;  // points of which all pairs are looked at
+constexpr std::size_t kMaxForPairs = 2000;  // up to this number of points, all pairs are compared
 
-// Of more points than that, the diagonal of their box: no pair is farther apart.
+// For more points, the diameter is that of their box, which no pair exceeds.
 Extent extent(std::span<const Point> points) {
   if (points.size() > kMaxForPairs) {
     Box box;
@@ -104,7 +104,7 @@ class HoleFiller {
 
  private:
   void fill(const std::vector<Index>& loop) {
-    // A lone triangle's hole is its own back.
+    // The hole of a single triangle is its own back.
     if (loop.size() == 3 && is_triangle(loop)) return;
     std::vector<Point> polyline;
     polyline.reserve(loop.size());
@@ -133,7 +133,7 @@ class HoleFiller {
     report_.edges_of_hole_left = static_cast<Index>(edges);
   }
 
-  // Turned so that they run against the loop.
+  // Reversed so that they run against the loop.
   static std::vector<std::array<Index, 3>> triangles_over(const std::vector<Index>& loop,
                                                           std::span<const Point> polyline) {
     auto triangles = loop.size() == 3 ? std::vector<std::array<Index, 3>>{{0, 2, 1}} : triangulate_polyline(polyline);
@@ -149,7 +149,7 @@ class HoleFiller {
     return triangles;
   }
 
-  // Around a new vertex in the middle: always possible.
+  // Fills the hole with a fan around a new vertex in the middle, which is always possible.
   std::vector<std::array<Index, 3>> fan_over(const std::vector<Index>& loop, std::span<const Point> polyline) {
     Vector middle = Vector::Zero();
     for (const Point& point : polyline) middle += point / static_cast<double>(polyline.size());
@@ -160,7 +160,7 @@ class HoleFiller {
     return triangles;
   }
 
-  // Whether no edge between two corners of the loop is there already.
+  // Whether no edge between two corners of the loop exists already.
   bool fits(const std::vector<Index>& loop, std::span<const std::array<Index, 3>> cap) {
     std::set<Edge> on_loop, inner;
     for (std::size_t i = 0; i < loop.size(); ++i) on_loop.insert(edge_between(loop[i], loop[(i + 1) % loop.size()]));

@@ -43,12 +43,12 @@ class PairTest {
   }
   CgalKernel::Triangle_3 triangle(Index t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
 
-  // Two triangles with one common corner meet elsewhere if and only if the edge opposite that corner in one of them
+  // Two triangles with one common corner meet elsewhere if and only if the edge of one of them opposite that corner
   // meets the other one.
   bool opposite_edge_meets(Index t, std::size_t i, Index other) const {
     return CGAL::do_intersect(CgalKernel::Segment_3(corner(t, i + 1), corner(t, i + 2)), triangle(other));
   }
-  // Two triangles with a common edge meet elsewhere if they lie in one plane, on the same side of it.
+  // Two triangles with a common edge meet elsewhere if and only if they lie in one plane and on the same side of it.
   bool folded(Index a, std::size_t i, Index b, std::size_t j) const {
     const CgalKernel::Point_3 p = corner(a, i), u = corner(a, i + 1), v = corner(a, i + 2), q = corner(b, j);
     return CGAL::coplanar(u, v, p, q) && CGAL::coplanar_orientation(u, v, p, q) == CGAL::POSITIVE;

@@ -14,12 +14,12 @@ namespace {
 using detail::CgalKernel;
 using Shape = std::variant<CgalKernel::Point_3, CgalKernel::Segment_3, CgalKernel::Triangle_3>;
 
-// CGAL's intersection tests are exact but ask for shapes of full dimension.
+// CGAL's intersection tests are exact but need shapes of full dimension.
 Shape shape_of(const std::array<Point, 3>& corners) {
   std::array<CgalKernel::Point_3, 3> p;
   for (std::size_t i = 0; i < 3; ++i) p[i] = {corners[i].x(), corners[i].y(), corners[i].z()};
   if (!CGAL::collinear(p[0], p[1], p[2])) return CgalKernel::Triangle_3(p[0], p[1], p[2]);
-  const auto [first, last] = std::minmax_element(p.begin(), p.end());  // along the line: the ends
+  const auto [first, last] = std::minmax_element(p.begin(), p.end());  // along the line, the ends
   if (*first == *last) return *first;
   return CgalKernel::Segment_3(*first, *last);
 }

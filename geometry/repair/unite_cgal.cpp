@@ -19,12 +19,12 @@ using ExactKernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactMesh = CGAL::Surface_mesh<ExactKernel::Point_3>;
 
 struct VertexComponent {
-  std::vector<Index> triangles;  // of the whole mesh, ascending
+  std::vector<Index> triangles;  // triangles of the whole mesh, ascending
   Box box;
-  double volume = 0;  // six times; negative: a cavity
+  double volume = 0;  // times six; negative for a cavity
 };
 
-// The parts that no vertex joins, in the order of their first triangles.
+// Returns the parts that no vertex joins, in the order of their first triangles.
 std::vector<VertexComponent> vertex_components(const TriangleMesh& mesh) {
   DisjointSets sets(mesh.vertices.size());
   for (const auto& [a, b, c] : mesh.triangles) sets.unite(a, b), sets.unite(a, c);
@@ -46,7 +46,8 @@ std::vector<VertexComponent> vertex_components(const TriangleMesh& mesh) {
   return parts;
 }
 
-// For each part the lowest part of its group: those whose triangles meet, one by way of another.
+// Returns for each part the lowest part of its group. A group consists of parts whose triangles meet, directly or
+// through others.
 std::vector<Index> groups_of(const std::vector<VertexComponent>& parts, const std::vector<std::array<Index, 2>>& cuts,
                              std::size_t triangles) {
   std::vector<Index> part_of(triangles);
@@ -89,7 +90,7 @@ void append(const ExactMesh& from, TriangleMesh& to) {
   }
 }
 
-// Adds the union of the parts of one group; returns false if there is none that is a manifold.
+// Adds the union of the parts of one group. Returns false if the union is no manifold.
 bool append_union(const TriangleMesh& mesh, const std::vector<const VertexComponent*>& group, TriangleMesh& to) {
   ExactMesh whole = to_exact(mesh, *group.front());
   for (std::size_t p = 1; p < group.size(); ++p) {

@@ -13,7 +13,7 @@ namespace {
 
 void require_fraction(double value, const char* name) {
   if (!(value > 0 && value < 1))
-    throw InputError(std::string("the ") + name + " of a wrap is a fraction of the diagonal, between 0 and 1");
+    throw InputError(std::string("the ") + name + " of a wrap must be a fraction of the diagonal, above 0 and below 1");
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ TriangleMesh wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options) {
     faces.push_back({i, j, k});
   }
   const double diagonal = box.diagonal().norm();
-  if (!(diagonal > 0)) throw InputError("all of the mesh lies in one point");
+  if (!(diagonal > 0)) throw InputError("the whole mesh lies in one point; there is nothing to wrap");
   detail::CgalMesh wrap;
   CGAL::alpha_wrap_3(points, faces, options.alpha * diagonal, options.offset * diagonal, wrap);
   TriangleMesh result = detail::from_cgal(wrap);

@@ -5,14 +5,14 @@
 
 namespace orchard::detail {
 
-// Midpoint sums with nothing but + - * / and roots, so that every machine makes the same table.
+// The midpoint sums use only + - * / and roots, so that every machine computes the same table.
 BoundaryPush::BoundaryPush() {
   constexpr int kParts = 64;
-  const auto of_line_at = [](double t) {  // the integral over y of (1 - d) t / d, d = |(t, y)| < 1
+  const auto of_line_at = [](double t) {  // the integral over y of (1 - d) t / d, where d = |(t, y)| < 1
     const double half = std::sqrt(std::max(0.0, 1 - t * t));
     double sum = 0;
     for (int i = 0; i < kParts; ++i) {
-      // Steps that grow with y follow the peak at y = 0.
+      // Steps that grow with y suit the peak at y = 0.
       const double s = (i + 0.5) / kParts, y = half * s * s, d = std::sqrt(t * t + y * y);
       sum += (1 - d) * (t / d) * (2 * s * half / kParts);
     }

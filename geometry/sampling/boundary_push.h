@@ -3,14 +3,14 @@
 
 namespace orchard::detail {
 
-// What points beyond a straight boundary, thought of as spread evenly, do to a point at distance h inside when each
-// repels it by 1 - d / r: the mean field that takes the place of neighbours which are not relaxed together.
+// The force of points beyond a straight boundary on a point at distance h inside, if they are spread evenly and each
+// repels it by 1 - d / r. It replaces neighbours that are not relaxed together with the point.
 class BoundaryPush {
  public:
   BoundaryPush();
-  // Times the density of points per area, times r^2. At h = 0 it is 1/3.
+  // The force of points beyond the boundary; multiply it by their density per area and by r^2. At h = 0 it is 1/3.
   double of_area(double h_over_r) const { return interpolate(area_, h_over_r); }
-  // Of points on the boundary itself; times their density per length, times r.
+  // The force of points on the boundary; multiply it by their density per length and by r.
   double of_line(double h_over_r) const { return interpolate(line_, h_over_r); }
 
  private:

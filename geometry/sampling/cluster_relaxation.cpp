@@ -14,7 +14,7 @@ namespace {
 
 using Point2 = Eigen::Vector2d;
 
-// A squared distance that is not in range by more surely is not, whatever its roundings.
+// A squared distance that exceeds the range by more than this factor is certainly out of range, despite rounding.
 constexpr double kSurely = 1 + 1e-9;
 
 class ClusterRelaxation {
@@ -35,7 +35,7 @@ class ClusterRelaxation {
     }
     const auto count = static_cast<double>(members_.size());
     spacing_ = std::sqrt(area / count);
-    // A strip narrower than the spacing holds a row of points rather than a field of them.
+    // A strip that is narrower than the spacing contains a row of points rather than an area of them.
     radius_ = kRepulsionRadius * std::max(spacing_, box.diagonal().norm() / count);
     make_frame();
     collect_edges();
@@ -88,7 +88,7 @@ class ClusterRelaxation {
     edge_grid_.build(cells);
   }
 
-  // The cells that come within the radius of the edge, row by row.
+  // Adds the cells that come within the radius of the edge, row by row.
   void add_cells(const Point2& a, const Point2& b, std::vector<Cell>& cells) {
     const Point2 &low = a.y() < b.y() ? a : b, &high = a.y() < b.y() ? b : a;
     const auto first = static_cast<int>(std::floor(low.y() / radius_)) - 1;
@@ -126,7 +126,8 @@ class ClusterRelaxation {
   Point2 force(std::size_t i, const CellHash& grid) const {
     const Point2& p = positions_[i];
     Point2 sum = Point2::Zero();
-    // Collected without a branch: whether a point is near cannot be predicted, and that costs more than the test.
+    // Collected without a branch: it cannot be predicted whether a point is near, and a misprediction costs more than
+    // the test.
     thread_local std::vector<Index> near;
     std::size_t count = 0;
     grid.visit_block(cells_[i], 2, [&](Index j) {
@@ -156,15 +157,15 @@ class ClusterRelaxation {
   const Surface& surface_;
   const Clusters& clusters_;
   Index cluster_;
-  std::vector<Index> members_;  // into the points
+  std::vector<Index> members_;  // indices of the points
   const BoundaryPush& push_;
   double line_density_, spacing_ = 0, radius_ = 0;
   Point origin_;
-  Vector u_, v_;  // of the cluster's plane
+  Vector u_, v_;  // axes in the plane of the cluster
   std::vector<Edge> edges_;
-  std::vector<Index> edge_in_cell_;  // into edges_, for each entry of edge_grid_
+  std::vector<Index> edge_in_cell_;  // indices into edges_, for each entry of edge_grid_
   CellHash edge_grid_{Point::Zero(), 1};
-  std::vector<Point2> positions_;  // of members_
+  std::vector<Point2> positions_;  // of the points in members_
   std::vector<Cell> cells_;
 };
 

@@ -26,7 +26,7 @@ std::vector<BoundaryEdge> boundary_edges(const Surface& surface, const std::func
   return edges;
 }
 
-// One edge of a chain, run through from its low to its high vertex or the other way.
+// An edge of a chain, passed from its low to its high vertex or the other way.
 struct Link {
   Index edge;
   bool forward;
@@ -43,7 +43,7 @@ class Chains {
         if (degree_[vertex]++ < 2) at_vertex_[vertex][degree_[vertex] - 1] = e;
   }
 
-  // Those that end somewhere first, then the loops; each from its lowest edge.
+  // Chains with ends come first, then loops; each begins at its lowest edge.
   std::vector<Chain> collect() {
     std::vector<Chain> chains;
     for (const bool loops : {false, true}) {
@@ -75,7 +75,7 @@ class Chains {
 
   const std::vector<BoundaryEdge>& edges_;
   std::vector<bool> used_;
-  std::vector<std::array<Index, 2>> at_vertex_;  // the first two boundary edges
+  std::vector<std::array<Index, 2>> at_vertex_;  // the first two boundary edges at each vertex
   std::vector<Index> degree_;
 };
 
@@ -117,7 +117,7 @@ EdgePlacement place_edge_points(const Surface& surface, const std::function<bool
   Index placed = 0;
   for (std::size_t c = 0; c < chains.size(); ++c) {
     sum += lengths[c];
-    // Points k with (k + 1/2) / count of the total length before the end of this chain belong to it.
+    // A point k belongs to this chain if (k + 1/2) / count of the total length is before the end of the chain.
     const bool last = c + 1 == chains.size();
     const auto end =
         last ? count : static_cast<Index>(std::min(std::floor(count * (sum / total) + 0.5), double(count)));

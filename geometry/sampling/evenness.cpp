@@ -8,7 +8,7 @@ namespace orchard {
 namespace {
 
 // Two points whose normals point away from each other lie on different sides of a thin part.
-bool same_sheet(const Vector& a, const Vector& b) { return a.dot(b) > -0.3; }
+bool face_the_same_way(const Vector& a, const Vector& b) { return a.dot(b) > -0.3; }
 
 }  // namespace
 
@@ -39,14 +39,14 @@ Evenness evenness(const SurfaceSampling& sampling, const Surface& surface) {
       bool found = false;
       grid.visit_block(cells[i], 3, [&](Index j) {
         const double distance = (sampling.points[i] - sampling.points[j]).norm();
-        if (j == i || distance > best || !same_sheet(normals[i], normals[j])) return;
+        if (j == i || distance > best || !face_the_same_way(normals[i], normals[j])) return;
         best = distance;
         found = true;
       });
       if (found) nearest[i] = best;
       missing += found ? 0 : 1;
     }
-    if (width > 2 * diagonal) break;  // alone on its sheet
+    if (width > 2 * diagonal) break;  // alone on its side
   }
   double sum = 0, squares = 0, min = diagonal, found = 0;
   for (const double distance : nearest) {

@@ -12,12 +12,12 @@
 namespace orchard::detail {
 namespace {
 
-// Surface parts whose normals have a smaller product are different sheets. A right-angled edge of many small triangles
-// is well within.
+// Parts of the surface whose normals have a smaller product do not act on each other. A right-angled edge of many small
+// triangles is well above this.
 constexpr double kFacesAway = -0.3;
-// An edge pushes the points of its own sheet only, even where several sheets end at it.
-constexpr double kOwnSheet = 0.5;
-constexpr std::size_t kCellGrain = 64;  // cells a task
+// An edge pushes only the points whose normals agree with its own, even where several parts of the surface end at it.
+constexpr double kSameSide = 0.5;
+constexpr std::size_t kCellGrain = 64;  // cells of one task
 
 class NeighborRelaxation {
  public:
@@ -68,7 +68,7 @@ class NeighborRelaxation {
     double length;
   };
 
-  // What may act on the points of a cell; `near` is room for those of `points` that do act on one of them.
+  // The points and edges that may act on the points of a cell. `near` has those of `points` that act on one of them.
   struct Surroundings {
     std::vector<Index> points, edges, near;
   };
@@ -81,7 +81,7 @@ class NeighborRelaxation {
   }
   CellHash make_grid() const { return {surface_.bounding_box().min(), radius_}; }
 
-  // The edges where a walk ends, in the cells that they pass through or near.
+  // Assigns the edges at which a walk ends to the cells that they pass through or near.
   void collect_edges() {
     edge_grid_ = make_grid();
     std::vector<Cell> cells;
@@ -131,7 +131,8 @@ class NeighborRelaxation {
 
   Vector force(Index i, Surroundings& around) const {
     const Point& p = positions_[i];
-    // Collected without a branch: whether a point is near cannot be predicted, and that costs more than the test.
+    // Collected without a branch: it cannot be predicted whether a point is near, and a misprediction costs more than
+    // the test.
     around.near.resize(around.points.size());
     std::size_t count = 0;
     for (const Index j : around.points) {
@@ -146,13 +147,13 @@ class NeighborRelaxation {
     return sum;
   }
 
-  // The plane of a triangle, with what it takes to turn its neighbours into it.
+  // The plane of a triangle, with the vectors needed to turn its neighbours into it.
   struct Plane {
     Index triangle;
     const Vector& normal;
     const std::array<Index, 3>& neighbors;
     std::array<Point, 3> corners;
-    std::array<Vector, 3> along, outward;  // of the edges, unit
+    std::array<Vector, 3> along, outward;  // unit vectors along the edges, and across them
   };
   Plane plane_of(Index triangle) const {
     Plane plane{triangle, surface_.normal(triangle), surface_.neighbors(triangle), surface_.corners(triangle), {}, {}};
@@ -163,7 +164,7 @@ class NeighborRelaxation {
     return plane;
   }
 
-  // On a point at p, from point j in range, in the plane.
+  // Returns the force on a point at p from point j, which is in range, in the plane.
   Vector repulsion(const Point& p, const Plane& plane, Index j) const {
     const Vector away = p - positions_[j];
     const Index triangle = triangles_[j];
@@ -186,7 +187,7 @@ class NeighborRelaxation {
   }
   Vector push(const Edge& edge, const Point& p, const Vector& normal) const {
     const double on = (p - edge.start).dot(edge.along);
-    if (on < 0 || on > edge.length || normal.dot(edge.normal) < kOwnSheet) return Vector::Zero();
+    if (on < 0 || on > edge.length || normal.dot(edge.normal) < kSameSide) return Vector::Zero();
     const Vector away = p - edge.start - on * edge.along;
     const double h = away.norm() / radius_;
     const Vector flat = away - away.dot(normal) * normal;
@@ -199,13 +200,13 @@ class NeighborRelaxation {
   std::size_t count_;
   const BoundaryPush push_;
   double spacing_ = 0, radius_ = 0;
-  // Of the moving points, then of the fixed ones.
+  // of the moving points, then of the fixed ones
   std::vector<Point> positions_;
   std::vector<Vector> normals_;
   std::vector<Index> triangles_;  // kNone for fixed points
   std::vector<Cell> cells_;
   std::vector<Edge> edges_;
-  std::vector<Index> edge_in_cell_;  // into edges_, for each entry of edge_grid_
+  std::vector<Index> edge_in_cell_;  // indices into edges_, for each entry of edge_grid_
   CellHash edge_grid_;
 };
 

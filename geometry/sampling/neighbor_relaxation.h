@@ -6,16 +6,16 @@
 
 namespace orchard::detail {
 
-// Points that repel others but stay where they are.
+// Points that repel others but do not move.
 struct FixedPoints {
   std::vector<Point> positions;
-  std::vector<Vector> normals;  // of the surface there, unit
+  std::vector<Vector> normals;  // unit normals of the surface at the points
 };
 
-// Evens out points on any surface by Turk's (1991) rule, which knows no clusters: a neighbour on an adjacent triangle
-// is turned about the shared edge into the plane of the point, any other is projected on it, keeping its distance; what
-// faces away is another sheet of the surface and does not count. Steps are unfolded across edges. Where the surface
-// ends, its edge pushes like an even spread of points beyond it. O(n) per iteration.
+// Spreads points evenly on any surface by Turk's rule (1991), which uses no clusters. A neighbour on an adjacent
+// triangle is turned about the shared edge into the plane of the point, and any other is projected onto it at the same
+// distance. Points whose part of the surface faces away do not act. Steps are continued across edges by unfolding.
+// Where the surface ends, its edge pushes as evenly spread points beyond it would. O(n) per iteration.
 void relax_by_neighbors(const Surface& surface, const FixedPoints& fixed, int iterations,
                         std::vector<SurfacePoint>& points, const Progress& progress);
 

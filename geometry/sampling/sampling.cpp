@@ -187,14 +187,15 @@ SurfaceSampling sample_surface(const Surface& surface, const SamplingOptions& op
 void validate(const SurfaceSampling& sampling, const Surface& surface) {
   const std::size_t count = sampling.points.size();
   if (sampling.triangles.size() != count || sampling.features.size() != count || sampling.origins.size() != count)
-    throw Error("a surface sampling's arrays differ in length");
+    throw Error("the arrays of a surface sampling differ in length");
   // Far from the origin, the rounding of coordinates is larger than the tolerance.
   const Box& box = surface.bounding_box();
   const double max = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   const double tolerance = tolerance::kOnTriangle * surface.bounding_radius() + 1e-15 * max;
   for (std::size_t i = 0; i < count; ++i) {
     const auto name = [i] { return "surface point " + std::to_string(i); };
-    if (sampling.triangles[i] >= surface.mesh().triangles.size()) throw Error(name() + " names no triangle");
+    if (sampling.triangles[i] >= surface.mesh().triangles.size())
+      throw Error(name() + " names a triangle that does not exist");
     const auto [a, b, c] = surface.corners(sampling.triangles[i]);
     if (!(closest_point_of_triangle(sampling.points[i], a, b, c).distance <= tolerance))
       throw Error(name() + " is not on its triangle");

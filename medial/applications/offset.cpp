@@ -12,10 +12,11 @@
 namespace orchard {
 namespace {
 
-constexpr double kBoundAccuracy = 0.02;             // tolerances
-constexpr std::size_t kMaxOffsetParts = 4'000'000;  // beside the triangles; a minute at most
-constexpr double kMostCells = 2e7;                  // of a grid: some ten gigabytes
-constexpr double kClearOfWall = 1 + 1e-3;           // cells that a cavity is deeper than the wall at first
+constexpr double kBoundAccuracy = 0.02;  // tolerances
+// Number of parts in addition to the triangles; they take a minute at most.
+constexpr std::size_t kMaxOffsetParts = 4'000'000;
+constexpr double kMostCells = 2e7;         // of a grid: some ten gigabytes
+constexpr double kClearOfWall = 1 + 1e-3;  // cells that a cavity is deeper than the wall at first
 // Tolerances: by how much a cavity stays deeper than the wall when it is made again with the depth that it had to
 // spare.
 constexpr double kSpareDepth = 0.05;
@@ -36,7 +37,8 @@ double value_at(const Surface& surface, OffsetSide side, double distance, const 
   return side == OffsetSide::outside ? own - distance : own + distance;
 }
 
-// An estimate: the level has about the area of the surface, and each cell of it some two cubes.
+// This is an estimate: the offset surface has about the area of the given surface, and each grid cell of that area
+// takes some two cubes.
 void require_room(const Surface& surface, double cell) {
   if (2 * surface.report().area / (cell * cell) <= kMostCells) return;
   const double diagonal = surface.bounding_box().diagonal().norm();
@@ -68,7 +70,7 @@ OffsetMesh level_mesh(const Surface& surface, OffsetSide side, double distance, 
   return result;
 }
 
-// A shell must not lose its inside between the corners of the grid.
+// A shell is thin, so its cells must be so small that its inside does not fall between the corners of the grid.
 double cell_for(OffsetSide side, double tolerance, double distance) {
   const double cell = tolerance / (std::sqrt(3.0) * (1 + 1e-9));
   return side == OffsetSide::both ? std::min(cell, distance / 2) : cell;

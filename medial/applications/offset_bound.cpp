@@ -9,7 +9,7 @@
 namespace orchard::detail {
 namespace {
 
-// Above what rounding does to a closest point, in sizes of the coordinates.
+// larger than the rounding error of a closest point, as a fraction of the coordinates
 constexpr double kOffsetRounding = 1e-13;
 
 Point middle_of(const Corners& corners) { return (corners[0] + corners[1] + corners[2]) / 3; }
@@ -36,7 +36,7 @@ PieceValue farthest_of(const Surface& surface, const Corners& corners) {
           .place = middle};
 }
 
-// The least distance, with its sign turned: the search is for a maximum.
+// The smallest distance with its sign changed, because the search looks for a maximum.
 PieceValue nearest_of(const Surface& surface, const Corners& corners, double enough) {
   const Point middle = middle_of(corners);
   const double distance = surface.distance(middle), reach = reach_of(corners, middle);
@@ -45,7 +45,7 @@ PieceValue nearest_of(const Surface& surface, const Corners& corners, double eno
   if (result.bound <= enough) return result;
   thread_local std::vector<Index> near;
   surface.triangles_near({middle, distance + 2 * reach}, near);
-  double bound = distance + reach;  // of all that are not near
+  double bound = distance + reach;  // upper bound for all triangles that are not near
   for (const Index triangle : near) {
     const ClosestPoint closest = closest_in(surface, triangle, middle);
     if (!(closest.distance > 0)) return result;

@@ -6,9 +6,9 @@
 
 namespace orchard::detail {
 
-// A binary tree over the triangles of a surface. Each node knows a ball around its triangles and a slab between two
-// parallel planes, which is thin where they are nearly flat: a ball that touches a finely meshed surface from inside
-// does not have to look at all of it.
+// A binary tree over the triangles of a surface. Each node has a ball around its triangles and a slab between two
+// parallel planes, which is thin where the triangles are nearly coplanar. A ball that touches a finely meshed surface
+// from inside therefore does not have to visit all triangles near it.
 class SlabTree {
  public:
   struct Node {
@@ -16,8 +16,8 @@ class SlabTree {
     double radius = 0;
     Vector normal = Vector::Zero();  // the slab is low <= normal x <= high
     double low = 0, high = 0;
-    Index first = 0, count = 0;  // of a leaf: triangles() from first; else count is 0, and its children are
-    Index children = 0;          // children and children + 1
+    Index first = 0, count = 0;  // of a leaf: its items in triangles(); count is 0 in inner nodes
+    Index children = 0;          // the numbers of the two children are this and the next one
   };
 
   explicit SlabTree(const Surface& surface);
@@ -27,9 +27,10 @@ class SlabTree {
     return std::span(triangles_).subspan(leaf.first, leaf.count);
   }
 
-  // No triangle below the node is touched by a smaller ball; infinity if none of them is in the cone.
+  // Returns a lower bound on the radius of the balls that touch a triangle below the node; infinity if no triangle is
+  // in the cone.
   static double min_touch(const Node& node, const TangentPlace& place);
-  // The same of ray_through_triangle().
+  // The same bound for ray_through_triangle().
   static double min_ray(const Node& node, const TangentPlace& place);
 
  private:

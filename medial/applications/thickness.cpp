@@ -14,7 +14,8 @@ namespace orchard {
 namespace {
 
 constexpr std::size_t kTask = 64, kReport = 16'384;  // places of one task, and between two calls of Progress
-// Of the squared longest edge: a triangle's area after edges were halved, on average over meshes of few long edges.
+// The average area of a triangle after its edges have been halved until they are short enough, over the squared longest
+// edge. Measured on meshes with few long edges.
 constexpr double kAreaOfEdge = 0.21;
 
 void require_in_range(const ThicknessOptions& options) {
@@ -65,7 +66,8 @@ std::vector<ThicknessAt> thickness_at(const Surface& surface, std::span<const Su
 LocalThickness local_thickness(const Surface& surface, const ThicknessOptions& options, const Progress& progress) {
   require_in_range(options);
   if (!surface.solid())
-    throw InputError("thickness: not a closed, consistently oriented manifold: " + surface.report().faults());
+    throw InputError("thickness needs a closed, consistently oriented manifold: " + surface.report().faults() +
+                     "; repair the mesh first");
   report_progress(progress, "thickness", 0);
   detail::DividedMesh divided =
       detail::divided_mesh(surface, std::sqrt(surface.report().area / (kAreaOfEdge * options.samples)));

@@ -19,13 +19,14 @@ namespace {
 
 bool is_stem(const std::vector<Index>& stems, Index vertex) { return !stems.empty() && stems[vertex] != kNone; }
 
-// Whether an edge of the diagram is one of the axis (keep_topology.h).
+// Whether an edge of the diagram is kept in the axis. Vertices that a stem joins (keep_topology.h) keep only their
+// stem.
 bool joined(const std::vector<Index>& stems, Index a, Index b) {
   return (!is_stem(stems, a) && !is_stem(stems, b)) || stems[a] == b || stems[b] == a;
 }
 
-// The medial vertex that each Voronoi vertex became; kNone outside. What hangs on a stem stays for itself: joined to
-// another it might close a loop.
+// Returns the medial vertex of each Voronoi vertex; kNone for vertices outside. Vertices that hang on a stem are never
+// merged with others, because that might close a loop.
 std::vector<Index> number_medial_vertices(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& inside,
                                           const std::vector<Index>& stems, double coalesce, MedialAxis& axis) {
   std::vector<Index> interior;
@@ -42,7 +43,8 @@ std::vector<Index> number_medial_vertices(const VoronoiDiagram& diagram, const s
       medial[interior[i]] = axis.size();
       axis.centers.push_back(centers[i]);
     } else {
-      medial[interior[i]] = medial[interior[representatives[i]]];  // lower, so numbered already
+      // The representative has a lower index, so it already has its number.
+      medial[interior[i]] = medial[interior[representatives[i]]];
     }
   }
   for (Index i = 0; i < inside.size(); ++i) {
@@ -77,8 +79,9 @@ void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, co
   axis.neighbors = detail::rows_of(adjacent, axis.size());
 }
 
-// The farthest forming point, not the diagram's radius: coalescing moved centres a little, robust diagrams approximate
-// some, and merging relies on each ball holding its forming points.
+// Sets each radius to the distance of the farthest forming point. The radius of the diagram would not do: coalescing
+// has moved centres a little, robust diagrams approximate some centres, and merging needs balls that contain their
+// forming points.
 void measure_radii(MedialAxis& axis) {
   axis.radii.resize(axis.size());
   for (Index i = 0; i < axis.size(); ++i) {
@@ -105,10 +108,13 @@ void validate_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& 
   for (Index face = 0; face < faces.size(); ++face) {
     if (faces[face].size() < 3) throw Error("medial axis: face " + std::to_string(face) + " has no area");
     for (const Index corner : faces[face]) {
-      if (corner >= vertices) throw Error("medial axis: face " + std::to_string(face) + " has a bad corner");
+      if (corner >= vertices)
+        throw Error("medial axis: face " + std::to_string(face) + " names a vertex that does not exist, or one twice");
     }
     for (const Index point : face_points[face]) {
-      if (point >= points) throw Error("medial axis: face " + std::to_string(face) + " has a bad point");
+      if (point >= points)
+        throw Error("medial axis: face " + std::to_string(face) +
+                    " names a point that does not exist, or the same one twice");
     }
   }
 }
@@ -163,7 +169,7 @@ void validate(const MedialAxis& axis, const Surface& surface) {
   const Index points = static_cast<Index>(axis.points.size());
   if (axis.normals.size() != points || axis.turns.size() != points || axis.radii.size() != size ||
       axis.angles.size() != size || axis.forming_points.size() != size || axis.neighbors.size() != size ||
-      axis.face_points.size() != axis.faces.size() || axis.wall_points.size() != axis.walls.size() ||
+      axis.face_points.size() != axis.faces.size() || axis.topology_face_points.size() != axis.topology_faces.size() ||
       axis.origins.size() != points) {
     throw Error("medial axis: arrays of different lengths");
   }
@@ -179,7 +185,7 @@ void validate(const MedialAxis& axis, const Surface& surface) {
     if (!surface.inside(axis.centers[i])) fail("centre outside the surface", i);
   }
   validate_faces(axis.faces, axis.face_points, size, points);
-  validate_faces(axis.walls, axis.wall_points, size, points);
+  validate_faces(axis.topology_faces, axis.topology_face_points, size, points);
 }
 
 }  // namespace orchard

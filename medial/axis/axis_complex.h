@@ -7,18 +7,18 @@
 
 namespace orchard::detail {
 
-// The cells of a medial axis and which of them meet. Faces and walls are numbered together, faces first; edges are in
-// the order of their vertices.
+// The cells of a medial axis and which of them meet. Faces and topology faces are numbered together, faces first; edges
+// are in the order of their vertices.
 class AxisComplex {
  public:
   explicit AxisComplex(const MedialAxis& axis);
 
-  Index face_count() const { return axis_.faces.size() + axis_.walls.size(); }
+  Index face_count() const { return axis_.faces.size() + axis_.topology_faces.size(); }
   std::span<const Index> corners(Index face) const {
-    return face < axis_.faces.size() ? axis_.faces[face] : axis_.walls[face - axis_.faces.size()];
+    return face < axis_.faces.size() ? axis_.faces[face] : axis_.topology_faces[face - axis_.faces.size()];
   }
   const std::array<Index, 2>& points(Index face) const {
-    return face < axis_.faces.size() ? axis_.face_points[face] : axis_.wall_points[face - axis_.faces.size()];
+    return face < axis_.faces.size() ? axis_.face_points[face] : axis_.topology_face_points[face - axis_.faces.size()];
   }
   const std::vector<std::array<Index, 2>>& edges() const { return edges_; }
   std::span<const Index> sides(Index face) const { return sides_[face]; }            // edges, in order

@@ -14,7 +14,7 @@
 namespace orchard {
 namespace {
 
-constexpr std::size_t kMaxFormingPoints = 64;  // of the forming points of a coalesced centre
+constexpr std::size_t kMaxFormingPoints = 64;  // the number of forming points of a coalesced centre that are examined
 
 std::span<const Index> looked_at(const MedialAxis& axis, Index vertex) {
   const auto forming = axis.forming_points[vertex];
@@ -26,7 +26,8 @@ class ContactFinder {
   ContactFinder(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis)
       : sampling_(sampling), axis_(axis), downhill_(surface) {}
 
-  // The widest pairs first: most vertices need the contacts of one or two.
+  // Pairs are visited from the widest to the narrowest, since for most vertices the contacts of one or two points
+  // decide.
   double angle(Index vertex) {
     const Point& from = axis_.centers[vertex];
     const auto forming = looked_at(axis_, vertex);

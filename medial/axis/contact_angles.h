@@ -3,16 +3,17 @@
 
 namespace orchard::detail {
 
-// The angle at which two points are seen from `from`, but no more than the surface's normals there are apart: four
-// points that all but share a circle on the surface may have their Voronoi vertex anywhere above it, even next to it,
-// and are seen widely apart from there though the surface does not turn between them.
+// Returns the angle at which two points are seen from `from`, but at most the angle between the surface normals at the
+// points. Four points that nearly share a circle on the surface may have their Voronoi vertex anywhere above it, even
+// right beside it; from there they are seen at a large angle although the surface does not turn between them.
 double seen_angle(const MedialAxis& axis, const Point& from, Index p, Index q);
 
-// Fills axis.angles. At edges and in creases the normals' bound says little, and vertices next to the surface, with
-// points around them on what is one side for them, would pass for places between two walls. So from each forming point
-// the contact is sought that it stands for: downhill on the distance from the vertex, over the surface, to where that
-// has a local minimum. A pair of points is as wide as it is seen, as the normals allow, and as its contacts are seen.
-// Precondition: all else of the axis is there. Parallel; O(1) for each vertex.
+// Fills axis.angles. At edges and in creases the bound by normals is weak, and vertices next to the surface would pass
+// for places between two opposite sides of the solid. So the contact that each forming point stands for is searched:
+// from the point downhill on the distance from the vertex, over the surface, to a local minimum. The angle of a pair of
+// points is the smallest of three: the angle at which the points are seen, the one that the normals allow, and the
+// angle at which the contacts are seen. Precondition: all other members of the axis are set. Parallel; O(1) for each
+// vertex.
 void find_contact_angles(const Surface& surface, const SurfaceSampling& sampling, MedialAxis& axis);
 
 }  // namespace orchard::detail

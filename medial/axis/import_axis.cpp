@@ -30,7 +30,10 @@ class Importer {
   ImportedAxis run() {
     add_balls();
     detail::add_points(surface_, result_.sampling, axis_);
-    if (axis_.size() == 0) throw InputError("no ball of the medial mesh has its centre inside the solid");
+    if (axis_.size() == 0)
+      throw InputError(
+          "no ball of the medial mesh has its centre inside the solid; is it the axis of this mesh, in the same "
+          "frame?");
     share_samples_out();
     find_angles();
     add_edges();

@@ -58,8 +58,9 @@ class Classification {
     });
   }
 
-  // Distance to the surface is 1-Lipschitz: a vertex nearer to a settled one than that one's clearance is on its side,
-  // and inherits what is left of the clearance. The margin swallows the rounding of a long chain of such steps.
+  // The distance to the surface is 1-Lipschitz. So a vertex that is nearer to a settled vertex than the clearance of
+  // that vertex lies on the same side, with the rest of the clearance. The margin covers the rounding errors of a long
+  // chain of such steps.
   void spread(std::vector<Index> settled) {
     while (!settled.empty()) {
       const Index vertex = settled.back();
@@ -79,7 +80,7 @@ class Classification {
   const Surface& surface_;
   const VoronoiDiagram& diagram_;
   std::vector<std::uint8_t> states_;
-  std::vector<double> clearance_;  // lower bound on the distance to the surface, once settled
+  std::vector<double> clearance_;  // lower bound on the distance to the surface, for settled vertices
   double margin_;
 };
 

@@ -11,7 +11,7 @@
 namespace orchard::detail {
 namespace {
 
-// A mesh in more pieces than this is no solid that a bridge or two would mend.
+// A mesh in more pieces than this is not a solid that a few bridges could repair.
 constexpr int kMaxBridges = 1000;
 
 struct Counts {
@@ -60,7 +60,7 @@ class Growth {
     std::vector<std::array<Index, 2>> incidences;
     for (Index face = 0; face < faces.vertices.size(); ++face) {
       missing_.push_back(static_cast<Index>(faces.vertices[face].size()));
-      if (!all_inside(faces.vertices[face], allowed)) continue;  // never completed
+      if (!all_inside(faces.vertices[face], allowed)) continue;  // such a face can never be completed
       for (const Index vertex : faces.vertices[face]) incidences.push_back({vertex, face});
     }
     std::sort(incidences.begin(), incidences.end());
@@ -84,7 +84,7 @@ class Growth {
   const std::vector<std::uint8_t>& taken() const { return taken_; }
 
  private:
-  // A vertex is asked again whenever something that it shares a face or an edge with is taken.
+  // Adds a vertex, and puts every vertex that shares a face or an edge with it back into the queue.
   void take(Index vertex) {
     taken_[vertex] = 1;
     const auto ask = [&](Index other) {
@@ -94,7 +94,7 @@ class Growth {
       if (next != kNone) ask(next);
     }
     for (const Index face : faces_of_[vertex]) {
-      // Only a vertex that completes the face can fare better for it.
+      // When one corner is missing, that vertex completes the face, so only its priority rises.
       if (--missing_[face] != 1) continue;
       for (const Index corner : faces_.vertices[face]) ask(corner);
     }
@@ -129,11 +129,12 @@ class Growth {
   const std::vector<std::uint8_t>& allowed_;
   std::vector<std::uint8_t> taken_;
   std::vector<Index> missing_;  // of each face: corners not taken
-  Rows faces_of_;               // of each vertex, those that can be completed
+  Rows faces_of_;               // the faces of each vertex that can still be completed
   std::priority_queue<std::pair<double, Index>> queue_;
 };
 
-// For each part of the surface the largest ball inside that all touches this part; or, where a part has none, nothing.
+// Returns, for each part of the surface, the largest ball inside whose forming points are all on this part. Parts
+// without such a ball have none.
 std::vector<Index> max_balls(const SurfaceSampling& sampling, const SolidParts& parts, const VoronoiDiagram& diagram,
                              const std::vector<std::uint8_t>& inside) {
   std::vector<Index> max(parts.count(), kNone);
@@ -151,7 +152,8 @@ std::vector<Index> max_balls(const SurfaceSampling& sampling, const SolidParts& 
   return max;
 }
 
-// Grows `kept` over single edges within `allowed`, the largest balls first; `stems` gets the edge of each.
+// Extends `kept` along single edges within `allowed`, the largest balls first. `stems` receives the edge of each vertex
+// that is added.
 void join_by_stems(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& allowed,
                    std::vector<std::uint8_t>& kept, std::vector<Index>& stems) {
   std::priority_queue<std::tuple<double, Index, Index>> queue;  // radius, vertex, stem
@@ -173,10 +175,11 @@ void join_by_stems(const VoronoiDiagram& diagram, const std::vector<std::uint8_t
   }
 }
 
-// The shortest way along edges of the diagram from what is kept to what else is allowed: its ends; kNone if none leads.
+// Returns the ends of the shortest path along edges of the diagram from the kept vertices to other allowed ones; kNone
+// if there is no path.
 std::array<Index, 2> shortest_bridge(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& allowed,
                                      const std::vector<std::uint8_t>& kept) {
-  using Step = std::tuple<double, Index, Index>;  // length, vertex, where the way began
+  using Step = std::tuple<double, Index, Index>;  // length, vertex, start of the path
   std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
   std::vector<std::uint8_t> reached = kept;
   const auto leave = [&](Index vertex, Index start, double length) {

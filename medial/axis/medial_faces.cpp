@@ -7,9 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-// Whether two points lie so near each other within the surface that the face between them is a wall that stands on the
-// surface, not a sheet that runs along the middle: on one coplanar cluster, or on two triangles that share an edge
-// which is all but flat.
+// Decides whether two points are so close to each other within the surface that the face between them is a topology
+// face, which stands on the surface, and not a sheet along the middle of the solid. That is so if the points lie on one
+// coplanar cluster, or on two triangles that share an edge which is nearly flat.
 class SurfaceNeighbors {
  public:
   SurfaceNeighbors(const Surface& surface, const SurfaceSampling& sampling) : surface_(surface) {
@@ -57,14 +57,15 @@ void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, 
       const Index corner = medial[vertex];
       interior = interior && corner != kNone && (stems.empty() || stems[vertex] == kNone);
       if (!interior) break;
-      if (corners.empty() || corners.back() != corner) corners.push_back(corner);  // coalesced ones follow each other
+      // Vertices that were merged into one follow each other.
+      if (corners.empty() || corners.back() != corner) corners.push_back(corner);
     }
     while (corners.size() > 1 && corners.back() == corners.front()) corners.pop_back();
     const auto& [a, b] = voronoi.points[face];
     if (!interior || corners.size() < 3) continue;
-    const bool wall = are_neighbors(a, b);
-    (wall ? axis.wall_points : axis.face_points).push_back({a, b});
-    Rows& faces = wall ? axis.walls : axis.faces;
+    const bool for_topology = are_neighbors(a, b);
+    (for_topology ? axis.topology_face_points : axis.face_points).push_back({a, b});
+    Rows& faces = for_topology ? axis.topology_faces : axis.faces;
     faces.items.insert(faces.items.end(), corners.begin(), corners.end());
     faces.close_row();
   }

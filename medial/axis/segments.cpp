@@ -62,7 +62,7 @@ class Segmenter {
     hand_out_the_rest(number);
     for (Index face = 0; face < faces; ++face) {
       ++result_.segments[number[face]].cells;
-      (face < axis_.faces.size() ? result_.of_face : result_.of_wall).push_back(number[face]);
+      (face < axis_.faces.size() ? result_.of_face : result_.of_topology_face).push_back(number[face]);
     }
   }
 
@@ -107,8 +107,8 @@ class Segmenter {
     }
   }
 
-  Index open(bool sheet) {
-    result_.segments.push_back({.sheet = sheet,
+  Index open(bool has_faces) {
+    result_.segments.push_back({.has_faces = has_faces,
                                 .trunk = false,
                                 .cells = 0,
                                 .min_radius = std::numeric_limits<double>::infinity(),
@@ -117,7 +117,7 @@ class Segmenter {
   }
 
   Index segment_of_face(Index face) const {
-    return face < axis_.faces.size() ? result_.of_face[face] : result_.of_wall[face - axis_.faces.size()];
+    return face < axis_.faces.size() ? result_.of_face[face] : result_.of_topology_face[face - axis_.faces.size()];
   }
 
   void measure() {

@@ -11,7 +11,7 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
-// A triangle in pieces, by the vertices that divide its sides (b c), (c a) and (a b), or kNone.
+// Cuts a triangle by the vertices that divide its sides (b c), (c a) and (a b); kNone for a side that is not divided.
 class TriangleCutter {
  public:
   TriangleCutter(const BallComplex& complex, std::vector<Triangle>& out) : complex_(complex), out_(out) {}
@@ -37,7 +37,7 @@ class TriangleCutter {
   }
 
  private:
-  // Along the shorter diagonal.
+  // Divides a quadrilateral along its shorter diagonal.
   void quad(Index a, Index b, Index c, Index d) {
     const auto apart = [&](Index p, Index q) {
       return (complex_.balls[p].center - complex_.balls[q].center).squaredNorm();
@@ -129,7 +129,7 @@ MedialMesh BallComplex::mesh() const {
 void BallComplex::complete() { complete_cells(edges, triangles); }
 
 void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
-  std::vector<std::uint8_t> at_cut(complex.size(), 0);  // vertices at edges that are cut: few, mostly
+  std::vector<std::uint8_t> at_cut(complex.size(), 0);  // the vertices at edges that are cut, which are usually few
   for (Index e = 0; e < complex.edges.size(); ++e) {
     if (cut[e] == kNone) continue;
     for (const Index v : complex.edges[e]) at_cut[v] = 1;

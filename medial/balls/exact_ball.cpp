@@ -11,12 +11,13 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxNewtonSteps = 12;  // of Newton's method, from one set of contacts
-constexpr int kMaxRounds = 8;        // of contacts that come nearer than those held
-constexpr double kEqual = 1e-11;     // bounding radii: distances that are the same
+constexpr int kMaxNewtonSteps = 12;  // steps of Newton's method from one set of contacts
+constexpr int kMaxRounds = 8;        // times that a nearer contact is added to the set and the search starts again
+constexpr double kEqual = 1e-11;     // in bounding radii: distances that differ by less count as equal
 constexpr double kContactRounding =
-    1e-9;                       // of a distance to a contact: what rounding may put between it and the surface
-constexpr double kRank = 0.03;  // of the widest contacts: normals that differ by less do not say where to go
+    1e-9;  // as a fraction of a distance: rounding may put a contact this far from the surface
+// As a fraction of the widest contacts: directions in which the normals differ by less are ignored.
+constexpr double kRank = 0.03;
 
 using Balls = std::initializer_list<PartOfBall>;
 
@@ -29,8 +30,9 @@ double nearest_contact(const Point& place, Balls balls) {
   return (1 + kContactRounding) * std::sqrt(squared);
 }
 
-// Whether the ball of this radius holds nothing of the surface for certain, being inside: that |x|^2 - distance(x)^2 is
-// a convex function bounds the distance from below, and a place in one of the balls is inside.
+// Whether it is certain that this ball inside the solid contains no place of the surface. The test uses that |x|^2 -
+// distance(x)^2 is a convex function, which gives a lower bound on the distance, and that any place in one of the balls
+// is inside.
 bool is_surely_empty(const Point& place, double radius, Balls balls) {
   double squared = 0;
   bool inside = false;
@@ -42,14 +44,14 @@ bool is_surely_empty(const Point& place, double radius, Balls balls) {
   return inside && (1 - kContactRounding) * squared >= radius * radius;
 }
 
-// For which a with loss(radius, a) = loss the ends of unit vectors at this angle are so far apart, squared: 4 sin^2(a /
-// 2).
+// Returns the squared distance of the ends of two unit vectors at the angle a, 4 sin^2(a / 2), for the angle with
+// loss(radius, a) = loss.
 double narrow_for(double radius, double loss) {
   const double part = loss / radius;
   return 4 * part * (2 + part) / ((1 + part) * (1 + part));
 }
 
-// The place of the surface that is nearest: no farther than the contacts of balls.
+// Returns the nearest place of the surface, which is at most as far away as the contacts of the balls.
 ClosestPoint closest_from(const Surface& surface, const Point& place, double contact) {
   const ClosestPoint nearest = surface.closest_within(place, contact);
   return nearest.triangle != kNone ? nearest : surface.closest(place);
@@ -76,7 +78,7 @@ double BallSolver::loss(double radius, double angle) {
   return radius * (1 / std::cos(angle / 2) - 1);
 }
 
-// The nearest contacts first; one that a nearer one stands for goes, and what is beyond the fourth.
+// Sorts the contacts by distance, drops those that a nearer one already represents, and keeps four at most.
 void BallSolver::merge(const Point& center) {
   for (Held& contact : contacts_) static_cast<ClosestPoint&>(contact) = descend(center, contact);
   std::stable_sort(contacts_.begin(), contacts_.end(),
@@ -98,12 +100,12 @@ void BallSolver::merge(const Point& center) {
   contacts_.resize(kept);
 }
 
-// One step; false if the contacts are all at one distance already.
+// Takes one step. Returns false if all contacts are already at the same distance.
 bool BallSolver::step(Point& center) {
   const double equal = kEqual * surface_.bounding_radius();
   const std::size_t rows = contacts_.size() - 1;
   if (contacts_.back().distance - contacts_.front().distance <= equal) return false;
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  // rows of zeros ask for nothing
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  // rows that stay 0 impose no condition
   Eigen::Vector3d side = Eigen::Vector3d::Zero();
   const Vector first = (center - contacts_[0].position) / contacts_[0].distance;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -158,7 +160,8 @@ ExactBall BallSolver::finished(const Point& center, bool exact) {
   return ball;
 }
 
-// From contacts_; if that leads nowhere, from the nearest of them and the one that is seen farthest from it.
+// Solves for the contacts in contacts_. If that does not converge, solves for the nearest of them and the one that is
+// seen farthest from it.
 ExactBall BallSolver::solve_held(const Point& start) {
   first_ = contacts_;
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -177,7 +180,7 @@ ExactBall BallSolver::solve_held(const Point& start) {
     contacts_ = {contacts_[0], *opposite};
   }
   contacts_ = first_;
-  contacts_.push_back({surface_.closest(start)});  // whose distance is the radius
+  contacts_.push_back({surface_.closest(start)});  // its distance is the radius
   merge(start);
   return finished(start, false);
 }
@@ -190,7 +193,7 @@ ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> se
     ExactBall ball = solve_held(start);
     if (ball.exact && stays_inside(start, ball)) return ball;
   }
-  // Seldom needed, and dear: the nearest place of all.
+  // This case is rare and costs a full search: the nearest place of all.
   contacts_.clear();
   for (const ClosestPoint& seed : seeds) contacts_.push_back({seed});
   contacts_.push_back({surface_.closest(start)});
@@ -199,7 +202,7 @@ ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> se
   return !ball.exact || stays_inside(start, ball) ? ball : at(start);
 }
 
-// A place of the solid that is in the ball sees its centre without meeting the surface.
+// Whether the centre of the ball can be reached from a place of the solid inside the ball without crossing the surface.
 bool BallSolver::stays_inside(const Point& start, const ExactBall& ball) const {
   return (ball.center - start).norm() < ball.radius || surface_.inside(ball.center);
 }
@@ -215,7 +218,7 @@ ExactBall BallSolver::on_surface(const Point& place) const {
   ball.center = ball.contacts[0].position;
   ball.contacts[0].distance = 0;
   ball.count = 1;
-  ball.exact = ball.contacts[0].feature != Feature::face;  // on an edge, but for flat ones
+  ball.exact = ball.contacts[0].feature != Feature::face;  // on an edge the ball is exact, unless the edge is flat
   ball.loss = std::numeric_limits<double>::infinity();
   return ball;
 }
@@ -235,7 +238,8 @@ ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) 
   std::stable_sort(contacts_.begin(), contacts_.end(),
                    [](const Held& x, const Held& y) { return x.distance < y.distance; });
   const ExactBall ball = solve_held(start);
-  // The ends are inside, so only what is as near to the surface as they are to each other can be outside.
+  // The ends are inside, so the middle can be outside only if the surface is as near to it as the ends are to each
+  // other.
   const bool outside = ball.radius <= (a.center - b.center).norm() && !surface_.inside(ball.center);
   return outside ? on_surface(start) : ball;
 }

@@ -16,7 +16,8 @@ std::uint64_t mixed(std::uint64_t hash, double value) {
   return hash ^ hash >> 29;
 }
 
-// Of the start alone: few vertices are at one place. 0 and -0 are other ones here, which costs no more than a search.
+// Hashes the start only, since few vertices share a place. 0 and -0 have different hashes, which costs no more than
+// another search.
 std::uint64_t hash_of(const Point& start) { return mixed(mixed(mixed(0, start.x()), start.y()), start.z()); }
 
 }  // namespace

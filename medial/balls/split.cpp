@@ -12,7 +12,7 @@
 namespace orchard::detail {
 namespace {
 
-// Most cells of a round are those of the last one: their errors are known.
+// Measures cells, reusing errors of the last round: most cells of a round were measured then.
 template <class Cell, class Measure>
 void measure(CachedCellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of) {
   std::vector<double> found(now.size());
@@ -56,7 +56,8 @@ class Splitter {
         known_(known),
         cuts_itself_(!surface.self_intersections().empty()) {}
 
-  // What was beyond the tolerance when dividing ended is not divided another time: its error becomes a negative one.
+  // Edges that were beyond the tolerance when dividing ended are not divided in later calls. They are marked by a
+  // negative error.
   void give_up_what_is_left() {
     for (std::vector<double>* errors : {&known_.edges.errors, &known_.triangles.errors}) {
       for (double& error : *errors) {
@@ -65,8 +66,8 @@ class Splitter {
     }
   }
 
-  // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off; those that were given
-  // up count for nothing.
+  // Returns for each edge the largest error of the balls on it and on the triangles whose longest edge it is. Edges
+  // that were given up have error 0.
   std::vector<double> errors() {
     measure(known_.edges, complex_.edges, [this](const auto& edge) {
       return held(error_of_edge(edge), {edge[0], edge[1], edge[1]});
@@ -118,7 +119,8 @@ class Splitter {
   }
 
  private:
-  // Where the ends are of different sheets, the exact ball may be next to one of them; dividing there leads nowhere.
+  // Returns the ball of the vertex that divides an edge. If the ends belong to different sheets, the exact ball may be
+  // close to one of them. Dividing there would not help, so the ball at the middle is used.
   ExactBall middle(BallSolver& solver, const ExactBall& a, const ExactBall& b) const {
     ExactBall exact = solver.between(a, b, 0.5);
     const Point straight = 0.5 * (a.center + b.center);
@@ -127,28 +129,28 @@ class Splitter {
     return solver.at(straight);
   }
 
-  // Where the surface cuts itself, parts of it lie inside the solid. Distances fall to 0 at such a wall, so an edge
-  // through one has balls that are too large however often it is divided.
+  // Where the surface cuts itself, parts of it lie inside the solid. Distances fall to 0 there, so an edge
+  // through one of them has balls that are too large however often it is divided.
   std::vector<std::uint8_t> find_never_linear(const std::vector<double>& error) const {
     std::vector<std::uint8_t> never(error.size(), 0);
     if (!cuts_itself_) return never;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, error.size(), 128), [&](const auto& range) {
-      std::vector<Index> walls;
+      std::vector<Index> crossed;
       for (std::size_t e = range.begin(); e != range.end(); ++e) {
         if (error[e] <= options_.tolerance) continue;
         const auto& [a, b] = complex_.edges[e];
         if (!(complex_.balls[a].radius > 0) || !(complex_.balls[b].radius > 0)) continue;
         const Point &from = complex_.balls[a].center, &to = complex_.balls[b].center;
-        walls.clear();
-        surface_.triangles_overlapping({from, to, to}, walls);
-        never[e] = walls.empty() ? 0 : 1;
+        crossed.clear();
+        surface_.triangles_overlapping({from, to, to}, crossed);
+        never[e] = crossed.empty() ? 0 : 1;
       }
     });
     return never;
   }
 
-  // The error that was found at the places that are looked at; or, if balls between them may stick out by more than is
-  // promised, so much at least.
+  // Returns the error measured at the sample places; or, if balls between these places may protrude by more than is
+  // promised, at least the amount by which they may.
   double held(double error, const std::array<Index, 3>& cell) const {
     const double limit = kMaxStickingOut * options_.tolerance;
     if (error > options_.tolerance) return error;
@@ -165,8 +167,8 @@ class Splitter {
     return *std::max_element(sides.begin(), sides.end(),
                              [&](const auto& a, const auto& b) { return length(a) < length(b); });
   }
-  // Along an edge both the interpolated radius and the distance change by no more than the way, so short ones are
-  // right.
+  // Along an edge, both the interpolated radius and the distance change by at most the length travelled, so short edges
+  // need no measurement.
   double error_of_edge(const std::array<Index, 2>& edge) const {
     const ExactBall &a = complex_.balls[edge[0]], &b = complex_.balls[edge[1]];
     const double reach = (length(edge) + std::abs(a.radius - b.radius)) / 2;
@@ -178,7 +180,7 @@ class Splitter {
     const int parts = parts_of(length(edge), (a.radius + b.radius) / 2);
     const double small = kSmall * options_.tolerance;
     double worst = error_at(0.5, small);
-    if (parts == kMinParts && worst < small) return worst;  // nor is it much at the quarters
+    if (parts == kMinParts && worst < small) return worst;  // the error at the quarters is then small as well
     for (int i = 1; i < parts; ++i) {
       if (2 * i != parts) worst = std::max(worst, error_at(static_cast<double>(i) / parts, options_.tolerance));
     }
@@ -202,8 +204,8 @@ class Splitter {
     }
     return worst;
   }
-  // Into how many parts a cell is cut by the places where it is looked at. Between two that are h apart on an edge,
-  // where distances are d, these may be less by h^2 / (8 d), about: another tolerance.
+  // Returns into how many parts the sample places cut a cell. Between two samples that are h apart on an edge, where
+  // distances are d, the balls may differ by about h^2 / (8 d) more. This is kept below another tolerance.
   int parts_of(double length, double radius) const {
     const double part = std::min(kPart * options_.tolerance, std::sqrt(8 * options_.tolerance * radius));
     return std::clamp(static_cast<int>(std::ceil(length / part)), kMinParts, kMaxParts);
@@ -211,14 +213,14 @@ class Splitter {
 
   static constexpr double kPart = 10;  // tolerances
   static constexpr int kMinParts = 4, kMaxParts = 32;
-  static constexpr double kMaxAside = 0.4;  // of an edge's length: its dividing vertex, from the middle
+  static constexpr double kMaxAside = 0.4;  // of an edge's length: how far the dividing vertex may be from the middle
   static constexpr double kSmall = 0.25;
   const Surface& surface_;
   BallComplex& complex_;
   const SplitOptions& options_;
   SplitErrors& known_;
   const bool cuts_itself_;
-  std::vector<std::uint8_t> given_up_;  // edges that were left, or the longest of triangles that were
+  std::vector<std::uint8_t> given_up_;  // edges that were given up, and longest edges of such triangles
 };
 
 }  // namespace

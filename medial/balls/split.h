@@ -45,9 +45,9 @@ struct SplitErrors {
 //   edges and the middles of triangles; on long cells, they are at most ten tolerances apart, and less where the solid
 //   is thin.
 // - It is proven that balls protrude by at most kMaxStickingOut tolerances.
-// The error of a triangle counts for its longest edge. Edges through a wall of a surface that cuts itself are not
-// divided, because no division makes them linear. Cells that `known` lists as given up are left as they are. New
-// vertices are exact where that is possible. The result is deterministic; the work is parallel.
+// The error of a triangle counts for its longest edge. Edges through the interior surface of a mesh that cuts itself
+// are not divided, because no division makes them linear. Cells that `known` lists as given up are left as they are.
+// New vertices are exact where that is possible. The result is deterministic; the work is parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             SplitErrors& known, const Progress& progress);
 

@@ -8,25 +8,26 @@
 namespace orchard::detail {
 
 struct BorderOptions {
-  double level = 0;      // mesh units: sheets end where what they lose beyond is this (BallSolver::loss)
-  double tolerance = 0;  // mesh units: what a ball between two exact ones may protrude or fall short
+  double level = 0;  // in mesh units: sheets end where the surface that they lose beyond is this far (BallSolver::loss)
+  double tolerance = 0;  // in mesh units: by how much a ball between two exact ones may protrude or fall short
   double spacing = 0;    // mesh units, of the surface points
   double merging = 0;    // mesh units; see BallSolver
-  const FeatureEdges* features = nullptr;  // edges that sheets reach to
+  const FeatureEdges* features = nullptr;  // the edges that sheets reach
 };
 
-// Tolerances that cells added at borders may be off by: what is a little off is divided later.
+// In tolerances: how far cells that are added at borders may be off. Cells that are slightly off are divided later.
 inline constexpr double kBorderSlack = 4;
 
-// What is at the ends of the edges of one triangle.
+// The vertices and angles along edges that have exactly one triangle.
 struct Borders {
-  std::vector<std::array<Index, 2>> next;  // of each vertex with just two border edges on one sheet: its neighbours
-  std::vector<double> inner;               // radians: the sum of the triangles' angles at such a vertex
+  // The two neighbours of each vertex that has exactly two border edges on one sheet.
+  std::vector<std::array<Index, 2>> next;
+  std::vector<double> inner;  // the sum of the angles of the triangles at such a vertex, in radians
 };
 
 Borders find_borders(const BallComplex& complex);
 
-// Radians, at one vertex between two others.
+// Returns the angle at one vertex between two others, in radians.
 double angle_at(const BallComplex& complex, Index at, Index a, Index b);
 
 }  // namespace orchard::detail

@@ -32,12 +32,14 @@ class SeamReacher {
   }
 
  private:
-  static constexpr double kParallel = 150 * std::numbers::pi / 180;  // contacts seen at this angle or a wider one
-  static constexpr double kStep = 0.25;                              // spacings
-  static constexpr double kReach = 2;                                // spacings
+  // Contacts that are seen at this angle or more count as parallel faces.
+  static constexpr double kParallel = 150 * std::numbers::pi / 180;
+  static constexpr double kStep = 0.25;  // spacings
+  static constexpr double kReach = 2;    // spacings
   static constexpr int kMaxSteps = 64;
 
-  // The sum of the directions from border edges at a vertex away from their triangles, in these.
+  // At each border vertex, sums up the directions from its border edges away from their triangles, in the planes of
+  // these.
   void find_outward() {
     outward_.assign(sheets_.complex.size(), Vector::Zero());
     for (const Index e : sheets_.borders) {
@@ -73,9 +75,9 @@ class SeamReacher {
     return ball.exact && ball.count == 2 && ball.radius > 0 &&
            angle_between(ball.contacts[0].position - ball.center, ball.contacts[1].position - ball.center) > kParallel;
   }
-  // The first ball on the way out that has a third contact; none that is exact if there is none.
+  // Returns the first ball on the way out that has a third contact, or a ball that is not exact if there is none.
   ExactBall seam_beyond(const ExactBall& from, const Vector& out, BallSolver& solver) const {
-    // No step leaves the solid: beyond a seam there may be no more of it than half the thickness.
+    // No step may leave the solid: beyond a seam, the solid may end within half the thickness.
     const double step = std::min(kStep * sheets_.options.spacing, from.radius / 2);
     const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(kReach * sheets_.options.spacing / step)));
     ExactBall at = from;
@@ -91,7 +93,7 @@ class SeamReacher {
   }
 
   SheetExtension sheets_;
-  std::vector<Index> seam_;  // of each vertex
+  std::vector<Index> seam_;  // the seam vertex of each border vertex
   std::vector<Vector> outward_;
 };
 

@@ -36,7 +36,7 @@ class NotchFiller {
   }
 
  private:
-  static constexpr double kNear = 0.3;  // of the third side: how far the axis may be from its middle
+  static constexpr double kNear = 0.3;  // of the third side: the largest distance of the axis from its middle
 
   double outer_angle(Index v) const { return 2 * std::numbers::pi - borders_.inner[v]; }
   void offer(Index v) {
@@ -46,7 +46,8 @@ class NotchFiller {
     const ExactBall &p = complex_.balls[a], &q = complex_.balls[b], &third = complex_.balls[v];
     const double length = (p.center - q.center).norm();
     if (a == b || extension_.joined(a, b) || length > limits_.max_length * options_.spacing) return false;
-    // What sees each other over the notch, not back over the sheet or over a fold.
+    // The two edges have to face each other across the notch, not across the sheet or behind a triangle that is folded
+    // over.
     const double seen = angle_at(complex_, v, a, b);
     if (seen > limits_.max_angle || std::abs(seen - outer_angle(v)) > limits_.max_bend) return false;
     const ExactBall middle = solver_.between(p, q, 0.5);
@@ -61,7 +62,7 @@ class NotchFiller {
     if (!divided) dividing.max_rounds = 0;
     return may_end(p) && may_end(q) && becomes_linear(surface_, p, q, third, dividing);
   }
-  // Slack: what is a little off is divided later, at balls between exact ones.
+  // The slack allows cells that are slightly off, because they are divided later at balls between exact ones.
   bool is_nearly_linear(const ExactBall& p, const ExactBall& q, const ExactBall& third) const {
     const double length = (p.center - q.center).norm();
     const auto off = [&](const Point& center, double radius) {
@@ -70,7 +71,7 @@ class NotchFiller {
     return !off((p.center + q.center + third.center) / 3, (p.radius + q.radius + third.radius) / 3) &&
            !off((p.center + q.center) / 2, (p.radius + q.radius) / 2);
   }
-  // Not what is on a face of the surface.
+  // A vertex of radius 0 on a face of the surface is no valid end.
   static bool may_end(const ExactBall& ball) { return ball.exact || ball.radius > 0; }
   void fill(Index v) {
     const auto [a, b] = borders_.next[v];

@@ -38,6 +38,7 @@ std::vector<std::array<Index, 2>> GrowingBorders::near(const Point& place) const
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   std::vector<std::array<Index, 2>> edges;
+  edges.reserve(found.size());
   for (const auto& [longer, a, b] : found) edges.push_back({a, b});
   return edges;
 }

@@ -6,7 +6,7 @@
 
 namespace orchard::detail {
 
-// Numbered points that come one by one, in cubes as wide as the distance within which they are looked for.
+// A grid of numbered points that are added one by one. Its cubes are as wide as the search distance.
 class PointGrid {
  public:
   // `reach` > 0, mesh units.
@@ -14,8 +14,8 @@ class PointGrid {
 
   void add(const Point& point, Index item) { items_[orchard::hash_of(cell_of(point))].push_back(item); }
 
-  // Calls visit(item) for all items with a point within `reach` of a place, and for some others: the visitor has to
-  // measure. An item comes as often as it has points.
+  // Calls visit(item) for all items with a point within `reach` of a place, and for some others, so the visitor has to
+  // measure. An item with several points may be visited several times.
   template <class Visit>
   void visit_near(const Point& place, const Visit& visit) const {
     const GridCell middle = cell_of(place);
@@ -32,7 +32,8 @@ class PointGrid {
   GridCell cell_of(const Point& point) const { return grid_cell(point, reach_); }
 
   double reach_;
-  std::unordered_map<std::uint64_t, std::vector<Index>> items_;  // by cube; where two have one hash, together
+  // The items in each cube; cubes with the same hash share a list.
+  std::unordered_map<std::uint64_t, std::vector<Index>> items_;
 };
 
 }  // namespace orchard::detail

@@ -7,14 +7,16 @@
 namespace orchard::detail {
 namespace {
 
-Vector direction(const ExactBall& ball, int i) { return (ball.contacts[i].position - ball.center) / ball.radius; }
+Vector direction(const ExactBall& ball, int i) {
+  return (ball.contacts[static_cast<std::size_t>(i)].position - ball.center) / ball.radius;
+}
 
 }  // namespace
 
 bool apex_of_two(const ExactBall& ball, int i, int j, Vector& to_apex) {
   const Vector u = direction(ball, i), w = direction(ball, j);
   const Vector sum = u + w;
-  // 1 + u w is half the square of the sum: sum / (1 + u w) is 2 / |sum| long.
+  // The half square of |sum| is 1 + u w, so the vector sum / (1 + u w) has length 2 / |sum|.
   if (!(sum.norm() * kMaxApex > 2)) return false;
   to_apex = ball.radius * 2 * sum / sum.squaredNorm();
   return true;

@@ -8,8 +8,8 @@
 
 namespace orchard::detail {
 
-// A complex on its way to be extended from the borders of its sheets: cells and borders as they were before the first
-// triangle was added. `options` and what is given by reference must outlive it.
+// The state of a complex while its sheets are extended from their borders, with the cells and borders from before the
+// first triangle was added. `options` and everything passed by reference must outlive it.
 struct SheetExtension {
   SheetExtension(const Surface& surface_of_solid, BallComplex& extended, const BorderOptions& border_options)
       : surface(surface_of_solid),

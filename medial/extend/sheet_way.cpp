@@ -9,7 +9,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kMaxDetour = 2;  // lengths, and as many spacings: of a way
+constexpr double kMaxDetour = 2;  // in lengths, plus as many spacings: the longest path
 
 }  // namespace
 

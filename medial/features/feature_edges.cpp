@@ -14,11 +14,11 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kShrinkingSteps = 20;           // of a ball that shrinks
-constexpr double kFirstDistance = 0.1;        // of the lower triangle's height: the first ball's distance
-constexpr double kGrowth = 2;                 // of a ball that grows
-constexpr double kFeatureTouching = 1e-3;     // of a ball's radius: how far it may hold something of the surface
-constexpr double kWeak = 0.5;                 // of the least loss: what a chain goes on over
-constexpr std::array kPlaces{0.5, 0.2, 0.8};  // of an edge, where its wedge is looked at
+constexpr double kFirstDistance = 0.1;        // of the height of the lower triangle: where the first ball is placed
+constexpr double kGrowth = 2;                 // factor between a ball and the next larger one
+constexpr double kFeatureTouching = 1e-3;     // of a ball's radius: how deep the surface may reach into it
+constexpr double kWeak = 0.5;                 // of the smallest loss: edges above this continue a chain
+constexpr std::array kPlaces{0.5, 0.2, 0.8};  // shares of an edge at which its wedge is examined
 
 struct Side {
   Index triangle, side;
@@ -41,13 +41,14 @@ double wedge_loss(const Surface& surface, Index triangle, std::size_t side, doub
   const Vector &n = surface.normal(triangle), &m = surface.normal(other);
   const Vector sum = n + m;
   if (!(n.cross(m).dot(along) > 0) || !(sum.norm() > 0)) return 0;
-  // A centre at s from the edge, along the bisector, is s cos from both faces.
+  // A centre at distance s from the edge along the bisector has the distance s cos from both faces.
   const Vector inward = -sum.normalized();
   const double cosine = sum.norm() / 2, squared_sine = std::max(0.0, 1 - cosine * cosine);
   if (!(squared_sine > 0)) return 0;
   const Point place = corners[side] + part * along;
-  // The balls grow by steps so small that each holds what lies between the one before and it, and the last shrinks to
-  // where it touches something else. One that begins large may be beyond all of the surface.
+  // The growth factor is so small that each ball contains the gap between the previous ball and itself. The last ball
+  // shrinks to where it touches another place. A search that began with a large ball might start beyond the whole
+  // surface.
   const double growth = std::min(kGrowth, (1 + cosine) / (1 - cosine));
   double s = kFirstDistance * std::min(height(surface, triangle, along), height(surface, other, along));
   if (!(s > 0)) return 0;
@@ -57,7 +58,7 @@ double wedge_loss(const Surface& surface, Index triangle, std::size_t side, doub
     nearest = surface.closest(place + s * inward);
   }
   for (int step = 0; step < kShrinkingSteps && nearest.distance < s * cosine * (1 - kFeatureTouching); ++step) {
-    // The ball of the wedge that touches there, too: |place + s inward - nearest| = s cos.
+    // The ball in the wedge that also touches this place fulfils |place + s inward - nearest| = s cos.
     const Vector to = nearest.position - place;
     const double ahead = inward.dot(to), root = ahead * ahead - squared_sine * to.squaredNorm();
     if (!(ahead > 0) || !(root >= 0)) return 0;
@@ -72,7 +73,7 @@ double wedge_loss(const Surface& surface, Index triangle, std::size_t side, doub
 FeatureEdges::FeatureEdges(const Surface& surface, const FeatureOptions& options)
     : has_(surface.mesh().triangles.size(), {0, 0, 0}) {
   std::vector<Side> sides;
-  // No ball is larger than the bounding ball, so what turns by little loses little.
+  // No ball is larger than the bounding ball, so edges with a small angle have a small loss.
   const double least_turn =
       2 * std::acos(std::max(0.0, 1 - kWeak * options.min_loss / (2 * surface.bounding_radius())));
   const auto& triangles = surface.mesh().triangles;

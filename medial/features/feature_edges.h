@@ -16,8 +16,8 @@ struct FeatureOptions {
 // The convex edges of a mesh at which sheets of its medial axis have to end, with balls of radius 0: chains of edges
 // that would be left open by much if no sheet ended there. An edge's loss measures that: it is the edge's distance from
 // the largest ball in its wedge, which a third place of the surface stops. By this measure a sharp edge of a coarse
-// tube is no feature edge, nor is a fold that is no deeper than what the axis leaves open anyway; the angle at the edge
-// could not tell these apart.
+// tube is no feature edge, nor is a ridge that is no higher than what the axis leaves open anyway; the angle at the
+// edge could not tell these apart.
 class FeatureEdges {
  public:
   // Finds the edges with a large loss. O(n log n); parallel, deterministic.

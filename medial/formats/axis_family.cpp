@@ -1,5 +1,6 @@
-// The files that Point2Skeleton writes for one shape: N_center.off has the centres, N_skel_face.obj and N_skel_edge.obj
-// have the same vertices with faces and with lines, N_sphere.obj has a mesh of each ball, one after another.
+// Reads the files that Point2Skeleton writes for one shape. N_center.off has the centres; N_skel_face.obj and
+// N_skel_edge.obj have the same vertices with faces and with lines; N_sphere.obj has a mesh of each ball, one after
+// another.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -13,14 +14,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSameCenter =
-    1e-5;                        // of the largest coordinate: files of one axis are written with six digits or more
-constexpr double kRound = 1e-2;  // of the radius: vertices of a ball's mesh are that far from round at most
+    // Of the largest coordinate: vertices that differ by less are the same, since the files have six digits or more.
+    1e-5;
+constexpr double kRound = 1e-2;  // of the radius: how far the vertices of a ball's mesh may be from the sphere
 
 struct Family {
   fs::path centers, faces, edges, spheres;
 };
 
-// The names of the other files, whether they are there or not.
+// Returns the names of the other files of the family, whether or not they exist.
 Family family_of(const fs::path& file) {
   const std::string stem = file.stem().string();
   for (const std::string ending : {"_center", "_skel_face", "_skel_edge"}) {
@@ -34,7 +36,7 @@ Family family_of(const fs::path& file) {
 
 bool is_there(const fs::path& file) { return !file.empty() && fs::is_regular_file(file); }
 
-// Adds the cells of another file with the same vertices.
+// Adds the cells of another file of the family, which has the same vertices.
 void add_cells(ForeignAxis& axis, const ForeignAxis& other, const fs::path& file) {
   const auto differs = [&](const std::string& how) {
     return InputError(file.string() + ": " + how + " than " + axis.files.front().string() +
@@ -53,7 +55,7 @@ void add_cells(ForeignAxis& axis, const ForeignAxis& other, const fs::path& file
   axis.files.push_back(file);
 }
 
-// Radii from the meshes of the balls, which have equally many vertices.
+// Sets the radii from the meshes of the balls, all of which have the same number of vertices.
 void add_radii(ForeignAxis& axis, const fs::path& file) {
   const std::vector<Point> points = parse_obj_axis(TextLines(file)).mesh.centers;
   const std::size_t balls = axis.mesh.centers.size(), each = points.size() / balls;
@@ -86,7 +88,8 @@ ForeignAxis read_axis_family(const fs::path& file) {
   ForeignAxis axis = read(file);
   axis.files = {file};
   const Family family = family_of(file);
-  // Files that only share a name with another one are no pair: an .off file without faces is, with its .obj.
+  // Files that merely share a name are not a family: an .off file without faces belongs to the .obj file of the same
+  // name.
   const bool named = !family.edges.empty();
   const bool bare = axis.mesh.edges.empty() && file.extension() == ".off" && is_there(family.faces);
   if (!named && !bare) return axis;

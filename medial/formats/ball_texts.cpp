@@ -1,4 +1,4 @@
-// Kinds of text that hold balls, one a line.
+// Reads text formats that have a ball on each line.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -11,7 +11,7 @@ namespace orchard::detail {
 namespace {
 
 void add_ball(ForeignAxis& axis, const TextLines& lines, const Point& center, double radius) {
-  if (radius < 0) lines.fail("a negative radius");
+  if (radius < 0) lines.fail("the radius is negative; it must be 0 or more");
   axis.mesh.centers.push_back(center);
   axis.mesh.radii.push_back(radius);
 }
@@ -21,7 +21,7 @@ Point read_point(TextLines& lines) {
   return {x, y, lines.real()};
 }
 
-// The numbers of one line, at most five of them; a sixth counts as well, but is not read.
+// The numbers at the beginning of a line. No format has more than five; a sixth is read to detect that there are more.
 struct Numbers {
   std::array<double, 6> values{};
   std::size_t count = 0;
@@ -30,7 +30,8 @@ Numbers numbers_of(TextLines& lines, std::optional<double> first) {
   Numbers own;
   if (first) own.values[own.count++] = *first;
   while (own.count < own.values.size() && lines.real_if_any(own.values[own.count])) ++own.count;
-  if (!lines.word().empty() && own.count < own.values.size()) lines.fail("something that is not a finite number");
+  if (!lines.word().empty() && own.count < own.values.size())
+    lines.fail("the line has something that is not a finite number");
   return own;
 }
 
@@ -59,7 +60,7 @@ ForeignAxis parse_balls(const std::string& name, std::string text) {
     columns = own.count;
     add_ball(axis, lines, {own.values[0], own.values[1], own.values[2]}, columns == 4 ? own.values[3] : 0);
   }
-  if (axis.mesh.centers.empty()) lines.fail("no balls: lines \"x y z r\" are expected");
+  if (axis.mesh.centers.empty()) lines.fail("the file has no balls; lines \"x y z r\" are expected");
   if (promised && *promised != static_cast<double>(axis.mesh.centers.size()))
     lines.fail("the first line promises another number of balls than the " + std::to_string(axis.mesh.centers.size()) +
                " that follow; the file may be cut off");
@@ -68,11 +69,11 @@ ForeignAxis parse_balls(const std::string& name, std::string text) {
 }
 
 ForeignAxis parse_sph_axis(TextLines lines) {
-  if (!lines.next()) lines.fail("is empty; a .sph file of balls starts with \"4\" and their number");
+  if (!lines.next()) lines.fail("the file is empty; a .sph file of balls starts with \"4\" and their number");
   const Index columns = lines.index(), count = lines.index();
   if (columns != 3 && columns != 4)
     lines.fail("expected \"4\" and a number of balls, or \"3\" and a number of centres; a sphere-tree is no axis");
-  if (count == 0) lines.fail("promises no balls");
+  if (count == 0) lines.fail("the file promises no balls");
   ForeignAxis axis;
   axis.has_radii = columns == 4;
   Index deleted = 0;
@@ -84,15 +85,16 @@ ForeignAxis parse_sph_axis(TextLines lines) {
     const double radius = columns == 4 ? lines.real("a radius") : 0;
     std::array<std::int64_t, 3> flags{};  // type, deleted, copies
     const std::size_t flag_count = lines.whole_numbers_to_the_end(flags);
-    if (flag_count > 1 && flags[1] != 0 && flags[1] != 1) lines.fail("a flag \"deleted\" that is neither 0 nor 1");
+    if (flag_count > 1 && flags[1] != 0 && flags[1] != 1) lines.fail("the flag \"deleted\" is neither 0 nor 1");
     if (flag_count > 1 && flags[1] == 1) {
       ++deleted;
     } else {
       add_ball(axis, lines, center, radius);
     }
   }
-  if (lines.next()) lines.fail("more lines than the " + std::to_string(count) + " balls of the first one");
-  if (axis.mesh.centers.empty()) lines.fail("every ball is flagged as deleted");
+  if (lines.next())
+    lines.fail("there are more lines than the " + std::to_string(count) + " balls that the first one promises");
+  if (axis.mesh.centers.empty()) lines.fail("every ball is flagged as deleted; nothing is left of this axis");
   if (deleted > 0) axis.notes.push_back(std::to_string(deleted) + " balls are flagged as deleted and left out");
   return axis;
 }
@@ -103,17 +105,17 @@ ForeignAxis parse_swc_axis(TextLines lines) {
   std::vector<std::int64_t> parents;
   while (lines.next()) {
     const std::int64_t own = lines.whole();
-    lines.whole();  // the kind of neurite
+    lines.whole();  // the kind of neurite, which is not used
     const Point center = read_point(lines);
     add_ball(axis, lines, center, lines.real("a radius"));
     const std::int64_t parent = lines.whole();
-    if (parent == own) lines.fail("a node that is its own parent");
-    if (parent < -1) lines.fail("a parent that is no node; -1 stands for none");
-    if (parent >= 0 && !number.contains(parent)) lines.fail("a parent that is not on a line before");
-    if (!number.emplace(own, axis.mesh.size() - 1).second) lines.fail("the number of a node twice");
+    if (parent == own) lines.fail("the node is its own parent");
+    if (parent < -1) lines.fail("the parent is no node; -1 stands for none");
+    if (parent >= 0 && !number.contains(parent)) lines.fail("the parent is not on a line before this one");
+    if (!number.emplace(own, axis.mesh.size() - 1).second) lines.fail("the number of this node is used twice");
     if (parent >= 0) axis.mesh.edges.push_back({number.at(parent), axis.mesh.size() - 1});
   }
-  if (axis.mesh.centers.empty()) lines.fail("no nodes: lines \"number kind x y z r parent\" are expected");
+  if (axis.mesh.centers.empty()) lines.fail("the file has no nodes; lines \"number kind x y z r parent\" are expected");
   complete(axis.mesh);
   return axis;
 }
@@ -124,7 +126,7 @@ ForeignAxis parse_polylines(TextLines lines) {
   std::map<std::array<double, 3>, Index> number;
   while (lines.next()) {
     const Index count = lines.index();
-    if (count < 2) lines.fail("a line of fewer than two points: \"n x y z x y z ..\" is expected");
+    if (count < 2) lines.fail("the line has fewer than two points; \"n x y z x y z ..\" is expected");
     Index before = kNone;
     for (Index i = 0; i < count; ++i) {
       const Point place = read_point(lines);
@@ -133,9 +135,9 @@ ForeignAxis parse_polylines(TextLines lines) {
       if (before != kNone && before != at->second) axis.mesh.edges.push_back({before, at->second});
       before = at->second;
     }
-    if (!lines.word().empty()) lines.fail("more numbers than those of its points");
+    if (!lines.word().empty()) lines.fail("the line has more numbers than those of its points");
   }
-  if (axis.mesh.centers.empty()) lines.fail("no lines: \"n x y z x y z ..\" is expected");
+  if (axis.mesh.centers.empty()) lines.fail("the file has no lines; \"n x y z x y z ..\" is expected");
   complete(axis.mesh);
   return axis;
 }

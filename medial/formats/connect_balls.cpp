@@ -70,7 +70,8 @@ class Connector {
     const Point& a = balls_.centers[t[0]];
     return (balls_.centers[t[1]] - a).cross(balls_.centers[t[2]] - a).norm();
   }
-  // Tetrahedra with their largest free side, the first of equals, as long as one has any.
+  // Removes tetrahedra that have a free side, each through its largest free side (the first of equal ones), until none
+  // is left.
   void collapse() {
     std::vector<std::uint8_t> gone(tetrahedra_.size(), 0);
     std::vector<Index> waiting;
@@ -96,7 +97,7 @@ class Connector {
     result_.tetrahedra = static_cast<Index>(std::count(gone.begin(), gone.end(), 0));
   }
 
-  // Those with cells, and those alone in their part of the solid.
+  // Keeps the balls that have cells, and those that are alone in their part of the solid.
   void keep_balls() {
     MedialMesh& mesh = result_.mesh;
     std::vector<Index> number(balls_.centers.size(), kNone);
@@ -120,7 +121,7 @@ class Connector {
   const Surface& surface_;
   const MedialMesh& balls_;
   PowerDiagram diagram_;
-  std::map<Triangle, std::vector<Index>> triangles_;  // with the tetrahedra at each
+  std::map<Triangle, std::vector<Index>> triangles_;  // the tetrahedra at each triangle
   std::vector<std::array<Index, 4>> tetrahedra_;
   std::vector<Index> found_;
   ConnectedBalls result_;

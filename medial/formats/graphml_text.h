@@ -7,16 +7,17 @@
 
 namespace orchard::detail {
 
-// A graph in space as GraphML: nodes with centre and radius, numbered in their order, and edges of named kinds.
+// Builds a graph in space as GraphML: nodes with centre and radius, numbered in their order, and edges that have a
+// kind.
 class GraphmlText {
  public:
-  // `edge_numbers`: the names of the numbers that each edge has.
+  // `edge_numbers` has the names of the numbers that each edge has.
   GraphmlText(std::string_view graph, std::span<const char* const> edge_numbers);
 
   void add_node(const Point& center, double radius);
-  // The numbers in the order of their names.
+  // Adds an edge with its numbers, which are in the order of their names.
   void add_edge(Index from, Index to, std::span<const double> numbers, std::string_view kind);
-  // The whole file. To be called once, last.
+  // Returns the whole file. Call it once, after everything has been added.
   std::string finished();
 
  private:

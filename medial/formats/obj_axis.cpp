@@ -17,7 +17,8 @@ class ObjReader {
 
   ForeignAxis run() {
     while (lines_.next()) read_line(lines_.word());
-    if (axis_.mesh.centers.empty()) lines_.fail("no vertices: lines \"v x y z\", or \"v x y z r\", are expected");
+    if (axis_.mesh.centers.empty())
+      lines_.fail("the file has no vertices; lines \"v x y z\", or \"v x y z r\", are expected");
     const std::vector<double>& radii = axis_.mesh.radii;
     axis_.has_radii = columns_ == 4;
     if (columns_ == 4 && !cg_ && std::all_of(radii.begin(), radii.end(), [](double r) { return r == 1; })) {
@@ -43,14 +44,16 @@ class ObjReader {
     std::array<double, 5> more{};
     std::size_t count = 0;
     while (count < more.size() && lines_.real_if_any(more[count])) ++count;
-    if (!lines_.word().empty()) lines_.fail("a vertex with something that is not a finite number");
+    if (!lines_.word().empty()) lines_.fail("the vertex has something that is not a finite number");
     // Three or four further numbers are a colour.
     const int columns = count == 1 ? 4 : 3;
-    if (count == 2 || count == 5) lines_.fail("a vertex of " + std::to_string(3 + count) + " numbers");
+    if (count == 2 || count == 5)
+      lines_.fail("the vertex has " + std::to_string(3 + count) + " numbers; 3 or 4 are expected");
     if (columns_ != 0 && columns != columns_)
-      lines_.fail(columns == 4 ? "a radius where the vertices before have none" : "no radius where others have one");
+      lines_.fail(columns == 4 ? "the vertex has a radius, but those before it have none"
+                               : "the vertex has no radius, but others have one");
     columns_ = columns;
-    if (columns == 4 && more[0] < 0) lines_.fail("a negative radius");
+    if (columns == 4 && more[0] < 0) lines_.fail("the radius is negative; it must be 0 or more");
     axis_.mesh.centers.emplace_back(x, y, z);
     axis_.mesh.radii.push_back(columns == 4 ? more[0] : 0);
   }
@@ -65,20 +68,20 @@ class ObjReader {
     const auto size = static_cast<std::int64_t>(axis_.mesh.centers.size());
     if (number < 0) number += size + 1;
     if (number < 1 || number > size)
-      lines_.fail("a vertex number beyond those read so far, " + std::to_string(size) + " (they count from 1)");
+      lines_.fail("the vertex number is beyond those read so far, " + std::to_string(size) + " (they count from 1)");
     return static_cast<Index>(number - 1);
   }
   std::vector<Index> corners(std::size_t min) {
     std::vector<Index> all;
     for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) all.push_back(corner(word));
-    if (all.size() < min) lines_.fail("a line or face of fewer than " + std::to_string(min) + " vertices");
+    if (all.size() < min) lines_.fail("the line or face has fewer than " + std::to_string(min) + " vertices");
     return all;
   }
 
   void read_polyline() {
     const std::vector<Index> all = corners(2);
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-      if (all[i] == all[i + 1]) lines_.fail("a vertex number twice");
+      if (all[i] == all[i + 1]) lines_.fail("the line or face names a vertex twice");
       axis_.mesh.edges.push_back({all[i], all[i + 1]});
     }
   }
@@ -87,7 +90,8 @@ class ObjReader {
     const std::vector<Index> all = corners(3);
     std::vector<Index> sorted = all;
     std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) lines_.fail("a vertex number twice");
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+      lines_.fail("the line or face names a vertex twice");
     for (std::size_t i = 1; i + 1 < all.size(); ++i) axis_.mesh.triangles.push_back({all[0], all[i], all[i + 1]});
   }
 

@@ -20,9 +20,9 @@ std::string lower(std::string text) {
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": is a directory, not a file");
+  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": this is a folder; give a file");
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
+  if (!in) throw InputError(file.string() + ": the file cannot be opened; check that it exists and its permissions");
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
@@ -43,7 +43,7 @@ ForeignAxis read_by_extension(const std::filesystem::path& file) {
   if (one_of(extension, {".txt", ".xyz", ".xyzr", ".balls"})) return detail::parse_balls(file.string(), bytes_of(file));
   std::string known;
   for (const char* one : axis_extensions()) known += std::string(known.empty() ? "" : ", ") + one;
-  throw InputError(file.string() + ": \"" + extension + "\" is no kind of medial axis that is read; these are " +
+  throw InputError(file.string() + ": \"" + extension + "\" is no format of medial axes that can be read; use one of " +
                    known);
 }
 

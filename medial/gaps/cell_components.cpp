@@ -13,7 +13,7 @@
 namespace orchard::detail {
 namespace {
 
-// Divides the pieces of one cell into components.
+// Divides the pieces of the surface in one cell into connected components.
 class ComponentFinder {
  public:
   ComponentFinder(const Surface& surface, const RestrictedVoronoi& restricted, Index cell, std::vector<Index> triangles)
@@ -50,7 +50,7 @@ class ComponentFinder {
                                                            : kNotHere;
   }
 
-  // Two pieces share one stretch of an edge at most; it is counted at the first of them.
+  // Two pieces share at most one stretch of an edge. It is counted at the first of the two.
   void join_across_edges(std::size_t i) {
     for (unsigned edge = 0; edge < 3; ++edge) {
       const Index next = surface_.neighbors(triangles_[i])[edge];
@@ -73,7 +73,8 @@ class ComponentFinder {
     return mask;
   }
 
-  // A vertex is inside a component if the pieces around it are joined all the way round. Counted at the first of them.
+  // A vertex lies inside a component if the pieces around it are joined all the way round. It is counted at the first
+  // of them.
   void count_inner_vertices(std::size_t i) {
     for (const Index vertex : surface_.mesh().triangles[triangles_[i]]) {
       const auto around = surface_.triangles_around(vertex);
@@ -97,8 +98,8 @@ class ComponentFinder {
   std::vector<Index> triangles_;  // ascending
   std::vector<const CellPiece*> pieces_;
   DisjointSets sets_;
-  std::vector<int> euler_;            // what each piece adds to its component's characteristic
-  std::vector<std::uint8_t> joined_;  // bit i: to a piece across the triangle's edge i
+  std::vector<int> euler_;            // the contribution of each piece to the Euler characteristic of its component
+  std::vector<std::uint8_t> joined_;  // bit i is set if the piece is joined across edge i of its triangle
 };
 
 double distance_to(const Surface& surface, const CellComponent& component, const Point& point) {
@@ -110,8 +111,8 @@ double distance_to(const Surface& surface, const CellComponent& component, const
   return nearest;
 }
 
-// `components`: all of one cell, at least one. A diagram that is not exact may cut the point's own place off by a
-// rounding; then the component nearest to it counts.
+// Marks the home component among the components of one cell, of which there is at least one. If the diagram is not
+// exact, rounding may put the cell's own point outside all of them; then the nearest component is the home component.
 void mark_home(const Surface& surface, const SurfaceSampling& sampling, std::vector<CellComponent>& components) {
   const Index cell = components[0].cell;
   std::vector<Index> around;

@@ -7,14 +7,15 @@
 
 namespace orchard::detail {
 
-// For each point the points whose Voronoi cells adjoin its own, ascending; none for a point without a cell.
+// Lists for each point the points whose Voronoi cells are adjacent to its own, ascending; the list is empty for a point
+// without a cell.
 class CellNeighbors {
  public:
   // O(vertices), parallel.
   explicit CellNeighbors(const VoronoiDiagram& diagram);
 
-  // Brings the rows up to date after points from index `first_new` on were inserted. Returns for each point whether its
-  // cell changed: the new points and their neighbours.
+  // Updates the lists after the points from index `first_new` on have been inserted. Returns for each point whether its
+  // cell has changed, which is so for the new points and their neighbours.
   std::vector<std::uint8_t> update(const VoronoiDiagram& diagram, Index first_new);
 
   Index size() const { return static_cast<Index>(rows_.size()); }
@@ -27,8 +28,8 @@ class CellNeighbors {
   std::vector<std::vector<Index>> rows_;
 };
 
-// The point nearest to `query` among those joined to `start` by cells: steps to any nearer neighbour until none is
-// left, which is exact on a Voronoi diagram. Precondition: `start` has a cell.
+// Returns the point nearest to `query` in the connected part of the cells that contains `start`. It moves to a nearer
+// neighbour as long as there is one, which is exact in a Voronoi diagram. Precondition: `start` has a cell.
 Index nearest_point(std::span<const Point> points, const CellNeighbors& neighbors, const Point& query, Index start);
 
 }  // namespace orchard::detail

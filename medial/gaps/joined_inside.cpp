@@ -23,7 +23,8 @@ bool joined_inside(const Surface& surface, const SurfaceSampling& sampling, cons
   }
   std::array<bool, 2> reached{false, false};
   std::vector<Index> open(from.begin(), from.end());
-  std::unordered_set<Index> met(from.begin(), from.end());  // asked only whether it holds a triangle
+  // A hash set is safe here: the order of its entries is never used.
+  std::unordered_set<Index> met(from.begin(), from.end());
   while (!open.empty()) {
     const Index triangle = open.back();
     open.pop_back();

@@ -4,7 +4,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr Index kLeafSize = 8;
-// Below this, the halves of any box are narrower than two points keep apart.
+// At this depth, half boxes are narrower than any distance that is kept between two points.
 constexpr int kMaxDepth = 150;
 
 }  // namespace

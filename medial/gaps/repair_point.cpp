@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "fold_bottom.h"
 #include "neck_test.h"
 #include "orchard/geometry/tolerance.h"
+#include "valley_bottom.h"
 
 namespace orchard::detail {
 namespace {
@@ -149,7 +149,7 @@ RepairProposal propose_repair(const Surface& surface, const SurfaceSampling& sam
   };
   if (bounced) {
     const double reach = kNearBottom * proposal.snapped.distance;
-    propose(bottom_of_fold(surface, sampling, component.cell, met, reach));
+    propose(bottom_of_valley(surface, sampling, component.cell, met, reach));
     if (!proposal.facing.empty() && proposal.facing[0].distance > reach) proposal.facing.clear();
   }
   const Projector projector(surface, restricted, component);

@@ -15,7 +15,7 @@
 namespace orchard::detail {
 namespace {
 
-// Keeps the part of `polygon` where (x - base) . direction <= bound; what it cuts gets `label`.
+// Keeps the part of `polygon` where (x - base) . direction <= bound. The edges along which it is cut get `label`.
 void clip(CellPolygon& polygon, const Point& base, const Vector& direction, double bound, Index label,
           std::vector<double>& offsets, CellPolygon& spare) {
   const std::size_t size = polygon.corners.size();
@@ -44,7 +44,7 @@ void clip(CellPolygon& polygon, const Point& base, const Vector& direction, doub
   std::swap(polygon, spare);
 }
 
-// Whether the polygon is but a touch: its area is less than that of a strip of this width.
+// Whether the polygon is so thin that it counts as a mere touch: its area is less than that of a strip of this width.
 bool narrower_than(const CellPolygon& polygon, double width) {
   Vector area = Vector::Zero();
   double squared = 0;
@@ -81,10 +81,11 @@ CellPiece piece_of(const CellPolygon& polygon, Index cell, double touch) {
 struct RestrictedVoronoi::Scratch {
   CellPolygon polygon, spare;
   std::vector<double> offsets;
-  std::vector<Index> open, seen_by;  // seen_by: the triangle that last met each cell
+  std::vector<Index> open, seen_by;  // seen_by has, for each cell, the triangle that it was last seen from
 };
 
-// Leaves scratch.polygon without corners if the cell does no more than touch the triangle.
+// Cuts the part of a triangle in a cell. Leaves scratch.polygon without corners if the cell merely touches the
+// triangle.
 void RestrictedVoronoi::cut_out(const std::array<Point, 3>& triangle, Index cell, Scratch& scratch) const {
   CellPolygon& polygon = scratch.polygon;
   polygon.corners.assign(triangle.begin(), triangle.end());
@@ -101,8 +102,9 @@ void RestrictedVoronoi::cut_out(const std::array<Point, 3>& triangle, Index cell
   }
 }
 
-// In proportion to the distance to the nearest neighbour, so that no face moves farther than the tolerance and no point
-// loses its place. Points that have a weight keep it: their neighbours were cut with it.
+// Draws a random weight for each point. It is proportional to the distance to the nearest neighbour, so that no face
+// moves by more than the tolerance and no point loses its cell. Points that have a weight keep it, because the cells of
+// their neighbours were cut with it.
 void RestrictedVoronoi::draw_weights() {
   const double unit = tolerance::kGeneralPosition * surface_->bounding_radius();
   const Index first = static_cast<Index>(weights_.size());
@@ -133,8 +135,8 @@ RestrictedVoronoi::RestrictedVoronoi(const Surface& surface, std::span<const Poi
 std::vector<Index> RestrictedVoronoi::update(std::span<const Point> points, const std::vector<std::uint8_t>& changed) {
   points_ = points;
   draw_weights();
-  // A new cell takes its share from cells that are its neighbours afterwards, so those were marked as changed and their
-  // triangles hold all of it.
+  // A new cell takes its area from cells that are its neighbours afterwards. Those were marked as changed, so their
+  // triangles contain the whole new cell.
   std::vector<Index> dirty;
   for (Index triangle = 0; triangle < pieces_.size(); ++triangle) {
     const std::vector<CellPiece>& pieces = pieces_[triangle];
@@ -152,7 +154,8 @@ void RestrictedVoronoi::divide_all(std::span<const Index> triangles) {
   tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) { divide(triangles[i], scratch.local()); });
 }
 
-// Serial, each walk starting where a neighbour's ended, so that ties fall the same way whatever the thread count.
+// Runs in one thread, with each walk starting where the walk of a neighbour ended. So ties are resolved in the same way
+// for any number of threads.
 void RestrictedVoronoi::find_seeds(std::span<const Index> triangles) {
   Index last = 0;
   while (last + 1 < neighbors_->size() && (*neighbors_)[last].empty()) ++last;
@@ -183,7 +186,8 @@ void RestrictedVoronoi::divide(Index triangle, Scratch& scratch) {
     scratch.open.pop_back();
     cut_out(corners, cell, scratch);
     if (scratch.polygon.corners.empty()) {
-      // A seed that ties with others for the corner may own nothing else of the triangle; one of its neighbours does.
+      // A seed that ties with others at the corner may own nothing else of the triangle. Then one of its neighbours
+      // does.
       if (pieces.empty() && cell == seeds_[triangle]) {
         for (const Index other : (*neighbors_)[cell]) meet(other);
       }

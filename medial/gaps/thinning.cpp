@@ -9,11 +9,12 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kCrowded = 0.75;  // in spacings; relaxed points keep about 1 apart
-constexpr double kSameSide = 0.5;  // cosine of the angle between normals: 60 degrees
+// In spacings: points nearer than this are crowded; relaxed points keep about 1 apart.
+constexpr double kCrowded = 0.75;
+constexpr double kSameSide = 0.5;  // cosine of the angle between normals on one side of the surface: 60 degrees
 constexpr double kFacing = -kSameSide;
 
-// Of each point, those within `reach`, by a grid of cells that wide.
+// Returns the points within `reach` of each point, found by a grid with cells of that width.
 Rows points_near(const std::vector<Point>& points, double reach) {
   const auto cell_of = [&](const Point& point) { return grid_cell(point - points[0], reach); };
   std::vector<std::pair<GridCell, Index>> sorted;
@@ -61,7 +62,8 @@ class Thinning {
   }
 
  private:
-  // The nearest point that stays and whose normal has a cosine with that of i between the two; kNone if there is none.
+  // Returns the nearest point that stays and whose normal has a cosine between the two limits with the normal of i;
+  // kNone if there is none.
   Index nearest(Index i, double min, double max) const {
     Index best = kNone;
     double squared = std::numeric_limits<double>::infinity();

@@ -11,7 +11,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxJoins = 100;  // rounds, each of which at least halves the number of small patches in a row
+constexpr int kMaxJoins = 100;  // maximum number of rounds; each at least halves the number of small patches in a row
 
 }  // namespace
 
@@ -73,7 +73,7 @@ std::vector<Index> PatchMesh::patches(const std::vector<Index>& labels, Index& c
   std::vector<Index> numbers(labels.size(), kNone);
   count = 0;
   for (Index t = 0; t < labels.size(); ++t) {
-    const Index first = sets.root(t);  // the lowest, so numbered already
+    const Index first = sets.root(t);  // the root is the lowest triangle of its set, so it already has a number
     numbers[t] = first == t ? count++ : numbers[first];
   }
   return numbers;
@@ -85,7 +85,8 @@ void PatchMesh::join_small(std::vector<Index>& labels, double min_area) const {
     const std::vector<Index> patch = patches(labels, count);
     std::vector<double> areas(count, 0);
     for (Index t = 0; t < labels.size(); ++t) areas[patch[t]] += areas_[t];
-    std::map<std::pair<Index, Index>, double> seams;  // of small patches, by their larger neighbours
+    // The lengths of the borders of small patches, by the adjacent larger patch.
+    std::map<std::pair<Index, Index>, double> seams;
     for (Index t = 0; t < labels.size(); ++t) {
       const Index own = patch[t];
       if (!(areas[own] < min_area)) continue;

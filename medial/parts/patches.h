@@ -5,17 +5,17 @@
 
 namespace orchard::detail {
 
-// The triangles of a mesh with their areas and the lengths of the edges that they share.
+// The triangles of a mesh with their areas and the lengths of their shared edges.
 class PatchMesh {
  public:
   explicit PatchMesh(const TriangleMesh& mesh);
 
   const std::vector<double>& areas() const { return areas_; }
 
-  // Gives each triangle the label with which it shares more of its border than with its own, `rounds` times at most.
-  // Triangles are visited in their order.
+  // Gives a triangle another label if it shares more of its border with that label than with its own. Triangles are
+  // visited in their order, at most `rounds` times.
   void smooth(std::vector<Index>& labels, int rounds) const;
-  // Gives connected patches below `min_area` the label with which they share most of their border.
+  // Gives each connected patch below `min_area` the label with which it shares the longest border.
   void join_small(std::vector<Index>& labels, double min_area) const;
   // Returns the patch of each triangle, numbered by their first triangles. Patches are triangles of one label that are
   // joined across edges.
@@ -23,7 +23,7 @@ class PatchMesh {
 
  private:
   struct Side {
-    Index triangle = kNone;  // on the other side; kNone at a border
+    Index triangle = kNone;  // the triangle on the other side; kNone at a border
     double length = 0;
   };
   std::vector<std::array<Side, 3>> sides_;

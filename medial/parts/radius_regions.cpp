@@ -31,7 +31,7 @@ class RegionGrower {
     }
     for (Index vertex = 0; vertex < mesh_.size(); ++vertex) result.of_vertex.push_back(numbers[root(vertex)]);
     for (const auto& [roots, neck] : necks_) {
-      // A side may have merged with another one, of which this is not the widest neck, after they met.
+      // After the two sides met at this neck, either may have merged with another side across a wider neck.
       const Index a = numbers[root(roots.first)], b = numbers[root(roots.second)];
       if (a == b) continue;
       result.necks.push_back(neck);
@@ -46,7 +46,7 @@ class RegionGrower {
   bool is_larger(Index a, Index b) const {
     return mesh_.radii[a] != mesh_.radii[b] ? mesh_.radii[a] > mesh_.radii[b] : a < b;
   }
-  // The vertex of the largest ball of a vertex' region.
+  // Returns the vertex with the largest ball in the region of a vertex.
   Index root(Index vertex) {
     while (parents_[vertex] != vertex) vertex = parents_[vertex] = parents_[parents_[vertex]];
     return vertex;
@@ -76,7 +76,7 @@ class RegionGrower {
     }
   }
 
-  // Of several necks between two regions.
+  // Keeps only the widest of several necks between the same two regions.
   static void keep_widest(std::vector<SurfaceParts::Neck>& necks) {
     std::stable_sort(necks.begin(), necks.end(), [](const auto& x, const auto& y) {
       return std::tuple(x.a, x.b, -x.radius) < std::tuple(y.a, y.b, -y.radius);
@@ -91,7 +91,7 @@ class RegionGrower {
   const double significance_;
   Rows neighbors_;
   std::vector<Index> parents_;  // of each vertex that has been added
-  std::vector<Index> order_;    // the largest first
+  std::vector<Index> order_;    // the vertices by radius, the largest first
   std::map<std::pair<Index, Index>, SurfaceParts::Neck> necks_;
 };
 

@@ -12,8 +12,8 @@ struct RadiusRegions {
   std::vector<SurfaceParts::Neck> necks;  // the most significant first
 };
 
-// Finds the regions of a complete mesh; `significance` is PartOptions::neck. Regions are numbered by their largest
-// ball, the largest first. O(n log n).
+// Finds the regions of a complete mesh. `significance` is PartOptions::neck. Regions are numbered by the radius of
+// their largest ball, from large to small. O(n log n).
 RadiusRegions radius_regions(const MedialMesh& mesh, double significance);
 
 }  // namespace orchard::detail

@@ -21,7 +21,8 @@
 namespace orchard {
 namespace {
 
-// Of the squared longest edge: a triangle's area after edges were halved, on average over meshes of few long edges.
+// The average area of a triangle after its edges have been halved until they are short enough, over the squared longest
+// edge. Measured on meshes with few long edges.
 constexpr double kAreaOfDividedEdge = 0.21;
 
 void require_part_options(const PartOptions& options) {
@@ -34,13 +35,14 @@ void require_part_options(const PartOptions& options) {
     throw InputError("parts: edge_length must be above 0 and finite");
 }
 
-// A divided axis as triangles that can be searched: flat ones stand for edges without triangles and for lone vertices.
+// A divided axis as triangles that can be searched. Degenerate triangles represent edges without triangles and single
+// vertices.
 class SearchedAxis {
  public:
   explicit SearchedAxis(const MedialMesh& mesh)
       : mesh_(mesh), structure_(medial_structure(mesh)), cells_(cells_of(mesh, structure_)), surface_(cells_.mesh) {}
 
-  // The part of the structure nearest to a place, and the nearest vertex.
+  // Returns the part of the structure that is nearest to a place, and the nearest vertex.
   std::pair<Index, Index> nearest(const Point& place) const {
     const ClosestPoint found = surface_.closest(place);
     Index vertex = kNone;
@@ -81,8 +83,8 @@ class SearchedAxis {
   Surface surface_;
 };
 
-// The label of a triangle before labels are numbered: the part of the structure and the region, kNone where it does not
-// count.
+// The label of a triangle before labels are numbered: the part of the structure and the region. Either is kNone if it
+// is not used.
 using RawLabel = std::pair<Index, Index>;
 
 std::vector<RawLabel> raw_labels(const Surface& surface, const SearchedAxis& axis, const std::vector<Index>& regions,
@@ -104,7 +106,7 @@ std::vector<RawLabel> raw_labels(const Surface& surface, const SearchedAxis& axi
   return labels;
 }
 
-// Numbers labels in their order, and the parts of the result by area.
+// Numbers the labels in their order, and sorts the parts of the result by area.
 void set_parts(const std::vector<RawLabel>& raw, const PartOptions& options, SurfaceParts& parts) {
   std::map<RawLabel, Index> numbers;
   for (const RawLabel& label : raw) numbers.try_emplace(label, 0);
@@ -151,7 +153,8 @@ SurfaceParts surface_parts(const Surface& surface, const MedialMesh& axis, const
                            const Progress& progress) {
   require_part_options(options);
   if (!surface.solid())
-    throw InputError("parts: not a closed, consistently oriented manifold: " + surface.report().faults());
+    throw InputError("parts: a closed, consistently oriented manifold is needed: " + surface.report().faults() +
+                     "; repair the mesh first");
   validate(axis);
   report_progress(progress, "parts", 0);
   const double wanted = options.edge_length * surface.bounding_box().diagonal().norm();

@@ -94,7 +94,7 @@ class OneSided {
 }  // namespace
 
 AxisDistance axis_distance(const MedialMesh& a, const MedialMesh& b, double accuracy) {
-  if (!(accuracy > 0)) throw InputError("the distance of two axes: the accuracy must be above 0");
+  if (!(accuracy > 0)) throw InputError("the accuracy of the distance of two axes must be above 0");
   const TriangleMesh first = cells_of(a), second = cells_of(b);
   const Surface first_cells(first), second_cells(second);
   const OneSided from(first, second_cells, accuracy), to(second, first_cells, accuracy);

@@ -10,13 +10,14 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::uint64_t kEnvelopeStage = 0x656e76;
-constexpr int kTries = 100;        // for each sample that is asked for
-constexpr double kOwnBall = 1e-9;  // of the largest radius: a place is not inside the ball that it is made on
+constexpr int kTries = 100;  // the maximum number of random places for each sample that is wanted
+// Of the largest radius: a place counts as outside the ball that it was made on, despite rounding.
+constexpr double kOwnBall = 1e-9;
 
 struct Piece {
   enum class Kind : std::uint8_t { sphere, cone, face } kind = Kind::sphere;
   std::array<Index, 3> corners{};
-  Vector normal = Vector::Zero();  // of a face: that of its plane; of a cone: how far it leans along its line, over 1
+  Vector normal = Vector::Zero();  // of a face, the normal of its plane; of a cone, its slope along its axis
   double lean = 0;
 };
 
@@ -61,8 +62,8 @@ class Sampler {
     add({Piece::Kind::cone, {a, b, b}, line / length, lean},
         std::numbers::pi * (mesh_.radii[a] + mesh_.radii[b]) * length * across);
   }
-  // The planes that touch three balls: their normal has the same product with each line between centres as the radii
-  // differ.
+  // Adds the planes that touch three balls. The normal of such a plane has a product with each line between centres
+  // that is the difference of the radii.
   void add_faces(const std::array<Index, 3>& triangle) {
     const auto& [a, b, c] = triangle;
     const Vector u = mesh_.centers[b] - mesh_.centers[a], v = mesh_.centers[c] - mesh_.centers[a];
@@ -87,7 +88,7 @@ class Sampler {
       return mesh_.centers[a] + mesh_.radii[a] * Vector(across * std::cos(turn), across * std::sin(turn), z);
     }
     if (piece.kind == Piece::Kind::cone) {
-      // Places along the line as often as the circle around them is long.
+      // Places along the axis are chosen in proportion to the length of the circle around them.
       const double r = mesh_.radii[a], s = mesh_.radii[b], u = random.uniform();
       const double reached = std::sqrt(r * r + u * (s * s - r * r));
       const double t = std::abs(s - r) > 1e-12 * (r + s) ? (reached - r) / (s - r) : u;
@@ -105,7 +106,7 @@ class Sampler {
   const MedialMesh& mesh_;
   const Reconstruction& reconstruction_;
   std::vector<Piece> pieces_;
-  std::vector<double> areas_;  // of a piece and all before it
+  std::vector<double> areas_;  // the areas of the pieces, each added to all before it
   double largest_ = 0;
 };
 

@@ -16,7 +16,7 @@ namespace orchard::detail {
 
 using Corners = std::array<Point, 3>;
 
-// The corner that the longest side of a triangle starts at.
+// Returns the corner at which the longest side of a triangle starts.
 inline std::size_t start_of_longest_side(const Corners& corners) {
   std::size_t longest = 0;
   double max = -1;
@@ -27,7 +27,7 @@ inline std::size_t start_of_longest_side(const Corners& corners) {
   return longest;
 }
 
-// Cuts a triangle, a flat one, too, at the middle of its longest side.
+// Cuts a triangle, which may be degenerate, at the middle of its longest side.
 inline std::pair<Corners, Corners> halves(const Corners& corners) {
   const std::size_t k = start_of_longest_side(corners);
   const Point &a = corners[k], &b = corners[(k + 1) % 3], &c = corners[(k + 2) % 3];
@@ -35,25 +35,26 @@ inline std::pair<Corners, Corners> halves(const Corners& corners) {
   return {{a, middle, c}, {middle, b, c}};
 }
 
-// What is known of a function on a triangle.
+// What is known about a function on a triangle.
 struct PieceValue {
-  double value;  // that it has at `place`; minus infinity where it is not known
-  double bound;  // that it has nowhere more of
+  double value;  // the value of the function at `place`; minus infinity if it is not known
+  double bound;  // an upper bound on the function
   Point place;
-  Index cell = kNone;  // what is nearest to the place, if the function is a distance
+  Index cell = kNone;  // the cell nearest to `place`, if the function is a distance to cells
 };
 
 // The largest value of a function on triangles, by branch and bound.
 struct MaxOverTriangles {
-  double max;    // attained
-  double upper;  // proven: nowhere more
-  Point place;   // where it is attained
+  double max;    // a value that is attained
+  double upper;  // a proven upper bound
+  Point place;   // the place where `max` is attained
 };
 
-// `evaluate(corners, cell, enough)` gives the PieceValue of a triangle or a part of one; `cell`: that of the triangle
-// which it is half of, or kNone; values and bounds of at most `enough` need not be looked for. Parts are halved until
-// none can have more than `accuracy` above what was found, or `max_parts` were looked at. `known`: a value that the
-// function has at known.place. The triangles themselves in parallel; the same result for any number of threads.
+// `evaluate(corners, cell, enough)` returns the PieceValue of a triangle or of a part of one. `cell` is the cell of the
+// triangle that the part is a half of, or kNone. Values and bounds of at most `enough` do not have to be exact. Parts
+// are halved until none can have more than `accuracy` above the best value, or until `max_parts` have been examined.
+// `known` is a value that the function attains at known.place. The triangles are evaluated in parallel; the result is
+// the same for any number of threads.
 template <class Evaluate>
 MaxOverTriangles max_over_triangles(std::span<const Corners> triangles, MaxOverTriangles known, double accuracy,
                                     std::size_t max_parts, const Evaluate& evaluate) {
@@ -73,7 +74,7 @@ MaxOverTriangles max_over_triangles(std::span<const Corners> triangles, MaxOverT
   };
   for (const PieceValue& piece : first) take(piece);
   std::priority_queue<Part> queue;
-  double closed = known.max;  // nowhere more where nothing is looked for any more
+  double closed = known.max;  // the largest bound of the parts that are not examined any further
   const auto put = [&](const Corners& corners, double bound, Index cell) {
     if (bound > known.max + accuracy) {
       queue.push({corners, bound, cell});

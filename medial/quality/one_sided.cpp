@@ -12,7 +12,7 @@ bool one_sided(const Surface& surface) {
   std::vector<Index> stack;
   for (Index start = 0; start < seen.size(); ++start) {
     if (seen[start]) continue;
-    // Straight out of the component's first face, no farther than where this face is the nearest of all.
+    // Take a place straight out of the component's first face, so near that this face is the nearest one to it.
     const auto [a, b, c] = surface.corners(start);
     double step = std::sqrt(surface.area(start));
     Point outside = (a + b + c) / 3;

@@ -16,11 +16,13 @@ namespace orchard {
 namespace {
 
 constexpr double kNearContact =
-    0.05;                             // of the radius: places that are farther than the nearest by more are no contacts
-constexpr double kFileDigits = 1e-3;  // of the diagonal: the same for small balls, whose centres are rounded
-constexpr double kSameContact = 0.8660254037844387;  // cosine of 30 degrees: contacts that are seen nearer are one
+    0.05;  // of the radius: places farther than the nearest one by more than this are not contacts
+// Of the diagonal: the same tolerance for small balls, whose centres are rounded in files.
+constexpr double kFileDigits = 1e-3;
+// Cosine of 30 degrees: contacts seen at a smaller angle count as one.
+constexpr double kSameContact = 0.8660254037844387;
 
-// For nearest points.
+// Makes a surface of degenerate triangles, for queries of the nearest point.
 Surface cloud_of(const std::vector<Point>& points) {
   TriangleMesh mesh;
   mesh.vertices = points;
@@ -61,7 +63,7 @@ void measure_cover(const Surface& surface, const MedialMesh& mesh, const std::ve
   for (const double own : off) result.dilation_needed = std::max(result.dilation_needed, own / side);
 }
 
-// At how many places a ball touches the surface.
+// Returns at how many places a ball touches the surface.
 Index contacts(const Surface& surface, const Point& center, double diagonal) {
   const double nearest = surface.distance(center);
   const double reach = nearest + std::max(kNearContact * nearest, kFileDigits * diagonal);
@@ -94,7 +96,7 @@ void measure_structure(const Surface& surface, const MedialMesh& mesh, double di
     for (const Index end : mesh.edges[e]) ++seams[end];
   }
   for (Index v = 0; v < mesh.size(); ++v) {
-    // Balls on sharp edges of the surface touch it in all directions.
+    // Balls on sharp edges of the surface are skipped, because they touch it in all directions.
     if (seams[v] > 0 && mesh.radii[v] > kFileDigits * diagonal) looked_at.push_back(v);
   }
   result.structure_balls = static_cast<Index>(looked_at.size());
@@ -113,7 +115,8 @@ void measure_structure(const Surface& surface, const MedialMesh& mesh, double di
 }  // namespace
 
 PaperMeasures paper_measures(const Surface& surface, const MedialMesh& mesh, const PaperOptions& options) {
-  if (!surface.solid()) throw InputError("measuring an axis needs a solid: " + surface.report().faults());
+  if (!surface.solid())
+    throw InputError("measuring an axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
   validate(mesh);
   PaperMeasures result;
   const double diagonal = surface.bounding_box().diagonal().norm();

@@ -32,22 +32,22 @@ Index count_of(const std::vector<Extent>& extents) {
 
 MedialPieces medial_pieces(const MedialMesh& mesh) {
   const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
-  DisjointSets sheets(mesh.triangles.size()), wires(mesh.size());
+  DisjointSets faces(mesh.triangles.size()), curves(mesh.size());
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     const auto triangles = at.triangles_at[e];
-    for (const Index t : triangles) sheets.unite(triangles.front(), t);
-    if (triangles.empty()) wires.unite(mesh.edges[e][0], mesh.edges[e][1]);
+    for (const Index t : triangles) faces.unite(triangles.front(), t);
+    if (triangles.empty()) curves.unite(mesh.edges[e][0], mesh.edges[e][1]);
   }
-  std::vector<Extent> of_sheet(mesh.triangles.size()), of_wire(mesh.size());
+  std::vector<Extent> of_faces(mesh.triangles.size()), of_curves(mesh.size());
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    for (const Index vertex : mesh.triangles[t]) of_sheet[sheets.root(t)].add(mesh, vertex);
+    for (const Index vertex : mesh.triangles[t]) of_faces[faces.root(t)].add(mesh, vertex);
   }
   for (const Index e : at.bare_edges()) {
-    for (const Index vertex : mesh.edges[e]) of_wire[wires.root(vertex)].add(mesh, vertex);
+    for (const Index vertex : mesh.edges[e]) of_curves[curves.root(vertex)].add(mesh, vertex);
   }
-  for (const Index v : at.lone_vertices()) of_wire[v].add(mesh, v);
-  MedialPieces pieces{.sheets = count_of(of_sheet), .wires = count_of(of_wire)};
-  if (pieces.sheets + pieces.wires > 1) pieces.small = small_ones(of_sheet) + small_ones(of_wire);
+  for (const Index v : at.lone_vertices()) of_curves[v].add(mesh, v);
+  MedialPieces pieces{.face_components = count_of(of_faces), .curve_components = count_of(of_curves)};
+  if (pieces.face_components + pieces.curve_components > 1) pieces.small = small_ones(of_faces) + small_ones(of_curves);
   return pieces;
 }
 

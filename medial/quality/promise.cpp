@@ -19,7 +19,9 @@ constexpr Index kMaxCells = 300'000;  // of the search for what protrudes
 
 PromiseCheck check_promise(const Surface& surface, const MedialMesh& mesh, const AxisPromise& promise,
                            const Progress& progress) {
-  if (!surface.solid()) throw InputError("a medial axis is compared with a solid: " + surface.report().faults());
+  if (!surface.solid())
+    throw InputError("a medial axis is compared with a solid: " + surface.report().faults() +
+                     "; repair the mesh first");
   validate(mesh);
   report_progress(progress, kPromiseStage, 0);
   PromiseCheck check{.promise = promise, .found = topology(mesh), .wanted = solid_topology(surface)};

@@ -8,10 +8,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kFirstBalls = 256;  // balls whose far sides are looked at before it is known whether they suffice
+// The number of balls whose far sides are examined before checking whether more are needed.
+constexpr std::size_t kFirstBalls = 256;
 
 struct ProtrudingCandidate {
-  double upper = 0;  // it protrudes by no more: distance is 1-Lipschitz
+  double upper = 0;  // an upper bound on the protrusion, because the distance is 1-Lipschitz
   std::size_t number = 0;
 };
 
@@ -29,12 +30,12 @@ std::vector<BallDepth> depths_of(const Surface& surface, std::span<const Sphere>
   return depths;
 }
 
-// The point of a ball beyond the ball's nearest surface point is the farthest outside wherever the surface is flat or
-// convex there; it is a point of the ball in any case, so what it gives is attained.
+// Returns how far a ball protrudes at its point beyond the ball's nearest surface point. Where the surface is flat or
+// convex, this is the farthest point outside. It is a point of the ball in any case, so the value is attained.
 BallReach reach_of(const Surface& surface, const Sphere& ball, const BallDepth& depth) {
   BallReach reach{.beyond = 0, .farthest = ball.center};
   const ClosestPoint& nearest = depth.nearest;
-  if (!(depth.signed_distance + ball.radius > 0)) return reach;  // all of the ball is inside
+  if (!(depth.signed_distance + ball.radius > 0)) return reach;  // the whole ball is inside
   if (!(nearest.distance > 0)) {
     reach.beyond = std::max(0.0, ball.radius);
     return reach;
@@ -45,8 +46,7 @@ BallReach reach_of(const Surface& surface, const Sphere& ball, const BallDepth& 
   return reach;
 }
 
-// The far sides of balls are looked at in the order of how far they may protrude, until none of the others can be among
-// the worst.
+// Examines the far sides of balls in the order of their upper bounds, until none of the rest can be among the worst.
 std::vector<WorstPlace> worst_protrusions(const Surface& surface, std::span<const Sphere> balls,
                                           std::span<const BallDepth> depths, std::vector<WorstPlace> known, Index count,
                                           double apart, double negligible) {

@@ -11,21 +11,22 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPrecision = 1e-3;  // of the distance to the second contact
-constexpr double kLikely = 1.02;     // times the radius: where the second contact of a medial ball is, and room
-constexpr double kTinyBall = 1e-6;   // of the diagonal: its contacts are rounding
+// Times the radius: the second contact of a medial ball is expected within this distance.
+constexpr double kLikely = 1.02;
+constexpr double kTinyBall = 1e-6;  // of the diagonal: the contacts of smaller balls are dominated by rounding
 
-// The nearest point, outside a cone around the first contact, of triangles given one after the other.
+// Finds the nearest point, outside a cone around the first contact, of triangles that are given one after the other.
 class ContactSearch {
  public:
-  // Looks for what is nearer than `limit`.
+  // Looks only for points that are nearer than `limit`.
   ContactSearch(const Point& center, const Vector& direction, double angle, double limit)
       : center_(center), direction_(direction), cosine_(std::cos(angle)), nearest_(limit) {}
 
   double nearest() const { return nearest_; }
-  double limit() const { return (1 - kPrecision) * nearest_; }  // what is farther is not looked for
+  double limit() const { return (1 - kPrecision) * nearest_; }  // points farther than this are not searched for
 
-  // The cone is convex: a piece whose corners are inside it is inside. Of a piece across its border the nearest point
-  // counts if that is outside, else halves are looked at.
+  // The cone is convex, so a piece whose corners are inside it lies inside and is skipped. If a piece crosses the cone,
+  // its nearest point counts if that is outside the cone; otherwise both halves are examined.
   void look_at(const Point& a, const Point& b, const Point& c) {
     if (in_cone(a) && in_cone(b) && in_cone(c)) return;
     const ClosestPoint closest = closest_point_of_triangle(center_, a, b, c);
@@ -80,11 +81,11 @@ double second_contact_distance(const Surface& surface, const Point& center, cons
   return std::numeric_limits<double>::infinity();
 }
 
-double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
+double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double min_contact_angle,
                   double diagonal) {
   if (!(ball.radius > kTinyBall * diagonal) || !(first.distance > 0)) return kUndefined;
   const Vector direction = (first.position - ball.center) / first.distance;
-  const double second = second_contact_distance(surface, ball.center, direction, contact_angle,
+  const double second = second_contact_distance(surface, ball.center, direction, min_contact_angle,
                                                 kLikely * std::max(ball.radius, first.distance));
   return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : kUndefined;
 }
@@ -101,7 +102,7 @@ void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std
   std::vector<double> off(chosen, kUndefined);
   tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t k) {
     const std::size_t i = k * balls.size() / chosen;
-    off[k] = off_centre(surface, balls[i], depths[i].nearest, options.contact_angle, quality.diagonal);
+    off[k] = off_centre(surface, balls[i], depths[i].nearest, options.min_contact_angle, quality.diagonal);
   });
   std::erase_if(off, [](double value) { return std::isnan(value); });
   quality.centredness = off.empty() ? Spread{.max = kUndefined, .mean = kUndefined} : spread_of(off);

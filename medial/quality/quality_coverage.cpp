@@ -9,12 +9,14 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kCoverageAccuracy = 1e-5;    // of the diagonal: to which the maximum is searched
-constexpr std::size_t kMaxParts = 1'000'000;  // of the surface's triangles that are looked at
-constexpr std::size_t kCoverageBlock = 256;   // vertices or triangles that one task takes, one after the other
-constexpr double kBesideBorder = 1e-9;        // of the diagonal: what rounding puts beside a border
+constexpr double kCoverageAccuracy = 1e-5;    // of the diagonal: the accuracy to which the maximum is searched
+constexpr std::size_t kMaxParts = 1'000'000;  // the maximum number of parts of triangles that are examined
+// The number of vertices or triangles of one task, which are processed in order.
+constexpr std::size_t kCoverageBlock = 256;
+// Of the diagonal: rounding may put a place this far from a border that it lies on.
+constexpr double kBesideBorder = 1e-9;
 
-// The borders of sheets, the free ends of wires and the balls without edges, as flat triangles.
+// Returns the borders of sheets, the free ends of curves and the balls without edges, as degenerate triangles.
 TriangleMesh borders_of(const MedialMesh& mesh) {
   TriangleMesh borders{.vertices = mesh.centers, .triangles = {}};
   const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
@@ -28,7 +30,7 @@ TriangleMesh borders_of(const MedialMesh& mesh) {
   return borders;
 }
 
-// The distance to one cell is convex, so that it is nowhere more than at the corners.
+// The distance to one cell is a convex function, so it is largest at a corner.
 double max_to_cell(const Reconstruction& reconstruction, Index cell, const Corners& corners) {
   return std::max({reconstruction.distance_to_cell(cell, corners[0]), reconstruction.distance_to_cell(cell, corners[1]),
                    reconstruction.distance_to_cell(cell, corners[2])});
@@ -39,7 +41,7 @@ struct Near {
   Index cell;
 };
 
-// The nearest cell, or any that is nearer than `enough`: `guess` (kNone: none) if it is.
+// Returns the nearest cell, or any cell that is nearer than `enough`. The cell `guess` (kNone for none) is tried first.
 Near near_cell(const Reconstruction& reconstruction, const Point& place, Index guess, double enough) {
   if (guess != kNone) {
     const double distance = reconstruction.distance_to_cell(guess, place);
@@ -49,7 +51,8 @@ Near near_cell(const Reconstruction& reconstruction, const Point& place, Index g
   return {nearest.distance, nearest.cell};
 }
 
-// `visit(i, cell)` in parallel; in blocks, within which one sees the cell that the one before left.
+// Calls `visit(i, cell)` in parallel, in blocks. Within a block, each call gets the cell that the previous call has
+// left.
 template <class Visit>
 void for_each_in_turn(std::size_t count, const Visit& visit) {
   tbb::parallel_for(std::size_t{0}, (count + kCoverageBlock - 1) / kCoverageBlock, [&](std::size_t block) {
@@ -59,8 +62,8 @@ void for_each_in_turn(std::size_t count, const Visit& visit) {
   });
 }
 
-// To all cells the distance is 1-Lipschitz. `cell`: the one nearest to the middle of the whole that this is half of,
-// which will mostly do.
+// The distance to all cells is 1-Lipschitz. `cell` is the cell nearest to the middle of the triangle that this one is a
+// half of; mostly it is near enough.
 PieceValue coverage_of(const Corners& corners, const Reconstruction& reconstruction, Index cell, double enough) {
   PieceValue piece{
       .value = -std::numeric_limits<double>::infinity(),
@@ -91,7 +94,7 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
                                          [](const Near& a, const Near& b) { return a.distance < b.distance; });
   if (farthest->distance > known.max)
     known = {farthest->distance, 0, vertices[static_cast<std::size_t>(farthest - at_vertices.begin())]};
-  // What the cell of a corner comes near enough to needs no search.
+  // A corner needs no search if its cell is near enough.
   const double enough = known.max + kCoverageAccuracy * diagonal;
   std::vector<double> bounds(surface.mesh().triangles.size());
   for_each_in_turn(bounds.size(), [&](std::size_t t, Index&) {

@@ -8,7 +8,9 @@
 namespace orchard {
 
 BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, const QualityOptions& options) {
-  if (!surface.solid()) throw InputError("balls are judged by a solid: the mesh must be closed and oriented");
+  if (!surface.solid())
+    throw InputError(
+        "balls are measured against a solid: the mesh must be closed and consistently oriented; repair it first");
   const double diagonal = surface.bounding_box().diagonal().norm();
   BallErrors errors;
   for (std::vector<double>* values : {&errors.radius_error, &errors.protrusion}) values->resize(balls.size());
@@ -19,13 +21,15 @@ BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, co
     errors.radius_error[i] = std::abs(ball.radius - depth.nearest.distance) / diagonal;
     errors.protrusion[i] = detail::reach_of(surface, ball, depth).beyond / diagonal;
     if (options.contact_cells > 0)
-      errors.centredness[i] = detail::off_centre(surface, ball, depth.nearest, options.contact_angle, diagonal);
+      errors.centredness[i] = detail::off_centre(surface, ball, depth.nearest, options.min_contact_angle, diagonal);
   });
   return errors;
 }
 
 std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sphere> balls) {
-  if (!surface.solid()) throw InputError("balls are judged by a solid: the mesh must be closed and oriented");
+  if (!surface.solid())
+    throw InputError(
+        "balls are measured against a solid: the mesh must be closed and consistently oriented; repair it first");
   const double diagonal = surface.bounding_box().diagonal().norm();
   std::vector<double> protrusions(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
@@ -36,7 +40,10 @@ std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sph
 
 SurfaceErrors surface_errors(const Surface& surface, const MedialMesh& mesh, std::span<const Point> points,
                              std::span<const Vector> normals) {
-  if (!surface.solid()) throw InputError("a reconstruction is judged by a solid: the mesh must be closed and oriented");
+  if (!surface.solid())
+    throw InputError(
+        "a reconstruction is measured against a solid: the mesh must be closed and consistently oriented; repair it "
+        "first");
   const double diagonal = surface.bounding_box().diagonal().norm();
   std::vector<detail::SurfaceSample> samples;
   samples.reserve(points.size());

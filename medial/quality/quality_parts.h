@@ -6,7 +6,8 @@
 #include "orchard/medial/quality.h"
 #include "reconstruction.h"
 
-// The metrics of medial_quality(), one file each. Lengths in mesh units; medial_quality() divides.
+// The metrics of medial_quality(), each in a file of its own. Lengths are in mesh units; medial_quality() divides them
+// by the diagonal.
 namespace orchard::detail {
 
 struct SurfaceSample {
@@ -14,13 +15,14 @@ struct SurfaceSample {
   Vector normal;  // outward
 };
 
-// Spread evenly over the area by their triangles, at random within each. Deterministic.
+// Returns samples spread evenly over the area: their number on each triangle is proportional to its area, and their
+// places are random. Deterministic.
 std::vector<SurfaceSample> quality_samples(const Surface& surface, Index count, std::uint64_t seed);
 
-// Balls at vertices, at the middles of edges and of triangles, evenly chosen.
+// Balls at vertices, at the middles of edges and at the middles of triangles, evenly chosen.
 struct QualityBalls {
   std::vector<Sphere> all;              // those at vertices first, then those of edges
-  std::size_t vertices = 0, edges = 0;  // how many these are
+  std::size_t vertices = 0, edges = 0;  // the numbers of balls at vertices and at edges
 
   std::span<const Sphere> at_vertices() const { return std::span(all).first(vertices); }
 };
@@ -32,20 +34,20 @@ struct BallDepth {
   double signed_distance = 0;  // negative inside
   ClosestPoint nearest;        // of the surface
   bool outside() const { return signed_distance > 0; }
-  // By more than rounding: a centre on a sharp edge may be on either side.
+  // Whether the centre is outside by more than rounding. A centre on a sharp edge may be on either side.
   bool outside_by(double negligible) const { return signed_distance > negligible; }
 };
 BallDepth depth_of(const Surface& surface, const Sphere& ball);
 std::vector<BallDepth> depths_of(const Surface& surface, std::span<const Sphere> balls);
-// How far a ball reaches outside the solid, and where to: no farther than its radius and the signed distance of its
-// centre together.
+// How far a ball reaches outside the solid, and where. This is at most the sum of its radius and the signed distance of
+// its centre.
 struct BallReach {
   double beyond = 0;
   Point farthest = Point::Zero();
 };
 BallReach reach_of(const Surface& surface, const Sphere& ball, const BallDepth& depth);
-// Of the places `known` and of where these balls protrude by more than `negligible`, the `count` worst: see worst_of().
-// Fast, since the far sides of few balls are looked at.
+// Returns the `count` worst of the places `known` and of the places where these balls protrude by more than
+// `negligible` (see worst_of()). It is fast because it examines the far sides of few balls.
 std::vector<WorstPlace> worst_protrusions(const Surface& surface, std::span<const Sphere> balls,
                                           std::span<const BallDepth> depths, std::vector<WorstPlace> known, Index count,
                                           double apart, double negligible);
@@ -55,17 +57,17 @@ Spread spread_of(std::span<const double> values);
 // quality_reconstruction.cpp
 // How the boundary of the reconstruction lies to a point of the surface; lengths in mesh units.
 struct SurfaceReach {
-  double distance = 0;               // of the point to the reconstruction, minus the depth inside
-  double uncovered = 0;              // distance to the reconstruction, 0 inside it
-  double beyond = 0;                 // how far outside the solid it reaches along the normal
-  double to_boundary = 0;            // distance of the point to its boundary; an upper bound where the point is inside
-  double min_to_boundary = 0;        // and a lower one: the depth in the deepest ball
-  bool arrived = true;               // `farthest` is a place of the boundary, or the point itself
-  double from_boundary = 0;          // distance of a point of its boundary, that one or beside it, to the surface
-  Point farthest = Point::Zero();    // where it reaches to, along the normal
-  Sphere ball = {Point::Zero(), 0};  // the last one on the way
+  double distance = 0;         // from the point to the reconstruction; inside, minus the depth
+  double uncovered = 0;        // distance to the reconstruction, 0 inside it
+  double beyond = 0;           // how far outside the solid the reconstruction reaches along the normal
+  double to_boundary = 0;      // from the point to the reconstruction's boundary; an upper bound if the point is inside
+  double min_to_boundary = 0;  // a lower bound on the same: the depth in the deepest ball
+  bool arrived = true;         // whether `farthest` is a place of the boundary, or the point itself
+  double from_boundary = 0;    // from the surface to a point of the boundary at or near `farthest`
+  Point farthest = Point::Zero();    // where the reconstruction ends along the normal
+  Sphere ball = {Point::Zero(), 0};  // the last ball on the way to `farthest`
 };
-// Fastest where samples follow each other over the surface.
+// It is fastest if successive samples are near each other on the surface.
 std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction& reconstruction,
                                    std::span<const SurfaceSample> samples, double diagonal);
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
@@ -75,7 +77,7 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
 // The largest distance of the surface from the reconstruction; `known`: what samples found.
 MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reconstruction, MaxOverTriangles known,
                               double diagonal);
-// Of the samples, without the distances to balls at borders of sheets: those count as 0.
+// Returns the spread of the samples' distances, with 0 for samples whose nearest ball is at the border of a sheet.
 Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reaches, double diagonal);
 // worst_places.cpp
 // The `count` worst of `places`, whichever their order, no two within `apart` of each other.
@@ -83,12 +85,13 @@ std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, do
 // quality_contacts.cpp
 // |distance to the second contact - radius| over the radius; NaN if the ball has none, or is a point. `first`: the
 // surface's place nearest to the centre.
-double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
+double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double min_contact_angle,
                   double diagonal);
 void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std::span<const BallDepth> depths,
                       const QualityOptions& options, MedialQuality& quality);
-// The distance from `center` to the part of the surface that is seen at `angle` or more from `direction` (unit), up to
-// one in a thousand; infinity where there is none. Fastest where it is `likely` or a little less.
+// Returns the distance from `center` to the part of the surface that is seen at `angle` or more from `direction`
+// (unit), to one in a thousand; infinity if there is no such part. It is fastest if the distance is `likely` or
+// slightly less.
 double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,
                                double likely);
 // quality_economy.cpp

@@ -13,12 +13,13 @@
 namespace orchard {
 namespace {
 
-constexpr double kHysteresis = 0.1745;  // radians, 10 degrees: a part at the threshold does not count as lost
+// Radians, 10 degrees: a part whose angle is only this much below the threshold does not count as lost.
+constexpr double kHysteresis = 0.1745;
 
-// Of the noise's lattice: edges no longer than this show the whole of it.
+// Over the spacing of the noise's lattice: edges of at most this length reproduce the noise.
 constexpr double kMaxEdge = 0.5;
 
-// Where points are on the same surface in other triangles.
+// Finds the triangles of points that lie on the same surface with other triangles.
 void find_again(const Surface& surface, SurfaceSampling& points) {
   tbb::parallel_for(Index{0}, points.size(), [&](Index i) {
     const ClosestPoint closest = surface.closest(points.points[i]);
@@ -35,7 +36,7 @@ TriangleMesh moved_by(const detail::SmoothNoise& noise, double max, TriangleMesh
   return mesh;
 }
 
-// The points where the moved mesh has them.
+// Returns the points moved along with the mesh.
 SurfaceSampling carried_along(SurfaceSampling sampling, const Surface& from, const Surface& to) {
   for (Index i = 0; i < sampling.size(); ++i) {
     const auto [a, b, c] = from.corners(sampling.triangles[i]);
@@ -50,11 +51,13 @@ SurfaceSampling carried_along(SurfaceSampling sampling, const Surface& from, con
 
 struct WidePart {
   std::vector<Point> points;  // vertices with a wide enough angle
-  TriangleMesh sheets;  // what of the axis has one that is a little smaller, flat triangles for edges and vertices
+  // The part of the axis with an angle slightly below the threshold or wider, with degenerate triangles for edges and
+  // vertices.
+  TriangleMesh sheets;
 };
 
-// Cuts the axis where its angle, linear between vertices, is the least that counts: cells may be long, and one with a
-// corner beyond the threshold is not lost with it.
+// Cuts the axis where its angle, which is linear between vertices, equals the threshold. Cells may be long, so a cell
+// is not dropped as a whole because one corner is beyond the threshold.
 class SheetCutter {
  public:
   SheetCutter(const MedialAxis& axis, const std::vector<double>& angles, double min)
@@ -76,7 +79,7 @@ class SheetCutter {
  private:
   bool wide(Index vertex) const { return angles_[vertex] > min_; }
 
-  // The place between a wide and a narrow vertex.
+  // Adds the place between a wide and a narrow vertex where the angle equals the threshold.
   Index crossing(Index a, Index b) {
     const double t = (min_ - angles_[a]) / (angles_[b] - angles_[a]);
     sheets_.vertices.push_back(axis_.centers[a] + t * (axis_.centers[b] - axis_.centers[a]));
@@ -134,7 +137,8 @@ MedialStability summary(std::vector<double> distances, double noise) {
 std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
                                                 const MedialBuildOptions& options, const StabilityOptions& stability,
                                                 const Progress& progress) {
-  if (!(stability.correlation > 0)) throw InputError("stability: the noise's correlation is a length above 0");
+  if (!(stability.correlation > 0))
+    throw InputError("the correlation length of the noise for stability must be above 0");
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double noise = stability.noise * diagonal, correlation = stability.correlation * diagonal;
   TriangleMesh mesh = detail::with_short_edges(surface.mesh(), kMaxEdge * correlation);

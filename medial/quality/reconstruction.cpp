@@ -14,8 +14,9 @@ double distance_to(const Point& query, const Sphere& ball) { return (query - bal
 
 Sphere vertex_ball(const MedialMesh& mesh, Index vertex) { return {mesh.centers[vertex], mesh.radii[vertex]}; }
 
-// A lower bound on the distance to all balls of a triangle: what is seen of the distance along one direction is linear
-// on the triangle, so least at a corner. Along the way from the middle it is nearly all of the distance.
+// Returns a lower bound on the distance to all balls of a triangle. The component of the distance along a fixed
+// direction is linear on the triangle, so it is smallest at a corner. The direction from the query to the middle is
+// chosen, along which that component is nearly the whole distance.
 double min_along(const Point& query, const std::array<Sphere, 3>& balls) {
   Vector direction = query - (balls[0].center + balls[1].center + balls[2].center) / 3;
   const double length = direction.norm();
@@ -26,7 +27,8 @@ double min_along(const Point& query, const std::array<Sphere, 3>& balls) {
   return min;
 }
 
-// The cells that no larger one holds: triangles, edges, vertices; smaller ones repeat their last corner.
+// Returns the cells that are part of no larger one: triangles, edges and vertices. Smaller cells repeat their last
+// corner.
 std::vector<std::array<Index, 3>> max_cells(const MedialMesh& mesh) {
   const EdgeNumbers edge(mesh.edges, mesh.size());
   std::vector<std::uint8_t> has_triangle(mesh.edges.size(), 0), has_edge(mesh.size(), 0);
@@ -46,7 +48,7 @@ std::vector<std::array<Index, 3>> max_cells(const MedialMesh& mesh) {
 
 int dimension(const std::array<Index, 3>& cell) { return cell[0] == cell[1] ? 0 : cell[1] == cell[2] ? 1 : 2; }
 
-// As they are in max_cells() of a complete mesh.
+// The order of cells in max_cells() of a complete mesh.
 bool is_before(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   const int of_a = dimension(a), of_b = dimension(b);
   return of_a != of_b ? of_a > of_b : a < b;
@@ -54,8 +56,8 @@ bool is_before(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
 
 }  // namespace
 
-// Along the segment the distance is a convex function: sqrt(h^2 + (t - q)^2) - r(t), least where the slope of the root
-// is that of the radius.
+// Along the segment, the distance sqrt(h^2 + (t - q)^2) - r(t) is a convex function. Its minimum is where the slope of
+// the root equals that of the radius.
 Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b) {
   const Vector along = b.center - a.center;
   const double length = along.norm();
@@ -71,8 +73,8 @@ Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b) {
   return {a.center + fraction * along, a.radius + fraction * (b.radius - a.radius)};
 }
 
-// The same over a plane: there the radius has a gradient, and the least is one step along it from the foot. Where that
-// leaves the triangle, or does not exist, the least is on the border.
+// The same over a plane, where the radius has a gradient. The minimum is one step along the gradient from the foot of
+// the perpendicular. If that leaves the triangle, or does not exist, the minimum is on the border of the triangle.
 Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b, const Sphere& c) {
   const Vector u = b.center - a.center, v = c.center - a.center;
   const Vector normal = u.cross(v);
@@ -103,7 +105,7 @@ Reconstruction::Reconstruction(const MedialMesh& mesh) : first_(part_of(mesh, ma
   for (Index v = 0; v < mesh.size(); ++v) balls_.push_back(vertex_ball(mesh, v));
 }
 
-// Numbers the cells, too.
+// Builds the tree of some cells, and numbers the cells.
 Reconstruction::Part Reconstruction::part_of(const MedialMesh& mesh, const std::vector<std::array<Index, 3>>& cells) {
   Part part;
   part.first = this->cells();
@@ -135,7 +137,7 @@ void Reconstruction::change(const MedialMesh& mesh) {
   std::size_t old = 0;
   for (const auto& cell : now) {
     while (old < gone.size() && is_before(corners_[old], cell)) ++old;
-    // What is gone stays so: its balls may be other ones.
+    // A cell that is gone stays gone, because a later cell with these corners may have other balls.
     if (old < gone.size() && corners_[old] == cell && !is_new(cell) && (gone_.empty() || !gone_[old])) {
       gone[old] = 0;
     } else {

@@ -8,71 +8,74 @@
 
 namespace orchard::detail {
 
-// The solid that a medial mesh stands for: the union of all balls whose centre and radius are interpolated on its
+// The solid that a medial mesh represents: the union of all balls whose centre and radius are interpolated on its
 // vertices, edges (cones) and triangles (slabs).
 class Reconstruction {
  public:
   explicit Reconstruction(const MedialMesh& mesh);
 
-  // Makes it that of a mesh of which most cells are those of the mesh before, vertices by the same numbers: O(n), with
-  // a tree of what is new alone. Cells get other numbers.
+  // Replaces the mesh by one that shares most cells with the mesh before, with the same numbers of vertices. Takes
+  // O(n), and a tree is built for the new cells only. The numbers of cells change.
   void change(const MedialMesh& mesh);
 
-  // The least |query - centre| - radius over all those balls: the distance to the union outside, and minus the depth in
-  // the deepest single ball inside, which is at most the depth in the union. 1-Lipschitz.
+  // Returns the smallest |query - centre| - radius over all those balls. Outside, this is the distance to the union;
+  // inside, it is minus the depth in the deepest single ball, which is at most the depth in the union. 1-Lipschitz.
   double distance(const Point& query) const;
-  // The ball of which that is the distance; ties go to the first found.
+  // Also returns the ball that has this distance. Of equal ones, it is the first that the search finds.
   double distance(const Point& query, Sphere& ball) const;
-  // The same where it is below `bound`, which saves looking for what is not; else `bound`, and `ball` stays.
+  // Returns the same value if it is below `bound`, which shortens the search. Otherwise, it returns `bound`, and `ball`
+  // stays as it is.
   double distance_below(double bound, const Point& query, Sphere& ball) const;
-  // The same, but any value below `enough`, with its ball, will do where there are such.
+  // The same, but if some values are below `enough`, it returns any one of these with its ball.
   double distance_between(double enough, double bound, const Point& query, Sphere& ball) const;
 
-  // distance(query), with its ball and the cell that has it: a triangle, or an edge or a vertex that no larger cell
-  // holds.
+  // The result of a search: distance(query) with its ball, and the cell that contains the ball, which is a triangle, or
+  // an edge or a vertex that is part of no larger cell.
   struct Nearest {
     double distance = std::numeric_limits<double>::infinity();
     Sphere ball{Point::Zero(), 0};
-    Index cell = kNone;  // if there is none
+    Index cell = kNone;  // kNone if there is none
   };
-  // The nearest of all; any below `enough` will do where there are such.
+  // Returns the nearest cell of all, or any cell with a distance below `enough` if there are such.
   Nearest nearest(const Point& query, double enough = -std::numeric_limits<double>::infinity()) const;
-  // Of one cell.
+  // Returns the distance to one cell.
   Nearest nearest_in(Index cell, const Point& query) const;
-  // The nearest of all, where a cell is known already: it comes back unless one is nearer. Its ball is not looked at.
+  // Returns the nearest cell of all if one cell is known already; that one is returned unless another is nearer. The
+  // ball of `known` is not computed.
   Nearest nearest_from(Nearest known, const Point& query, double enough) const;
-  // The vertices of a cell; smaller ones repeat their last.
+  // Returns the vertices of a cell. Smaller cells repeat their last vertex.
   const std::array<Index, 3>& corners_of(Index cell) const { return corners_[cell]; }
-  // The least |query - centre| - radius over the balls of one cell. They are those in the convex hull of its corners'
-  // balls, so it is a convex function of the query: nowhere on a triangle is it more than at the corners.
-  // At least `best`, but not exact, where it is not below.
+  // Returns the smallest |query - centre| - radius over the balls of one cell. These are the balls in the convex hull
+  // of the balls at its corners, so the value is a convex function of the query, and on a triangle it is largest at a
+  // corner. Values of `best` or more do not have to be exact.
   double distance_to_cell(Index cell, const Point& query, double best = std::numeric_limits<double>::infinity()) const;
-  // Numbers of cells are below it. Before a change there are so many.
+  // Numbers of cells are below this. Before the first change, it is the number of cells.
   Index cells() const { return static_cast<Index>(corners_.size()); }
 
  private:
-  // Some of the cells, from number `first` on: triangles, edges and vertices that no larger cell holds, in this order.
+  // A part of the cells, from number `first` on: triangles, edges and vertices that are part of no larger cell, in this
+  // order.
   struct Part {
     Index first = 0, size = 0, triangles = 0, edges = 0;
     SupportTree tree;
   };
 
   Part part_of(const MedialMesh& mesh, const std::vector<std::array<Index, 3>>& cells);
-  // The least of `best` and what is found, which improved(value, cell, ball) is told.
+  // Searches for a smaller distance than `best`, and calls improved(value, cell, ball) for each that it finds.
   template <class Improved>
   double search(const Point& query, double best, double enough, const Improved& improved) const;
-  // The least for a cell, and the ball; a value that is `best` or more need not be exact.
+  // Returns the distance to a cell, and the ball. A value of `best` or more does not have to be exact.
   static double evaluate(const Part& part, Index item, const SupportTree::Item& balls, const Point& query, double best,
                          Sphere& ball);
   double evaluate(Index cell, const Point& query, double best, Sphere& ball) const;
 
   std::vector<std::array<Index, 3>> corners_;  // of each cell
   std::vector<Sphere> balls_;                  // of each vertex
-  Part first_, changed_;                       // what there was first, and what came by changes
-  std::vector<std::uint8_t> gone_;             // of what there was first; nothing before a change
+  Part first_, changed_;                       // the cells of the first mesh, and those that later changes added
+  std::vector<std::uint8_t> gone_;             // which cells of the first mesh are gone; empty before the first change
 };
 
-// The ball of a cell that comes nearest to `query`, for cells of one, two or three vertices.
+// Returns the ball of a cell that comes nearest to `query`, for cells with two or three vertices.
 Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b);
 Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b, const Sphere& c);
 

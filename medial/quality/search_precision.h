@@ -1,14 +1,15 @@
 #pragma once
 #include "orchard/geometry/mesh.h"
 
-// When the branch-and-bound searches for a largest distance end, and what rounding does to their bounds.
+// When the branch-and-bound searches for a largest distance stop, and how large the rounding errors of their bounds
+// are.
 
 namespace orchard::detail {
 
-// Values that exceed what was found by less than this part of it are not searched for.
+// As a fraction of the best value: the search ends when no value can exceed the best one by more.
 inline constexpr double kShareAbove = 0.02;
 
-// More than what places, distances and bounds of a search in the box are off by.
+// Returns more than the rounding error of places, distances and bounds of a search in the box.
 inline double search_rounding(const Box& box) { return 1e-12 * (box.min().norm() + box.max().norm()); }
 
 }  // namespace orchard::detail

@@ -39,7 +39,7 @@ class Measurer {
       const std::size_t triangles = at_.triangles_at[e].size();
       const double own = length(mesh_.edges[e]);
       if (triangles == 0) {
-        result_.wire_length += own;
+        result_.curve_length += own;
         continue;
       }
       lengths.push_back(own);

@@ -17,20 +17,21 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kNormalRounding = 1e-14;  // of a normal, times longest side squared over area
-constexpr double kFlatSine = 1e-12;        // sine: an edge that is convex by no more may be reflex
-constexpr int kMaxShellLevels = 60;        // of halving: then a piece is as small as rounding
-constexpr std::size_t kShellBlock = 64;    // triangles or pieces that one task looks at
-constexpr double kWide = 0.5;              // cosine to the mean: normals that lie farther apart are looked at in parts
-constexpr int kTouches = 6;                // places q looked for, each nearer than the one before
-constexpr double kSameDepth = 1e-3;        // of the depth: a place q that is nearer by less is no other
-constexpr double kShellArrived = 0.01;     // of the accuracy: a way to the boundary ends this near
-constexpr int kMaxShellSteps = 20;         // on the way to the boundary
+constexpr double kNormalRounding = 1e-14;  // of a normal, times the squared longest side over the area
+constexpr double kFlatSine = 1e-12;  // sine of an angle: an edge that is convex by less may be reflex after rounding
+constexpr int kMaxShellLevels = 60;  // number of halvings, after which a piece is as small as its rounding error
+constexpr std::size_t kShellBlock = 64;  // triangles or pieces that one task looks at
+constexpr double kWide = 0.5;            // cosine to the mean normal: pieces with a wider range of normals are divided
+constexpr int kTouches = 6;              // the number of places q that are tried, each nearer than the one before
+constexpr double kSameDepth = 1e-3;      // of the depth: a place q that is nearer by less is not tried
+constexpr double kShellArrived = 0.01;   // of the accuracy: a path to the boundary ends when it is this near
+constexpr int kMaxShellSteps = 20;       // number of steps on a path to the boundary
 
-// What the last place that was looked at has told: pieces in a row are near each other.
+// What the previous piece has shown. It is a good guess for the next one, because successive pieces are near each
+// other.
 struct Hint {
-  Index cell = 0;  // of the reconstruction, nearest to it
-  double gap = 0;  // from there, where no cell held all that was asked for
+  Index cell = 0;  // the cell of the reconstruction that is nearest to the piece
+  double gap = 0;  // distance of that cell from the middle of the piece, if no cell contained the piece
 };
 
 class ShellSearch {
@@ -62,7 +63,7 @@ class ShellSearch {
   }
 
  private:
-  // What is no deeper is not looked for.
+  // Places that are no deeper than this are not searched for.
   double level() const { return std::min(deepest_, found_.max + std::max(accuracy_, kShareAbove * found_.max)); }
 
   struct Result {
@@ -111,7 +112,8 @@ class ShellSearch {
     });
   }
 
-  // How far places below a triangle may be off: the cross product of its sides is rounded, which tells on thin ones.
+  // Returns how far places below a triangle may be off. The cross product of its sides is rounded, which matters on
+  // thin triangles.
   double slack_of(Index triangle) const {
     double longest = 0;
     const auto corners = surface_.corners(triangle);
@@ -128,7 +130,8 @@ class ShellSearch {
     return piece;
   }
 
-  // How far the triangle across an edge rises above the plane of this one: reflex where it is above 0.
+  // Returns how far the triangle across an edge rises above the plane of this one. The edge is reflex if this is above
+  // 0.
   bool is_reflex(Index triangle, int edge) const {
     const Index other = surface_.neighbors(triangle)[static_cast<std::size_t>(edge)];
     if (other == kNone) return true;
@@ -160,7 +163,7 @@ class ShellSearch {
       look_at_whole(whole, level, hint, result);
       return;
     }
-    // Both faces fold back from here; the middle of the normals is away from them.
+    // Both faces are turned back from here, so the direction away from them is the mean of their normals.
     const Vector along = (b - a).normalized();
     Vector middle = -((c - a) - (c - a).dot(along) * along).normalized();
     if ((normal + other_normal).norm() > kWide) middle = (normal + other_normal).normalized();
@@ -214,7 +217,8 @@ class ShellSearch {
     return piece;
   }
 
-  // Whether no direction of a piece below a vertex is in the polar cone: all of them lean towards one of the edges.
+  // Whether all directions of a piece below a vertex lean towards one of the edges, so that none of them is in the
+  // polar cone.
   bool leans(const ShellPiece& piece) const {
     const Point& foot = surface_.mesh().vertices[piece.vertex];
     for (const Index triangle : surface_.triangles_around(piece.vertex)) {
@@ -230,7 +234,7 @@ class ShellSearch {
     return false;
   }
 
-  // Of a face, an edge or a vertex.
+  // Examines all that lies below a face, an edge or a vertex.
   void look_at_whole(ShellPiece piece, double level, Hint& hint, Result& result) const {
     const MeanNormal axis = mean_normal(piece.in_use());
     piece.from = level;
@@ -252,7 +256,7 @@ class ShellSearch {
     result.open.push_back(piece);
   }
 
-  // Whether a cell holds all places of these columns from one depth to the other.
+  // Whether one cell contains all places of these columns between the two depths.
   bool is_held(std::span<const NormalColumn> columns, const Depths& depths, Hint& hint) const {
     Point middle = Point::Zero();
     for (const NormalColumn& column : columns) middle += column.foot + depths.from * column.inward;
@@ -266,7 +270,7 @@ class ShellSearch {
     return holds_all(middle, depths.slack, hint, all_in);
   }
 
-  // Looks for a ball or a cell near `middle` of which all_in(holds) is so.
+  // Searches for a ball or a cell near `middle` for which all_in(holds) is true.
   template <class AllIn>
   bool holds_all(const Point& middle, double slack, Hint& hint, const AllIn& all_in) const {
     auto near = reconstruction_.nearest_in(hint.cell, middle);
@@ -283,7 +287,7 @@ class ShellSearch {
     return tried();
   }
 
-  // The same for places up to where another place of the surface is nearer than the foot.
+  // The same for places up to the depth at which another place of the surface is nearer than the foot.
   bool is_held_below_tops(const ShellPiece& piece, Hint& hint) const {
     std::array<Point, kMaxShellCorners> corners;
     const std::size_t count = corners_of(piece, corners.data());
@@ -296,7 +300,8 @@ class ShellSearch {
     });
   }
 
-  // Shrinks a ball at the middle of a piece until it is empty; the last that it shrank for is q.
+  // Shrinks a ball at the middle of a piece until it is empty. The last place that stopped it is q, at which the piece
+  // is cut.
   bool cut_where_nearest(ShellPiece& piece, const MeanNormal& axis) const {
     NormalColumn middle{Point::Zero(), axis.direction};
     for (const NormalColumn& column : piece.in_use()) middle.foot += column.foot / static_cast<double>(piece.count);
@@ -317,15 +322,15 @@ class ShellSearch {
     return found;
   }
 
-  // Whether no place of a piece is deeper than `level`: as the middle tells, since depth is 1-Lipschitz, or the
-  // distance from a triangle, which is convex. So it is along a sharp edge that has flat faces around it, and beyond
-  // one.
+  // Whether no place of a piece is deeper than `level`. The depth of its middle shows that, since depth is 1-Lipschitz,
+  // or the distance from a triangle, which is a convex function. This is often so along a sharp edge with flat faces
+  // around it, and beyond such an edge.
   bool is_shallow(const ShellPiece& piece, double level) const {
     std::array<Point, 8> corners;
     std::size_t count = 0;
     Point middle = Point::Zero();
-    // Columns that go less deep than others are taken to go as deep: the hull of the ends of each would be too small
-    // where others go beyond piece.to.
+    // All columns are extended to the depth of the deepest one. Otherwise, the hull of their ends would be too small
+    // where some columns go beyond piece.to.
     const double to = max_depth(piece);
     for (const NormalColumn& column : piece.in_use()) {
       for (const double depth : {piece.from, to}) middle += corners[count++] = column.foot + depth * column.inward;
@@ -341,12 +346,12 @@ class ShellSearch {
     });
   }
 
-  // The boundary below the middle of a piece, if it is deeper than what was found.
+  // Looks for a place of the boundary below the middle of a piece that is deeper than the best one.
   void look_for_boundary(const ShellPiece& piece, const MeanNormal& axis, const Hint& hint, SearchedMax& found) const {
     Point place = Point::Zero();
     for (const NormalColumn& column : piece.in_use()) place += column.foot / static_cast<double>(piece.count);
     place += piece.from * axis.direction;
-    // From outside, the nearest place of the reconstruction is on its boundary, wherever the way has come to.
+    // From outside, the nearest place of the reconstruction is on its boundary at every step.
     const double arrived = accuracy_ * kShellArrived;
     for (int step = 1;; ++step) {
       const auto near = reconstruction_.nearest_from(reconstruction_.nearest_in(hint.cell, place), place, 0);
@@ -371,8 +376,8 @@ class ShellSearch {
   const Surface& surface_;
   const Reconstruction& reconstruction_;
   const double accuracy_, deepest_;
-  const std::size_t max_pieces_;  // to look at, all levels together
-  double rounding_ = 0;           // of coordinates
+  const std::size_t max_pieces_;  // the maximum number of pieces on all levels together
+  double rounding_ = 0;           // the rounding error of coordinates
   SearchedMax found_;
 };
 

@@ -6,7 +6,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kDepthRounding = 1e-12;  // of a depth: halves of it overlap by as much
+constexpr double kDepthRounding = 1e-12;  // of a depth: the two halves of a range of depths overlap by this
 
 }  // namespace
 

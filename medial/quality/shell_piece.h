@@ -6,32 +6,32 @@
 
 #include "orchard/geometry/mesh.h"
 
-// What lies below the surface along its normals, in parts (see shell_dents.h).
+// Pieces of the space below the surface along its normals (see shell_dents.h).
 namespace orchard::detail {
 
-// A place of the surface, a normal there that points into the solid (no longer than 1), and how many times the normal
-// from it on another place of the surface is as near.
+// A place of the surface and a normal there that points into the solid (no longer than 1). `top` is the number of
+// normals, from the place on, at which another place of the surface becomes as near.
 struct NormalColumn {
   Point foot = Point::Zero();
   Vector inward = Vector::Zero();
   double top = 0;
 };
 
-// Part of the places below a face (three columns with one normal), an edge (two ends times two normals) or a vertex
-// (three normals at one foot).
+// A part of the places below a face (three columns with one normal), an edge (two ends with two normals each) or a
+// vertex (three normals at one foot).
 struct ShellPiece {
   std::array<NormalColumn, 4> columns;
   std::size_t count = 0;
-  double from = 0, to = 0;  // depths: of these columns, as far as they go
-  double slack = 0;         // places are off by less, normals being rounded
-  Index vertex = kNone;     // of the surface, if below one
-  Index cell = 0;           // of the reconstruction, that was nearest to the piece that this is a half of
+  double from = 0, to = 0;  // the range of depths
+  double slack = 0;         // places are off by less than this because normals are rounded
+  Index vertex = kNone;     // the vertex of the surface that it is below, if it is below one
+  Index cell = 0;           // the cell of the reconstruction that was nearest to the piece from which this half was cut
 
   bool one_normal() const { return count == 3 && vertex == kNone; }
   std::span<const NormalColumn> in_use() const { return {columns.data(), count}; }
 };
 
-// A normal in the middle of those of a piece, and the least cosine to it.
+// The mean direction of the normals of a piece, and the smallest cosine between it and one of them.
 struct MeanNormal {
   Vector direction;
   double cosine;
@@ -39,24 +39,24 @@ struct MeanNormal {
 
 MeanNormal mean_normal(std::span<const NormalColumn> columns);
 
-// Sets the tops of columns: how many times its normal from its foot the place `other` of the surface is as near. False,
-// and what tops there are is of no use, if that is not bounded for all.
+// Sets the tops of the columns from the place `other` of the surface: the multiple of the normal at which `other` is as
+// near as the foot. Returns false if that is not bounded for all columns; the tops are then meaningless.
 bool cut_at(std::span<NormalColumn> columns, const Point& other);
 
-// The corners of the convex cone of normals, in turn around a direction that all of them are near to.
+// Returns the corners of the convex cone of the normals, in order around a direction that all of them are near to.
 std::vector<Vector> hull_of(std::span<const NormalColumn> columns, const Vector& direction);
 
 constexpr std::size_t kMaxShellCorners = 96;
 
-// The corners of what is in the hull of columns, between their feet and tops, from piece.from to piece.to. Depth along
-// normals is linear there; corners at either are on ways from what is deeper to what is not. At most kMaxShellCorners;
-// returns how many.
+// Finds the corners of the part of the columns' hull that lies between their feet and tops and from piece.from to
+// piece.to. Depth along the normals is linear there, and corners at either depth lie on lines from deeper to less deep
+// ones. Returns their number, at most kMaxShellCorners.
 std::size_t corners_of(const ShellPiece& piece, Point* corners);
 
-// Halves of what is longest: the depth, a side, or the angle between normals.
+// Halves a piece along its longest extent: the range of depths, a side, or the angle between normals.
 std::array<ShellPiece, 2> halves_of(const ShellPiece& piece);
 
-// The largest depth that columns of a piece go to.
+// Returns the largest depth of the columns of a piece.
 double max_depth(const ShellPiece& piece);
 
 }  // namespace orchard::detail

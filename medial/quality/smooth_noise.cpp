@@ -11,12 +11,13 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::uint64_t kNoiseStage = 0x6e6f69;
-constexpr double kTooShort = 0.1;  // vectors of a random direction are drawn in a ball; shorter ones round badly
+// Random directions are drawn in a ball, and shorter vectors are rejected because their direction is imprecise.
+constexpr double kTooShort = 0.1;
 
-// Halves each edge of a triangle that has a middle; its triangles go to `out`.
+// Divides a triangle at the middles of those of its edges that have one. Appends the pieces to `out`.
 void divide(std::array<Index, 3> corners, std::array<Index, 3> middles, std::vector<std::array<Index, 3>>& out) {
   const auto halved = 3 - std::count(middles.begin(), middles.end(), kNone);
-  // One that is alone, halved or whole, comes first.
+  // Rotates the corners so that the edge that is the only halved one, or the only whole one, comes first.
   const auto is_first = [&](Index middle) { return halved == 1 ? middle != kNone : middle == kNone; };
   if (halved == 1 || halved == 2) {
     const auto first = std::find_if(middles.begin(), middles.end(), is_first) - middles.begin();
@@ -75,7 +76,8 @@ Vector SmoothNoise::operator()(const Point& place) const {
 Vector SmoothNoise::direction(std::uint64_t corner) const {
   Random random(seed_, kNoiseStage, corner);
   for (;;) {
-    // One after the other: the order of arguments would be the compiler's.
+    // The numbers are drawn in separate statements, because the order in which arguments are evaluated depends on the
+    // compiler.
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
     const Vector way(x, y, z);
     const double length = way.norm();
@@ -85,7 +87,7 @@ Vector SmoothNoise::direction(std::uint64_t corner) const {
 
 TriangleMesh with_short_edges(TriangleMesh mesh, double max) {
   for (;;) {
-    std::map<std::pair<Index, Index>, Index> middles;  // of edges that are too long
+    std::map<std::pair<Index, Index>, Index> middles;  // the middles of edges that are too long
     const auto middle = [&](Index a, Index b) {
       const Point p = mesh.vertices[a], q = mesh.vertices[b];
       if ((p - q).norm() <= max) return kNone;

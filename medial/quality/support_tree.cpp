@@ -11,16 +11,16 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
-constexpr float kSupportSlack = 1e-5f;  // a bound takes some forty roundings of 6e-8 beside numbers of size one
-constexpr double kFar = 1e12;           // sizes: from there on squares may be no floats
-constexpr float kNoFloat = 1e18f;       // instead of what is larger
+constexpr float kSupportSlack = 1e-5f;  // a bound has some forty rounding errors of 6e-8 in numbers of about 1
+constexpr double kFar = 1e12;           // over the size of the tree: beyond this distance, squares may overflow floats
+constexpr float kNoFloat = 1e18f;       // used in place of larger numbers
 
 Float4 broadcast(float x) { return Float4{x, x, x, x}; }
 Float4 abs(Float4 x) { return x < broadcast(0) ? -x : x; }
 Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
 
-// Bit k: whether x[k] is below the limit, or not a number: at the middle of a box itself there is no direction, and no
-// bound.
+// Returns a mask whose bit k is set if x[k] is below the limit or is not a number. At the middle of a box there is no
+// direction to the query, and so there is no bound.
 unsigned below(Float4 x, float limit) {
   const auto is_below = ~(x >= broadcast(limit));
 #ifdef __SSE__
@@ -34,7 +34,8 @@ unsigned below(Float4 x, float limit) {
 
 }  // namespace
 
-// In two along the longest axis, and each of these along its longest; four items at most are children themselves.
+// Builds the tree. It halves the items along the longest axis, and each half along its own longest axis, so that a node
+// has four children. Up to four items become children of a node themselves.
 class SupportTree::Builder {
  public:
   explicit Builder(SupportTree& tree) : tree_(tree), balls_(tree.items_.size()), order_(tree.items_.size()) {
@@ -62,16 +63,17 @@ class SupportTree::Builder {
 
  private:
   using Balls = std::array<Eigen::Vector4d, 3>;
-  struct Entry {  // of an item; small, since they are what sorting moves
+  struct Entry {  // an item while it is sorted; it is small, because sorting moves it
     double along = 0;
     Index number = 0;
   };
-  struct Box {  // half axes are columns
+  struct Box {  // the columns are the half axes
     Eigen::Vector4d middle;
     Eigen::Matrix4d half_axes;
   };
 
-  // In the plane of the three, along its longest side: the other two half axes are none.
+  // The box of a single item lies in the plane of its three balls, along the longest side. Its other two half axes are
+  // zero.
   static Box box_of(Balls balls) {
     const auto squared = [&](std::size_t k) { return (balls[(k + 1) % 3] - balls[k]).squaredNorm(); };
     std::size_t longest = 0;
@@ -90,7 +92,8 @@ class SupportTree::Builder {
     return box;
   }
 
-  // Those of the plane of one, and any others: few items lie in nearly one plane.
+  // Returns the axes of the plane of one item with a normal. They suit few items well, since these lie in nearly one
+  // plane.
   Eigen::Matrix4d axes_of_first(Index first) const {
     const Balls& balls = balls_at(first);
     Eigen::Matrix<double, 4, 2> sides;
@@ -131,10 +134,12 @@ class SupportTree::Builder {
     return {origin + axes * (0.5 * (low + high)), axes * (0.5 * (high - low)).asDiagonal()};
   }
 
-  // Of how many items the first half is: nodes of items are to be full, which makes them the fewest.
+  // Returns how many items go into the first half. Nodes of items are filled completely, so that there are as few nodes
+  // as possible.
   static Index half_of(Index count) { return std::min(count, (count / 2 + 2) / 4 * 4); }
 
-  // Orders a range so that its first half comes first along the longest of the axes. Returns the half's size.
+  // Reorders a range so that the items of its first half come first along the longest of the axes. Returns the size of
+  // that half.
   Index halve(Index first, Index count, const Eigen::Matrix4d& axes) {
     const Index half = half_of(count);
     if (half == 0 || half == count) return half;
@@ -148,7 +153,7 @@ class SupportTree::Builder {
       low = low.cwiseMin(along);
       high = high.cwiseMax(along);
     }
-    // An axis' extent grows with its own length, too.
+    // The extent along an axis also grows with the length of the axis vector.
     int longest = 0;
     (high - low).cwiseQuotient(axes.colwise().norm().transpose().cwiseMax(1e-300)).maxCoeff(&longest);
     const Eigen::Vector4d along = axes.col(longest);
@@ -193,7 +198,7 @@ class SupportTree::Builder {
   const Balls& balls_at(Index i) const { return balls_[order_[i].number]; }
 
   SupportTree& tree_;
-  std::vector<Balls> balls_;  // of each item, in the tree's own units
+  std::vector<Balls> balls_;  // the balls of each item, in the units of the tree
   std::vector<Entry> order_;
 };
 
@@ -211,7 +216,7 @@ SupportTree::SupportTree(std::vector<Item> items) : items_(std::move(items)) {
   size = std::max(size, centers.sizes().maxCoeff());
   if (size > 0) scale_ = std::ldexp(1.0, -std::ilogb(size) - 1);
   Builder builder(*this);
-  nodes_.reserve(items_.size() * 5 / 12 + 1);  // the most there can be
+  nodes_.reserve(items_.size() * 5 / 12 + 1);  // the largest possible number of nodes
   builder.run();
 }
 
@@ -229,7 +234,7 @@ float SupportTree::limit_of(double value) const {
   return local < kFar ? static_cast<float>(local) : kNoFloat;
 }
 
-// What is pushed is looked at soon.
+// Loads a child into the cache, because it is visited soon after it has been pushed.
 void SupportTree::prefetch(Index child) const {
   const bool is_item = child >= kItem;
   const char* at =
@@ -237,7 +242,7 @@ void SupportTree::prefetch(Index child) const {
   for (std::size_t line = 0; line < (is_item ? sizeof(Item) : sizeof(Node)); line += 64) __builtin_prefetch(at + line);
 }
 
-// The nearest is to be popped first.
+// Pushes the children so that the nearest one is popped first.
 void SupportTree::push_children(const Node& node, const Query& query, float limit, Entry* stack,
                                 std::size_t& size) const {
   const Float4 x = query.place[0] - node.middle[0], y = query.place[1] - node.middle[1],

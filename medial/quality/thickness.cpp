@@ -9,7 +9,7 @@
 namespace orchard {
 namespace {
 
-constexpr double kTouchingBall = 1e-3;     // of the bounding radius: a ball this near touches
+constexpr double kTouchingBall = 1e-3;     // of the bounding radius: a ball this near to a place counts as touching it
 constexpr std::size_t kVertexBlock = 256;  // vertices that one task takes, one after the other
 
 }  // namespace
@@ -21,7 +21,7 @@ std::vector<double> medial_radii_at_surface(const Surface& surface, const Medial
   const auto& vertices = surface.mesh().vertices;
   std::vector<double> result(vertices.size(), 0);
   tbb::parallel_for(std::size_t{0}, (vertices.size() + kVertexBlock - 1) / kVertexBlock, [&](std::size_t block) {
-    // Those of the vertex before, which is often near: they bound what is looked for.
+    // The balls of the previous vertex, which is often near, bound the search.
     Index nearest_ball = kNone, largest_ball = kNone;
     const std::size_t end = std::min(vertices.size(), (block + 1) * kVertexBlock);
     for (std::size_t i = block * kVertexBlock; i < end; ++i) {

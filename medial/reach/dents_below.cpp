@@ -8,30 +8,33 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxDescentSteps = 30;      // from a place below the surface to the bottom of its dent
-constexpr double kAtBottom = 1e-3;        // of the limit: that near to a ball is at the bottom
-constexpr double kDeeperThanLimit = 1.1;  // times the limit: dents that are deeper are told
-constexpr double kDenser = 0.1;   // of how far dents are apart: what is looked at, so that the deepest is not missed
-constexpr double kShallow = 0.9;  // of the limit: nearer to the surface is another part of it
+constexpr int kMaxDescentSteps = 30;  // the number of steps from a place below the surface to the bottom of its dent
+constexpr double kAtBottom = 1e-3;    // of the limit: a place this near to a ball counts as the bottom
+constexpr double kDeeperThanLimit = 1.1;  // times the limit: only deeper dents are reported
+// Of the minimum distance of two dents: how densely places are examined, so that the deepest one is not missed.
+constexpr double kDenser = 0.1;
+// Of the limit: a place nearer to the surface than this belongs to another part of the surface.
+constexpr double kShallow = 0.9;
 
-// How much of a triangle's side the plane `depth` below the triangle across loses to that of the triangle across: what
-// is farther out is nearer to that one. Nothing at a reflex edge.
+// Returns how much of a triangle's side, at `depth` below it, belongs to the triangle across that side, because places
+// farther out are nearer to that one. At a reflex edge this is 0.
 double lost_at(const Surface& surface, Index triangle, std::size_t edge, double depth) {
   const Index other = surface.neighbors(triangle)[edge];
   if (other == kNone) return 0;
   const Vector along = surface.corners(triangle)[(edge + 1) % 3] - surface.corners(triangle)[edge];
   const Vector &a = surface.normal(triangle), &b = surface.normal(other);
-  // tan(turn / 2) = sin / (1 + cos).
+  // By the half-angle formula, tan(turn / 2) = sin / (1 + cos).
   const double sine = a.cross(b).dot(along.normalized()), cosine = a.dot(b);
   return sine > 0 ? depth * sine / std::max(1 + cosine, std::numeric_limits<double>::min()) : 0;
 }
 
-// What of a triangle is `depth` below its plane and not nearer to those next to it. False if nothing is.
+// Finds the part of a triangle, moved down by `depth`, that is not nearer to the adjacent triangles. Returns false if
+// there is none.
 bool part_below(const Surface& surface, Index triangle, double depth, std::array<Point, 3>& part) {
   const std::array<Point, 3> corners = surface.corners(triangle);
-  std::array<double, 3> least{};  // barycentric coordinates
+  std::array<double, 3> least{};  // lower bounds on the barycentric coordinates of the part
   for (std::size_t i = 0; i < 3; ++i) {
-    // The edge across from corner i.
+    // the edge opposite to corner i
     const std::size_t edge = (i + 1) % 3;
     const double length = (corners[(edge + 1) % 3] - corners[edge]).norm();
     least[i] = lost_at(surface, triangle, edge, depth) * length / (2 * surface.area(triangle));
@@ -61,7 +64,7 @@ std::vector<std::array<Point, 3>> parts_below(const Surface& surface, double dep
 DentsBelow::DentsBelow(const Surface& surface, double limit, double resolution)
     : surface_(surface), limit_(limit), below_(surface, parts_below(surface, limit), kShallow * limit, resolution) {}
 
-// From a place below the surface straight down, away from what is above it, to the bottom of the dent that it is in.
+// Moves from a place below the surface straight down, away from `above`, to the bottom of the dent that contains it.
 UncoveredPlace DentsBelow::bottom_below(const UncoveredPlace& place, const Point& above,
                                         const Reconstruction& reconstruction) const {
   const Vector down = (place.position - above).normalized();

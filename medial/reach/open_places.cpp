@@ -13,8 +13,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr Index kProbes = 4;         // for each point
-constexpr double kSeparation = 0.1;  // mean spacings
+constexpr Index kProbes = 4;         // random places for each surface point
+constexpr double kSeparation = 0.1;  // in mean spacings: the smallest distance between two points
 
 }  // namespace
 

@@ -4,9 +4,9 @@
 
 namespace orchard::detail {
 
-// Places of a surface that are farther than `limit` (mesh units) from every ball of a medial mesh, found among random
-// ones, four for each point of `sampling`: as repair points, none closer to another, or to a point of `sampling`, than
-// a tenth of the mean spacing. Deterministic; parallel. O(n log n).
+// Finds places of a surface that are farther than `limit` (mesh units) from every ball of a medial mesh, among random
+// places of which there are four for each point of `sampling`. Returns them as repair points, at least a tenth of the
+// mean spacing apart from each other and from the points of `sampling`. Deterministic; parallel. O(n log n).
 SurfaceSampling open_places(const Surface& surface, const MedialMesh& mesh, const SurfaceSampling& sampling,
                             double limit);
 

@@ -189,7 +189,7 @@ class OpenPlaceReacher {
     double part = 1;
     for (int attempt = 0; attempt < kAttempts; ++attempt, part /= 2) {
       const Point start = place + part * way;
-      const ExactBall ball = ball_touching(sheets_.surface.closest(start), start);
+      ExactBall ball = ball_touching(sheets_.surface.closest(start), start);
       if (ball.exact && (ball.center - place).norm() - ball.radius <= kSlack * left) return ball;
     }
     return {};

@@ -8,7 +8,7 @@
 
 namespace orchard::detail {
 
-// Cells that were found last: what is looked at next is often near one of them, and asking them all costs a tenth of a
+// The cells that were found last. The next query is often near one of them, and testing all of them costs a tenth of a
 // search.
 class RecentCells {
  public:
@@ -21,8 +21,8 @@ class RecentCells {
     *at = cell;
     std::rotate(cells_.begin(), at, at + 1);
   }
-  // Whether one of them comes within `limit` of every point of the convex hull of some: the distance to one cell is
-  // convex.
+  // Whether one of the cells comes within `limit` of every point of the convex hull of `corners`. The distance to one
+  // cell is a convex function, so testing the corners suffices.
   bool cover(std::span<const Point> corners, double limit) {
     for (std::size_t i = 0; i < count_; ++i) {
       if (!std::all_of(corners.begin(), corners.end(), [&](const Point& corner) {
@@ -34,7 +34,7 @@ class RecentCells {
     }
     return false;
   }
-  // The nearest of them.
+  // Returns the nearest of these cells.
   Reconstruction::Nearest nearest(const Point& query, double enough) const {
     Reconstruction::Nearest nearest;
     for (std::size_t i = 0; i < count_ && !(nearest.distance < enough); ++i) {
@@ -46,7 +46,7 @@ class RecentCells {
 
  private:
   const Reconstruction& reconstruction_;
-  std::array<Index, 8> cells_{};  // the last one first
+  std::array<Index, 8> cells_{};  // the most recent one first
   std::size_t count_ = 0;
 };
 

@@ -5,24 +5,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
 namespace orchard::detail {
 namespace {
 
-// A loss as a number from 0 to 1, 1/2 at the level.
-double scaled(const ExactBall& ball, double level) {
-  if (ball.radius > 0 && ball.count < 2) return 0;
-  if (!std::isfinite(ball.loss)) return 1;
-  const double ratio = ball.loss / level;
-  return ratio / (1 + ratio);
+// Maps a quotient to a number from 0 to 1, which is 1/2 for 1.
+double scaled(double over_level) { return std::isfinite(over_level) ? over_level / (1 + over_level) : 1; }
+
+double scaled_loss(const ExactBall& ball, double level) {
+  return ball.radius > 0 && ball.count < 2 ? 0 : scaled(ball.loss / level);
 }
+
+using ValueOfBall = std::function<double(const ExactBall&)>;
 
 class LevelCut {
  public:
-  LevelCut(const Surface& surface, BallComplex& complex, double level, double merging)
-      : surface_(surface), complex_(complex), level_(level), merging_(merging) {}
+  // `values` are those of the vertices, from 0 to 1. `value_of` gives that of a ball in between; without it, values are
+  // interpolated.
+  LevelCut(const Surface& surface, BallComplex& complex, std::vector<double> values, ValueOfBall value_of,
+           double merging)
+      : surface_(surface),
+        complex_(complex),
+        values_(std::move(values)),
+        value_of_(std::move(value_of)),
+        merging_(merging) {}
 
   Index run() {
     const Index cuts = cut_edges();
@@ -31,20 +40,21 @@ class LevelCut {
   }
 
  private:
-  static constexpr int kLevelSteps = 5;       // of bisection for the place where an edge crosses the level
-  static constexpr double kNearLevel = 0.04;  // of the loss: near enough to end that
+  static constexpr int kLevelSteps = 5;       // steps of bisection towards the place where an edge crosses the level
+  static constexpr double kNearLevel = 0.04;  // of the loss: bisection ends when it is this near to the level
 
-  // Where an edge from a vertex above the level to one below crosses it: the last exact ball above; nothing if there is
-  // none.
-  bool crossing(BallSolver& solver, const ExactBall& above, const ExactBall& below, ExactBall& found) const {
-    const double high = scaled(above, level_), low = scaled(below, level_);
+  // Finds where an edge from a vertex above the level to one below crosses it. Returns the last exact ball above the
+  // level, and false if there is none.
+  bool crossing(BallSolver& solver, Index vertex_above, Index vertex_below, ExactBall& found) const {
+    const ExactBall &above = complex_.balls[vertex_above], &below = complex_.balls[vertex_below];
+    const double high = values_[vertex_above], low = values_[vertex_below];
     double from = 0, to = 1;
     bool any = false;
     for (int step = 0; step < kLevelSteps; ++step) {
       double t = step == 0 ? (high - 0.5) / (high - low) : 0.5 * (from + to);
       t = std::clamp(t, from + 0.05 * (to - from), to - 0.05 * (to - from));
       const ExactBall middle = solver.between(above, below, t);
-      const double value = scaled(middle, level_);
+      const double value = value_of_ ? value_of_(middle) : 0.5;
       if (!middle.exact || value < 0.5) {
         to = t;
         continue;
@@ -58,7 +68,7 @@ class LevelCut {
   }
 
   Index cut_edges() {
-    const auto above = [&](Index v) { return scaled(complex_.balls[v], level_) >= 0.5; };
+    const auto above = [&](Index v) { return values_[v] >= 0.5; };
     std::vector<Index> crossed;
     for (Index e = 0; e < complex_.edges.size(); ++e) {
       if (above(complex_.edges[e][0]) != above(complex_.edges[e][1])) crossed.push_back(e);
@@ -70,7 +80,7 @@ class LevelCut {
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         auto [a, b] = complex_.edges[crossed[i]];
         if (!above(a)) std::swap(a, b);
-        found[i] = crossing(solver, complex_.balls[a], complex_.balls[b], places[i]) ? 1 : 0;
+        found[i] = crossing(solver, a, b, places[i]) ? 1 : 0;
       }
     });
     std::vector<Index> cut(complex_.edges.size(), kNone);
@@ -78,6 +88,7 @@ class LevelCut {
       if (!found[i]) continue;
       cut[crossed[i]] = complex_.size();
       complex_.balls.push_back(places[i]);
+      values_.push_back(value_of_ ? value_of_(places[i]) : 0.5);
     }
     const Index cuts = static_cast<Index>(std::count_if(cut.begin(), cut.end(), [](Index v) { return v != kNone; }));
     subdivide(complex_, cut);
@@ -85,28 +96,36 @@ class LevelCut {
   }
 
   void drop_below() {
-    std::vector<double> value(complex_.size());
     Doomed doomed(complex_);
-    for (Index v = 0; v < complex_.size(); ++v) {
-      value[v] = scaled(complex_.balls[v], level_);
-      doomed.vertices[v] = value[v] < 0.5 ? 1 : 0;
-    }
+    for (Index v = 0; v < complex_.size(); ++v) doomed.vertices[v] = values_[v] < 0.5 ? 1 : 0;
     for (Index e = 0; e < complex_.edges.size(); ++e) {
       const auto& [a, b] = complex_.edges[e];
       doomed.edges[e] = doomed.vertices[a] != 0 || doomed.vertices[b] != 0 ? 1 : 0;
     }
-    collapse(complex_, doomed, value);
+    collapse(complex_, doomed, values_);
   }
 
   const Surface& surface_;
   BallComplex& complex_;
-  const double level_, merging_;
+  std::vector<double> values_;
+  const ValueOfBall value_of_;
+  const double merging_;
 };
 
 }  // namespace
 
 Index cut_at_level(const Surface& surface, BallComplex& complex, double level, double merging) {
-  return LevelCut(surface, complex, level, merging).run();
+  const ValueOfBall value_of = [level](const ExactBall& ball) { return scaled_loss(ball, level); };
+  std::vector<double> values;
+  for (const ExactBall& ball : complex.balls) values.push_back(value_of(ball));
+  return LevelCut(surface, complex, std::move(values), value_of, merging).run();
+}
+
+Index cut_where_below(const Surface& surface, BallComplex& complex, const std::vector<double>& over_level,
+                      double merging) {
+  std::vector<double> values;
+  for (const double value : over_level) values.push_back(scaled(value));
+  return LevelCut(surface, complex, std::move(values), {}, merging).run();
 }
 
 }  // namespace orchard::detail

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "../balls/ball_complex.h"
 #include "orchard/geometry/surface.h"
 
@@ -10,5 +12,10 @@ namespace orchard::detail {
 // were cut. The result is deterministic; the work is parallel. Takes O(n log n), and some nearest-point queries for
 // each cut edge.
 Index cut_at_level(const Surface& surface, BallComplex& complex, double level, double merging);
+
+// Does the same for a measure whose value at each vertex, beside the level, is `over_level`: cuts where it passes 1,
+// interpolated along the edges.
+Index cut_where_below(const Surface& surface, BallComplex& complex, const std::vector<double>& over_level,
+                      double merging);
 
 }  // namespace orchard::detail

@@ -26,46 +26,48 @@ namespace orchard::detail {
 namespace {
 
 constexpr const char* kRefiningStage = "refining the axis";
-// Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
-// which side of the level a vertex is.
+// Contacts are merged if the ball between them loses less than this share of what a border may lose. The share is so
+// small that each vertex is clearly on one side of the level.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;       // of reaching edges and corners: the last ones find next to nothing
-constexpr double kMinLength = 1e-3;    // diagonals: shorter edges are not divided
-constexpr std::size_t kMaxSeeds = 24;  // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpenLoss = 1.65;     // of the border loss: places left open by more are reached for
-constexpr double kResolution = 0.1;    // spacings, of looking for these
-constexpr double kDetail = 0.15;       // of what is left open: places open by this more are not missed
-constexpr double kDentWidth = 0.5;     // of what is left open: narrower dents are missed
-constexpr int kReachPasses = 3;        // of reaching for what is left open and evening that out
-constexpr int kDentRounds = 3;         // of looking for these, once nothing is open: some stay where no ball fits
-constexpr double kApart = 0.5;         // spacings, between two that are reached for at once
-constexpr double kMinAim = 0.125;      // of the edge length asked for: no shorter ones are aimed at
+constexpr int kBorderPasses = 3;  // rounds of extending sheets to edges and corners; the last ones add hardly anything
+constexpr double kMinLength = 1e-3;    // in diagonals: shorter edges are not divided
+constexpr std::size_t kMaxSeeds = 24;  // starting points of a vertex; merged vertices have hundreds of them
+constexpr double kOpenLoss = 1.65;     // of the border loss: sheets are extended to places that are open by more
+constexpr double kResolution = 0.1;    // in spacings: the resolution of the search for such places
+constexpr double kDetail = 0.15;       // of the open distance: places that are open by this much more are never missed
+constexpr double kDentWidth = 0.5;     // of the open distance: narrower dents are missed
+constexpr int kReachPasses = 3;        // rounds of reaching open places and remeshing
+// Rounds for dents after all places have been reached; some dents stay because no ball fits into them.
+constexpr int kDentRounds = 3;
+constexpr double kApart = 0.5;     // in spacings: the smallest distance of two places that are reached in one round
+constexpr double kMinAim = 0.125;  // of the edge length asked for: the shortest edge length that remeshing aims at
 constexpr int kEvenRounds = 6;
-constexpr std::size_t kFineMesh = 2;  // vertices for each surface point: with more, the points stand for them
+// Vertices of the mesh for each surface point: in finer meshes, surface points replace the vertices.
+constexpr std::size_t kFineMesh = 2;
 constexpr double kDegree = std::numbers::pi / 180;
-// Of borders as the diagram leaves them, and as they grow.
+// Limits for notches, both in the borders that the diagram leaves and while sheets are extended.
 constexpr NotchLimits kNotches{
     .max_angle = 150 * kDegree, .max_bend = 180 * kDegree, .max_length = 4, .min_loss = 0.5, .on_trial = false};
-constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
+constexpr double kCoincident = 1e-6;  // in diagonals: vertices nearer than this are merged
 
 void check(const RefineOptions& options) {
   if (!(options.border_loss >= 0 && std::isfinite(options.border_loss)))
-    throw InputError("border loss: a finite number of diagonals, not negative");
+    throw InputError("the border loss must be a finite number of diagonals, at least 0");
   if (!(options.tolerance > 0 && std::isfinite(options.tolerance)))
-    throw InputError("refining tolerance: a finite number of diagonals above 0");
+    throw InputError("the tolerance of refining must be a finite number of diagonals above 0");
   if (!(options.feature_loss > 0 && std::isfinite(options.feature_loss)))
-    throw InputError("loss of features: a finite number of diagonals above 0");
+    throw InputError("the loss of features must be a finite number of diagonals above 0");
   if (!(options.feature_length >= 0 && std::isfinite(options.feature_length)))
-    throw InputError("length of features: a finite number of diagonals, not negative");
+    throw InputError("the length of features must be a finite number of diagonals, at least 0");
   if (!(options.edge_length > 0 && std::isfinite(options.edge_length)))
-    throw InputError("length of edges: a finite number of diagonals above 0");
-  if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
+    throw InputError("the length of edges must be a finite number of diagonals above 0");
+  if (options.max_rounds < 0) throw InputError("the number of rounds of refining must be at least 0");
   if (!(options.reach_detail >= 0 && std::isfinite(options.reach_detail)))
-    throw InputError("detail that is reached for: a finite number, not negative");
-  if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
+    throw InputError("the detail that is reached for must be a finite number, at least 0");
+  if (options.reach_rounds < 0) throw InputError("the number of rounds of reaching for open places must be at least 0");
 }
 
-// In diagonals.
+// Returns how far places may be open because of the border loss, in diagonals.
 double left_open_by_borders(const RefineOptions& options) {
   return kOpenLoss * std::max(options.border_loss, options.tolerance);
 }
@@ -101,7 +103,7 @@ void Refiner::refine(FoundBalls* found) {
   make_complex();
   find_balls(found);
   report_progress(progress_, kRefiningStage, 0.1);
-  drop_folded();
+  drop_single_contact_faces();
   report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);
   report_.small_pieces = drop_small_pieces(complex_, &guard_);
   report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
@@ -124,7 +126,7 @@ RefinedAxis Refiner::finish() {
   return result();
 }
 
-// What is new since it was last done, and what is near that.
+// Remeshes what has changed since the last time, and its surroundings.
 void Refiner::even_out() {
   const auto key = [](const ExactBall& ball) { return std::array{ball.center.x(), ball.center.y(), ball.center.z()}; };
   std::vector<std::uint8_t> where(complex_.size());
@@ -139,7 +141,7 @@ void Refiner::even_out() {
                               .features = &features_,
                               .rounds = kEvenRounds};
   report_.vertices_moved += remesh(surface_, places_, complex_, where, options, progress_);
-  split_errors_ = {};  // vertices have other numbers
+  split_errors_ = {};  // the vertices have been renumbered
   evened_.clear();
   for (const ExactBall& ball : complex_.balls) evened_.push_back(key(ball));
   std::sort(evened_.begin(), evened_.end());
@@ -163,7 +165,8 @@ void Refiner::make_complex() {
   complex_.triangles = std::move(triangles.mesh.triangles);
 }
 
-// Where the ball of a vertex is looked for: its forming points; for the middle of a face, its two points.
+// Collects the places where the ball of a vertex is searched: its forming points, or for the middle of a face, its two
+// points.
 void Refiner::seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const {
   seeds.clear();
   const auto add = [&](Index point) { seeds.push_back(place(point)); };
@@ -202,16 +205,16 @@ void Refiner::find_balls(FoundBalls* found) {
 }
 
 const std::array<Index, 2>& Refiner::points_of(Index face) const {
-  return face < axis_.faces.size() ? axis_.face_points[face] : axis_.wall_points[face - axis_.faces.size()];
+  return face < axis_.faces.size() ? axis_.face_points[face] : axis_.topology_face_points[face - axis_.faces.size()];
 }
 
 std::span<const Index> Refiner::corners_of(Index face) const {
-  return face < axis_.faces.size() ? axis_.faces[face] : axis_.walls[face - axis_.faces.size()];
+  return face < axis_.faces.size() ? axis_.faces[face] : axis_.topology_faces[face - axis_.faces.size()];
 }
 
 // Whether the two points of a face have, seen from its middle, contacts between which nothing is lost: such a face
-// folds onto its sheet, or stands on the surface.
-bool Refiner::folded(Index face, BallSolver& solver) const {
+// lies on its sheet a second time, or stands on the surface.
+bool Refiner::has_single_contact(Index face, BallSolver& solver) const {
   Point middle = Point::Zero();
   for (const Index v : corners_of(face)) middle += axis_.centers[v];
   middle /= static_cast<double>(corners_of(face).size());
@@ -221,13 +224,16 @@ bool Refiner::folded(Index face, BallSolver& solver) const {
   return BallSolver::loss(std::min(a.distance, b.distance), angle) < level_;
 }
 
-void Refiner::drop_folded() {
-  std::vector<std::uint8_t> folded_faces(axis_.faces.size() + axis_.walls.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(folded_faces.size()), 128), [&](const auto& range) {
-    BallSolver solver = this->solver();
-    for (Index face = range.begin(); face != range.end(); ++face) folded_faces[face] = folded(face, solver) ? 1 : 0;
-  });
-  // Edges go with all of their triangles, vertices with all of their edges; those without triangles stay.
+void Refiner::drop_single_contact_faces() {
+  std::vector<std::uint8_t> single_contact(axis_.faces.size() + axis_.topology_faces.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(single_contact.size()), 128),
+                    [&](const auto& range) {
+                      BallSolver solver = this->solver();
+                      for (Index face = range.begin(); face != range.end(); ++face)
+                        single_contact[face] = has_single_contact(face, solver) ? 1 : 0;
+                    });
+  // An edge is removed if all of its triangles are removed, and a vertex if all of its edges are. Edges and vertices
+  // that had none stay.
   std::vector<std::uint8_t> has(complex_.edges.size(), 0);
   Doomed doomed(complex_);
   std::fill(doomed.edges.begin(), doomed.edges.end(), std::uint8_t{1});
@@ -237,7 +243,7 @@ void Refiner::drop_folded() {
     const auto& [a, b, c] = complex_.triangles[t];
     for (const Index e : {edge(a, b), edge(a, c), edge(b, c)}) {
       has[e] = 1;
-      if (!folded_faces[face_of_triangle_[t]]) doomed.edges[e] = 0;
+      if (!single_contact[face_of_triangle_[t]]) doomed.edges[e] = 0;
     }
   }
   for (Index e = 0; e < complex_.edges.size(); ++e) {
@@ -247,8 +253,8 @@ void Refiner::drop_folded() {
   }
   const std::size_t before = complex_.triangles.size();
   collapse(complex_, doomed, std::vector<double>(complex_.size(), 0));
-  complex_.complete();  // triangles came in the order of the axis's faces
-  report_.folded_triangles = static_cast<Index>(before - complex_.triangles.size());
+  complex_.complete();  // the triangles are in the order of the faces of the axis
+  report_.single_contact_triangles = static_cast<Index>(before - complex_.triangles.size());
 }
 
 BorderOptions Refiner::border_options() const {
@@ -264,12 +270,12 @@ void Refiner::reach_edges() {
   for (int pass = 0; pass < kBorderPasses; ++pass) {
     const Index seams = extend_to_seams(surface_, complex_, border);
     Index reached = extend_to_edges(surface_, complex_, border);
-    report_.notches += seams + fill_along_edges(surface_, complex_, border);
+    report_.filling_triangles += seams + fill_along_edges(surface_, complex_, border);
     reached += extend_to_corners(surface_, complex_, border);
     if (seams == 0 && reached == 0) break;
   }
   BallSolver solver = this->solver();
-  report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
+  report_.filling_triangles += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
 }
 
 SplitOptions Refiner::split_options() const {
@@ -293,8 +299,8 @@ Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector
                            border_options(), split_options());
 }
 
-// Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added
-// is divided, too. Returns whether anything was.
+// Extends sheets to places that the balls leave open by more than borders may, then to deep dents between balls. Added
+// cells are divided, too. Returns whether any were added.
 bool Refiner::reach() {
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
   report_.small_pieces += drop_small_pieces(complex_, &guard_);
@@ -316,7 +322,7 @@ bool Refiner::reach() {
       reached = reach_for(reconstruction, dents.find(reconstruction, apart), solver);
     if (reached == 0) break;
     report_.reached_places += reached;
-    report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
+    report_.filling_triangles += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
     divide();
   }
   return report_.reached_places > before;

@@ -42,14 +42,14 @@ class Refiner {
   ClosestPoint place(Index point) const;
   const std::array<Index, 2>& points_of(Index face) const;
   std::span<const Index> corners_of(Index face) const;
-  bool folded(Index face, BallSolver& solver) const;
+  bool has_single_contact(Index face, BallSolver& solver) const;
   BorderOptions border_options() const;
   SplitOptions split_options() const;
 
   void make_complex();
   void seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const;
   void find_balls(FoundBalls* found);
-  void drop_folded();
+  void drop_single_contact_faces();
   void reach_edges();
   void divide();
   void even_out();

@@ -28,7 +28,7 @@ class PieceDropper {
   }
 
  private:
-  bool is_wire(Index e) const { return at_.triangles_at[e].empty(); }
+  bool is_bare(Index e) const { return at_.triangles_at[e].empty(); }
 
   // Joins triangles that share edges to pieces; and edges without triangles that meet where nothing else does.
   void find_pieces() {
@@ -38,7 +38,7 @@ class PieceDropper {
     }
     for (Index v = 0; v < complex_.size(); ++v) {
       const auto edges = at_.edges_at[v];
-      if (edges.size() == 2 && is_wire(edges[0]) && is_wire(edges[1])) piece_of_edge_.unite(edges[0], edges[1]);
+      if (edges.size() == 2 && is_bare(edges[0]) && is_bare(edges[1])) piece_of_edge_.unite(edges[0], edges[1]);
     }
   }
 

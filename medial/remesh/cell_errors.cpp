@@ -54,11 +54,11 @@ bool CellErrors::leads_outside(Index a, Index b, double limit) const {
   return radius + surface_.signed_distance(0.5 * (mesh_.center(a) + mesh_.center(b))) > limit;
 }
 
-bool CellErrors::goes_through_wall(Index a, Index b) const {
+bool CellErrors::crosses_surface(Index a, Index b) const {
   if (!cuts_itself_ || !(mesh_.ball(a).radius > 0) || !(mesh_.ball(b).radius > 0)) return false;
-  std::vector<Index> walls;
-  surface_.triangles_overlapping({mesh_.center(a), mesh_.center(b), mesh_.center(b)}, walls);
-  return !walls.empty();
+  std::vector<Index> crossed;
+  surface_.triangles_overlapping({mesh_.center(a), mesh_.center(b), mesh_.center(b)}, crossed);
+  return !crossed.empty();
 }
 
 }  // namespace orchard::detail

@@ -5,8 +5,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kJoin = 0.5;         // of the length aimed at: shorter edges between junctions go
-constexpr double kFairQuality = 0.2;  // of triangles that drawing an edge together may leave
+constexpr double kJoin = 0.5;         // of the target length: edges between junctions that are shorter are collapsed
+constexpr double kFairQuality = 0.2;  // the quality that triangles need to keep when an edge is collapsed
 
 double longest_side(const SheetMesh& mesh, std::span<const Index> cells) {
   double longest = 0;
@@ -21,7 +21,7 @@ double longest_side(const SheetMesh& mesh, std::span<const Index> cells) {
 }  // namespace
 
 void Remesher::collapse_short() {
-  std::vector<std::pair<double, Edge>> chosen;  // the shortest first
+  std::vector<std::pair<double, Edge>> chosen;  // the edges to collapse, the shortest first
   for (const Edge& edge : open_edges()) {
     const double part = length(edge[0], edge[1]) / target(edge[0], edge[1]);
     if (part < kShort) chosen.push_back({part, edge});
@@ -34,8 +34,9 @@ void Remesher::collapse_short() {
   }
 }
 
-// Whether a vertex may be drawn along an edge: in its sheet, along its seam, border or curve, but not off the surface;
-// across a strip that is narrow, from one border to the other; and from one junction to another one close by.
+// Whether a vertex may move along an edge to its other end. It may move within its sheet, or along its seam, border or
+// curve, but not off the surface. It may also cross a narrow strip from one border to the other, and move from one
+// junction to another one nearby.
 bool Remesher::may_go(Index v, Index to) const {
   const Stratum stratum = mesh_.stratum(v), end = mesh_.stratum(to), way = mesh_.stratum(v, to);
   switch (stratum) {
@@ -53,15 +54,15 @@ bool Remesher::may_go(Index v, Index to) const {
   return way == stratum && (end == stratum || end == Stratum::junction) && (!on_surface(v) || on_surface(to));
 }
 
-// Whether a vertex at the place of another one may become that, whatever joins them: but not one in less of the
-// structure.
+// Whether a vertex may be merged with another one at the same place, whatever kind of edge joins them. The other one
+// must not lie in a larger stratum, since that would lose structure.
 bool Remesher::may_become(Index v, Index other) const {
   const Stratum stratum = mesh_.stratum(v), end = mesh_.stratum(other);
   return !on_surface(v) && (stratum == Stratum::sheet || end == stratum || end == Stratum::junction);
 }
 
-// What is at one place becomes one at whatever cost to the shape of triangles: so the web goes in which the sheets of a
-// round solid's facets meet.
+// Vertices at the same place are merged whatever that does to the shape of triangles. This removes the fan of narrow
+// sheets in which the wedges between the facets of a round solid meet.
 bool Remesher::collapse(Index a, Index b) {
   const bool one_place = is_one_place(length(a, b));
   const bool a_goes = may_go(a, b) || (one_place && may_become(a, b)),
@@ -75,7 +76,7 @@ bool Remesher::collapse(Index a, Index b) {
   return b_goes && !to_a_first && draw(b, a, mesh_.ball(a));
 }
 
-// Vertex a to b, which becomes this ball.
+// Moves vertex a to b, which gets this ball.
 bool Remesher::draw(Index a, Index b, const ExactBall& ball) {
   const bool moves = ball.center != mesh_.ball(b).center;
   std::vector<Index> old = cells_at(a);
@@ -98,7 +99,7 @@ bool Remesher::draw(Index a, Index b, const ExactBall& ball) {
     std::replace(cell.begin(), cell.end(), a, b);
     mesh_.add(cell);
   }
-  // What no triangle holds any more becomes a curve.
+  // Edges without triangles become curves.
   for (const Index v : flattened) {
     if (!mesh_.has_edge(v, b)) mesh_.add({v, b, b});
   }

@@ -9,9 +9,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kSmallSheet = 1;                      // of its largest radius: smaller sheets go
-constexpr std::size_t kFew = 3;                        // triangles: and those of no more
-constexpr double kEar = 100 * std::numbers::pi / 180;  // of a triangle with one neighbour: sharper ones stick out
+constexpr double kSmallSheet = 1;  // of the largest radius of a sheet: sheets with a smaller box are removed
+constexpr std::size_t kFew = 3;    // sheets with at most so many triangles are removed, too
+// The angle of a triangle with one neighbour below which it counts as protruding from the border.
+constexpr double kEar = 100 * std::numbers::pi / 180;
 
 bool is_ear(const SheetMesh& mesh, const SheetMesh::Cell& cell, Index v) {
   std::array<Point, 2> ends{Point::Zero(), Point::Zero()};
@@ -33,8 +34,8 @@ double size_of(const SheetMesh& mesh, const std::vector<Index>& cells, double& l
   return box.diagonal().norm();
 }
 
-// In what order triangles can be taken away one by one, each from a free side, which changes no topology: whether there
-// is one; and the sides of theirs that are left without a triangle, but for the free ones.
+// Finds an order in which triangles can be removed one by one, each from a free side, so that the topology stays. It
+// tells whether there is one, and which sides of the triangles are then without a triangle, except for the free ones.
 class Unwrapping {
  public:
   template <class TrianglesAt>
@@ -69,13 +70,13 @@ class Unwrapping {
     const auto edge = [](Index a, Index b) { return SheetMesh::Edge{std::min(a, b), std::max(a, b)}; };
     return {edge(cell[0], cell[1]), edge(cell[1], cell[2]), edge(cell[2], cell[0])};
   }
-  std::map<SheetMesh::Edge, int> left_;  // triangles at each side, and -1 once it is gone
+  std::map<SheetMesh::Edge, int> left_;  // the number of triangles at each side, and -1 after the side has been removed
   bool complete_ = false;
 };
 
 }  // namespace
 
-// Sheets that are small beside their balls go, the smallest first, where the rest covers what they cover.
+// Removes sheets that are small compared with their balls, the smallest first, if the rest covers what they cover.
 void Remesher::drop_small_sheets() {
   DisjointSets sheet(mesh_.cells());
   for (const auto& [a, b] : mesh_.edges()) {
@@ -98,7 +99,7 @@ void Remesher::drop_small_sheets() {
   for (const auto& [size, root] : small) drop(triangles[root]);
 }
 
-// Triangles that stick out of borders, and ends of curves, go where the rest covers what they cover.
+// Removes triangles that protrude from borders, and ends of curves, if the rest covers what they cover.
 void Remesher::trim() {
   for (Index c = 0; c < mesh_.cells(); ++c) {
     if (!mesh_.alive(c)) continue;
@@ -114,8 +115,8 @@ void Remesher::trim() {
   }
 }
 
-// What edges are left by that become curves, and go where they dangle. Corners of the surface that an axis reaches stay
-// reached.
+// Removes triangles. Their edges without triangles become curves, and those that dangle are removed, too. Corners of
+// the surface that the axis reaches stay reached.
 bool Remesher::drop(const std::vector<Index>& triangles) {
   const Unwrapping unwrapping(
       mesh_, triangles, [&](const Edge& side) { return static_cast<int>(cells_at_edge(side[0], side[1]).size()); });
@@ -140,7 +141,7 @@ bool Remesher::drop(const std::vector<Index>& triangles) {
   return true;
 }
 
-// Of the bare edges from `first` on, those with a free end.
+// Removes bare edges from number `first` on that have a free end.
 void Remesher::drop_dangling(Index first) {
   for (bool found = true; found;) {
     found = false;
@@ -154,7 +155,7 @@ void Remesher::drop_dangling(Index first) {
   }
 }
 
-// The last edge of a curve that ends freely.
+// Removes the last edge of a curve that ends freely.
 bool Remesher::drop_end(Index edge) {
   const Cell cell = mesh_.corners(edge);
   const bool first_free = mesh_.cells_at(cell[0]).size() == 1, second_free = mesh_.cells_at(cell[1]).size() == 1;

@@ -15,8 +15,8 @@
 
 namespace orchard::detail {
 
-// The steps of remesh(). Each asks of every change it makes whether what must be kept is kept: nothing folds, no
-// triangle gets worse that was bad, interpolated balls stay right, and what is covered of the surface stays covered.
+// The steps of remesh(). Each checks every change before it makes it: no triangle folds over, bad triangles do not get
+// worse, interpolated balls stay right, and the part of the surface that is covered stays covered.
 class Remesher {
  public:
   Remesher(const Surface& surface, std::span<const Point> places, const BallComplex& complex,
@@ -30,11 +30,13 @@ class Remesher {
   using Cell = SheetMesh::Cell;
   using Edge = SheetMesh::Edge;
 
-  static constexpr double kGoodQuality = 0.4;  // a change may make triangles worse that stay above
-  // Of the length aimed at: longer edges are split, shorter ones drawn together (as Botsch and Kobbelt 2004, in a
-  // narrower band, for triangles come out more even).
+  // A change may make triangles worse as long as their quality stays above this.
+  static constexpr double kGoodQuality = 0.4;
+  // Over the target length: longer edges are split, and shorter ones are collapsed (as in Botsch and Kobbelt 2004; the
+  // band is narrower here because that gives more even triangles).
   static constexpr double kLong = 5.0 / 4, kShort = 0.85;
-  static constexpr double kOnePlace = 0.5;  // of the least length: what is nearer is one place
+  // Of the smallest target length: vertices nearer than this count as being at the same place.
+  static constexpr double kOnePlace = 0.5;
 
   // remesh.cpp
   void widen();
@@ -98,10 +100,10 @@ class Remesher {
   CoverSamples cover_;
   BallSolver solver_;
   SharpEdges sharp_;
-  std::vector<double> target_;        // of each vertex, mesh units: how long edges at it should be
-  std::vector<std::uint8_t> open_;    // of each vertex: whether it may be changed
-  std::vector<std::uint8_t> active_;  // of each vertex: whether something changed near it since it was last moved
-  Index moved_ = 0;                   // vertices, each as often as it was
+  std::vector<double> target_;        // of each vertex: the target length of its edges, in mesh units
+  std::vector<std::uint8_t> open_;    // of each vertex: 1 if it may be changed
+  std::vector<std::uint8_t> active_;  // of each vertex: 1 if something near it has changed since it was last moved
+  Index moved_ = 0;                   // the number of moves of vertices
 };
 
 }  // namespace orchard::detail

@@ -165,7 +165,8 @@ Stratum SheetMesh::stratum(Index v) const {
   return static_cast<Stratum>(stratum_[v]);
 }
 
-// By the vertex's link: the graph of its neighbours, joined by what its triangles have opposite to it.
+// The link of the vertex decides: the graph whose nodes are its neighbours and whose edges are the sides of its
+// triangles opposite to it.
 Stratum SheetMesh::find_stratum(Index v) const {
   if (pinned_[v] != 0 || cells_at_[v].empty()) return Stratum::junction;
   std::vector<Index> around;
@@ -207,7 +208,7 @@ bool SheetMesh::contractible(Index a, Index b) const {
     if (v == b || !std::binary_search(near_b.begin(), near_b.end(), v)) continue;
     if (std::find(on_edge.begin(), on_edge.end(), v) == on_edge.end()) return false;
   }
-  // No edge has a triangle with both.
+  // No edge may form a triangle with both a and b.
   for (const Index c : cells_at_[a]) {
     if (!is_triangle(cells_[c]) || holds(cells_[c], b)) continue;
     std::array<Index, 2> side{kNone, kNone};

@@ -9,7 +9,7 @@
 namespace orchard::detail {
 
 // What a vertex of a medial complex, or the inside of an edge, belongs to. A vertex that belongs to none of the others
-// is a junction: the end of a seam or a curve, a point in which sheets touch, a corner of a border.
+// is a junction, as in structure.h; so is a vertex that was pinned, such as a corner of a border.
 enum class Stratum : std::uint8_t { junction, curve, border, seam, sheet };
 
 // A medial complex that is changed cell by cell. Its cells are those that are part of no larger one: triangles, bare

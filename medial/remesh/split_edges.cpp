@@ -21,7 +21,7 @@ void Remesher::split_wrong() {
     const auto [a, b] = edge;
     if (active_[a] == 0 && active_[b] == 0) continue;
     const double error = errors_.of_edge(a, b);
-    if (error <= options_.tolerance || length(a, b) <= options_.min_length || errors_.goes_through_wall(a, b)) continue;
+    if (error <= options_.tolerance || length(a, b) <= options_.min_length || errors_.crosses_surface(a, b)) continue;
     chosen.push_back({-error, edge});
   }
   std::sort(chosen.begin(), chosen.end());

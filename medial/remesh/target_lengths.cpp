@@ -47,7 +47,7 @@ std::vector<double> target_lengths(const SheetMesh& mesh, const CellErrors& erro
     const double error = std::max(errors.of_edge(a, b, kFine * limits.tolerance), std::numeric_limits<double>::min());
     const double wanted =
         std::clamp(length * std::sqrt(kErrorPart * limits.tolerance / error), limits.least, limits.most);
-    if (wanted < limits.most && error > limits.tolerance && errors.goes_through_wall(a, b)) continue;
+    if (wanted < limits.most && error > limits.tolerance && errors.crosses_surface(a, b)) continue;
     for (const Index v : {a, b}) lengths[v] = std::min(lengths[v], wanted);
   }
   for (Index v = 0; v < mesh.vertices(); ++v) {

@@ -7,7 +7,8 @@
 namespace orchard::detail {
 namespace {
 
-// The vectors to the opposite corners of the triangles at an edge, across the edge, are its heights.
+// The heights of the triangles at an edge are the vectors from the edge to their opposite corners, at right angles to
+// the edge.
 double flatness_at(const SheetMesh& mesh, Index a, Index b, std::span<const Index> opposite,
                    std::vector<Vector>& heights) {
   const Vector along = (mesh.center(b) - mesh.center(a)).normalized();

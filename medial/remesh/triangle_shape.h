@@ -5,18 +5,18 @@
 #include "../triangle_quality.h"
 #include "sheet_mesh.h"
 
-// How well the triangles of a medial complex are shaped.
+// Measures how well the triangles of a medial complex are shaped.
 namespace orchard::detail {
 
 double triangle_quality(const SheetMesh& mesh, const SheetMesh::Cell& cell);
 
-// How much triangles turn at their edges, as cosines: 1 flat, -1 folded onto each other. Where three or more meet, the
-// two that are nearest to each other count.
+// How flat a mesh is at the edges of triangles, as cosines: 1 is flat, and -1 is folded over. Where three or more
+// triangles meet, the two that are nearest to each other count.
 struct Flatness {
   double in_sheets = 1, at_seams = 1;
 
-  // Whether nothing folds that did not before. Sheets may meet at any angle that their solid asks for, but for one at
-  // which they lie on each other.
+  // Whether no edge is folded over that was not before. Sheets may meet at any angle that the solid requires, except
+  // that they must not lie on each other.
   bool keeps(const Flatness& before) const {
     return in_sheets >= std::min(before.in_sheets, kFlat) && at_seams >= std::min(before.at_seams, kApart);
   }
@@ -26,7 +26,7 @@ struct Flatness {
   static constexpr double kApart = -0.9;  // 26 degrees between two sheets
 };
 
-// What cells are like: the worst triangle among them, and the worst edges of these triangles.
+// The shape of some cells: the worst triangle among them, and the worst edges of these triangles.
 struct TriangleShape {
   double quality = 1;  // see triangle_quality()
   Flatness flatness;

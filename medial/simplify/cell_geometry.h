@@ -8,8 +8,8 @@
 
 namespace orchard::detail {
 
-// Where on a cell the ball is that comes nearest to a point: shares of the cell's corners, and |point - centre| -
-// radius. That is convex on a cell, so it has one least value.
+// The ball of a cell that comes nearest to a point: its shares of the cell's corners, and |point - centre| - radius.
+// This is a convex function on a cell, so it has a single minimum.
 struct CellFoot {
   std::array<double, 3> weights{1, 0, 0};
   double value = 0;
@@ -17,7 +17,7 @@ struct CellFoot {
 
 inline double value_of(const Point& query, const Ball4& ball) { return (query - ball.head<3>()).norm() - ball[3]; }
 
-// The balls between two, made ready for many points.
+// The balls between two balls, prepared for many queries.
 class EdgeBalls {
  public:
   EdgeBalls() = default;
@@ -36,8 +36,8 @@ class EdgeBalls {
 
   const Ball4& first() const { return a_; }
 
-  // Along the segment the value is sqrt(height^2 + (t - foot)^2) - r(t), least where the slope of the root is that of
-  // the radius. `share` becomes that of b.
+  // Along the segment, the value sqrt(height^2 + (t - foot)^2) - r(t) is smallest where the slope of the root equals
+  // that of the radius. `share` receives the share of b.
   double value(const Point& query, double& share) const {
     const Vector offset = query - a_.head<3>();
     const double foot = unit_.dot(offset), squared = offset.squaredNorm();
@@ -46,7 +46,8 @@ class EdgeBalls {
       return std::sqrt(squared) - a_[3];
     }
     const double height = std::sqrt(std::max(0.0, squared - foot * foot));
-    const double at = cosine_ > 0 ? foot + lead_ * height : slope_ * length_;  // else one ball holds the other
+    // Otherwise, one of the two balls contains the other.
+    const double at = cosine_ > 0 ? foot + lead_ * height : slope_ * length_;
     if (at <= 0) return share = 0, std::sqrt(squared) - a_[3];
     if (at < length_ && cosine_ > 0) return share = at / length_, cosine_ * height - (a_[3] + slope_ * foot);
     share = 1;
@@ -58,11 +59,11 @@ class EdgeBalls {
   Ball4 a_ = Ball4::Zero();
   Vector unit_ = Vector::Zero();  // from a to b
   double length_ = 0, slope_ = 0, cosine_ = 0, lead_ = 0;
-  double share_of_only_ = 0;  // where both have one centre
+  double share_of_only_ = 0;  // the share if both have the same centre
 };
 
-// The balls over the plane of three, made ready for many points: their radius has a gradient, and the nearest is one
-// step along it from the foot of the perpendicular.
+// The balls over the plane of three balls, prepared for many queries. Their radius has a gradient in the plane, and the
+// nearest ball is one step along it from the foot of the perpendicular.
 class PlaneBalls {
  public:
   PlaneBalls() = default;
@@ -81,9 +82,9 @@ class PlaneBalls {
     gamma_lead_ = across_u_.dot(gradient_) / cosine_;
   }
 
-  // Whether there is a nearest ball over the whole plane.
+  // Whether a nearest ball exists over the whole plane.
   bool has_foot() const { return cosine_ > 0; }
-  // Its shares of b and c, and its value; they are below 0 where it is beyond the edges.
+  // Returns the value of the nearest ball and its shares of b and c. Shares below 0 mean that it lies beyond the edges.
   double value(const Point& query, double& beta, double& gamma) const {
     const Vector offset = query - a_.head<3>();
     const double height = std::abs(unit_.dot(offset));
@@ -100,17 +101,19 @@ class PlaneBalls {
   double cosine_ = 0, beta_lead_ = 0, gamma_lead_ = 0;
 };
 
-// The nearest ball of a triangle. `edge(i)` gives the EdgeBalls from its corner i to the next.
+// Finds the nearest ball of a triangle. `edge(i)` returns the EdgeBalls from corner i to the next one.
 template <class Edge>
 CellFoot foot_on_triangle(const PlaneBalls& plane, const Edge& edge, const Point& query) {
   CellFoot best{.value = std::numeric_limits<double>::infinity()};
-  std::array<double, 3> shares{-1, -1, -1};  // below 0: the nearest of the plane is beyond the edge across
+  // A negative share means that the nearest ball of the plane lies beyond the opposite edge.
+  std::array<double, 3> shares{-1, -1, -1};
   if (plane.has_foot()) {
     const double value = plane.value(query, shares[1], shares[2]);
     shares[0] = 1 - shares[1] - shares[2];
     if (shares[0] >= 0 && shares[1] >= 0 && shares[2] >= 0) return {shares, value};
   }
-  // From the nearest of the plane to that of the triangle the value rises, so no part of the way is in the triangle.
+  // From the nearest ball of the plane to the nearest one of the triangle, the value rises. So the path between them
+  // has no part inside the triangle, and the latter is on an edge that the path crosses.
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     if (shares[k] >= 0) continue;
@@ -125,11 +128,11 @@ CellFoot foot_on_triangle(const PlaneBalls& plane, const Edge& edge, const Point
   return best;
 }
 
-// A cell made ready for many points; smaller ones than triangles repeat their first corner.
+// A cell prepared for many queries. Cells smaller than triangles repeat their first corner.
 class CellBalls {
  public:
   CellBalls(const ContractibleMesh& mesh, const std::array<Index, 3>& corners) : corners_(corners) { prepare(mesh); }
-  // After the balls of the mesh moved.
+  // Call this after the balls of the mesh have moved.
   void prepare(const ContractibleMesh& mesh) {
     const auto& [ia, ib, ic] = corners_;
     const Ball4 &a = mesh.ball(ia), &b = mesh.ball(ib), &c = mesh.ball(ic);

@@ -6,8 +6,9 @@
 
 namespace orchard::detail {
 
-// Moves samples of the surface to where nearby the envelope of the mesh is off the most: `reach` (mesh units) away at
-// first, in ever smaller steps. Those that come to the same place become one. Parallel, deterministic.
+// Moves samples of the surface uphill to nearby places where the envelope of the mesh is farthest off. The first steps
+// have length `reach` (mesh units), and later ones are ever smaller. Samples that arrive at the same place are merged.
+// Parallel, deterministic.
 void climb(const Surface& surface, const ContractibleMesh& mesh, double reach, std::vector<FitSample>& samples);
 
 }  // namespace orchard::detail

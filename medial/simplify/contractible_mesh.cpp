@@ -178,7 +178,7 @@ bool ContractibleMesh::take_free_triangle() {
   return false;
 }
 
-bool ContractibleMesh::fold() {
+bool ContractibleMesh::merge_edges() {
   double min = std::numeric_limits<double>::infinity();
   std::array<Index, 3> best{kNone, kNone, kNone};
   std::vector<Index> common;

@@ -54,11 +54,11 @@ class ContractibleMesh {
   // Returns false if no triangle is left that can be collapsed.
   bool make_contractible();
 
-  // For meshes in which no edge may be contracted, such as rings that share a vertex: folds two edges that share a
-  // vertex onto each other, so that there is one vertex less. Of all pairs, the one whose other ends are nearest. It
-  // is an elementary expansion (a triangle between the two edges) followed by a contraction. Two edges can be folded
-  // only if their other ends are not adjacent and have no other neighbour in common. Returns false if no two can.
-  bool fold();
+  // For meshes in which no edge may be contracted, such as rings that share a vertex: merges two edges that share a
+  // vertex, so that there is one vertex less. Of all such pairs, it takes the one whose other ends are nearest. This is
+  // an elementary expansion (a triangle between the two edges) followed by a contraction. Two edges can be merged only
+  // if their other ends are not adjacent and have no other neighbour in common. Returns false if there are no such two.
+  bool merge_edges();
 
   // The cells that are alive, with vertices renumbered in their order.
   MedialMesh mesh() const;

@@ -83,7 +83,7 @@ void Descent::go_down(Stage& stage, Index count) const {
     const Index before = stage.mesh.living();
     contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
     if (stage.mesh.living() == before) {
-      if (!stage.mesh.make_contractible() && !stage.mesh.fold()) break;
+      if (!stage.mesh.make_contractible() && !stage.mesh.merge_edges()) break;
       stage.feet.feet.clear();  // the cells of some may be gone
     }
     refine(stage, kBetween);
@@ -148,8 +148,9 @@ void Descent::look_closer(Stage& stage, int round) const {
   if (enough > kInvisible * diagonal_) add_dents(stage, round, enough);
 }
 
-// Adds samples for dents, that is, for what the envelope leaves open deep below the surface. Samples on the surface
-// cannot show the depth of a dent: none is as far from the envelope as the dent's bottom is from the surface.
+// Adds samples for dents, that is, for what the reconstruction leaves open deep below the surface. Samples on the
+// surface cannot show the depth of a dent: none is as far from the reconstruction as the dent's bottom is from the
+// surface.
 void Descent::add_dents(Stage& stage, int round, double min_depth) const {
   std::vector<Sphere> balls;  // others in each round, since each dent is found from many balls
   for (std::size_t i = static_cast<std::size_t>(round) % kBallsPerLook; i < axis_balls_.size(); i += kBallsPerLook)

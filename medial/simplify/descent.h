@@ -7,31 +7,33 @@
 
 namespace orchard::detail {
 
-// A medial mesh on its way down, and where it stands to the samples.
+// A medial mesh on its way to fewer vertices, with the feet of the samples on it.
 struct Stage {
   ContractibleMesh mesh;
   std::vector<FitSample> samples;
-  Assignment feet;                                     // of the samples
-  SimplifiedBalls contracted = SimplifiedBalls::free;  // what balls contractions make, before they are fitted
+  Assignment feet;  // of the samples
+  // The kind of balls that contractions make before they are fitted.
+  SimplifiedBalls contracted = SimplifiedBalls::free;
 };
 
-// The way from a medial mesh to ever fewer vertices.
+// Reduces a medial mesh to fewer and fewer vertices.
 class Descent {
  public:
   Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options, const Progress& progress);
 
-  // Contractions that make free balls see farther, those that make medial ones leave less to be mended: either may come
-  // nearer in the end.
+  // Starts with all vertices. Contractions to free balls optimise over more balls, and those to medial balls leave less
+  // to repair afterwards. Either may lead to the better result.
   Stage start(SimplifiedBalls contracted) const;
-  // Contracts until `count` vertices are left, or nothing may be contracted; fits in between.
+  // Contracts until `count` vertices are left or no edge may be contracted, and fits the balls in between.
   void go_down(Stage& stage, Index count) const;
-  // The balls fitted as well as they can be, and vertices moved to where they are needed: no more than there are.
+  // Returns the stage with balls that are fitted as well as possible, and with vertices moved to where they reduce the
+  // error. Their number does not grow.
   Stage finished(Stage stage) const;
   SimplifiedMedialMesh measured(const Stage& stage) const;
 
  private:
   void contract(Stage& stage, Index count) const;
-  // Looks at other places of the surface, new ones in each round, and adds those that are off the most to the samples.
+  // Examines other places of the surface, new ones in each round, and adds the worst of them to the samples.
   void look_closer(Stage& stage, int round) const;
   void add_dents(Stage& stage, int round, double min_depth) const;
   void add(Stage& stage, std::span<const FitSample> samples) const;
@@ -43,7 +45,7 @@ class Descent {
   const double diagonal_;
   Index vertices_before_ = 0;
   ContractibleMesh whole_;
-  std::vector<Sphere> axis_balls_;  // of the mesh at the beginning
+  std::vector<Sphere> axis_balls_;  // the balls of the mesh at the beginning
 };
 
 }  // namespace orchard::detail

@@ -11,7 +11,7 @@ namespace orchard {
 EnvelopeMesh envelope_mesh(const MedialMesh& mesh, const EnvelopeOptions& options, const Progress& progress) {
   validate(mesh);
   if (!(options.cell >= 1e-4 && options.cell <= 0.5))
-    throw InputError("cells of the envelope: between 0.0001 and 0.5 diagonals");
+    throw InputError("the cells of the envelope must be between 0.0001 and 0.5 diagonals");
   Box box;
   for (Index v = 0; v < mesh.size(); ++v) {
     box.extend(mesh.centers[v] + Vector::Constant(mesh.radii[v]));

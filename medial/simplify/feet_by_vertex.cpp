@@ -3,7 +3,7 @@
 namespace orchard::detail {
 namespace {
 
-// The foot's cell after b became a.
+// Updates the cell of a foot after vertex b has been contracted into a.
 void follow(Foot& foot, Index a, Index b) {
   std::size_t of_a = 3, of_b = 3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -15,7 +15,7 @@ void follow(Foot& foot, Index a, Index b) {
     if (corner == b) corner = a;
   }
   if (of_a == 3) return;
-  // Smaller cells repeat their first corner.
+  // Cells smaller than triangles repeat their first corner.
   Index other = kNone;
   double share = 0;
   for (std::size_t k = 0; k < 3; ++k) {

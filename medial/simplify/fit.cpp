@@ -14,13 +14,13 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
-constexpr std::size_t kInTurn = 64;      // samples that one task takes, one after the other
-constexpr double kExact = 0.5;           // of the largest distance: smaller ones need not be exact
-constexpr double kHardly = 0.02;         // of the largest distance: balls that protrude by no more are left alone
-constexpr double kVolume = 0.01;         // of the solid's volume: what may be missing, or too much
-constexpr double kVolumeWeight = 1;      // of all other costs at the beginning: what that much counts
-constexpr double kInsideSurface = 1e-7;  // bounding radii: so far inside the surface centres are put that were outside
-constexpr double kFloor = 1e-3;          // share of the weight that small distances keep at high powers
+constexpr std::size_t kInTurn = 64;      // the number of samples of one task, which are processed in order
+constexpr double kExact = 0.5;           // of the largest distance: smaller distances do not have to be exact
+constexpr double kHardly = 0.02;         // of the largest distance: balls that protrude by less are not moved for that
+constexpr double kVolume = 0.01;         // of the solid's volume: the scale on which a missing or surplus volume counts
+constexpr double kVolumeWeight = 1;      // over all other costs at the beginning: the cost of that much volume
+constexpr double kInsideSurface = 1e-7;  // in bounding radii: centres outside are put this far inside the surface
+constexpr double kFloor = 1e-3;          // the share of the weight that small distances keep at high powers
 
 LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
   LookOptions look(surface, samples[0].weight);
@@ -99,7 +99,7 @@ class Fitter {
     if (volume_weight_ > 0) sum += volume_weight_ * volume_error() * volume_error();
     return sum;
   }
-  // What is missing to the solid's volume, as far as samples tell: over what may be missing.
+  // Returns the missing volume as a multiple of the scale above, as estimated from the samples.
   double volume_error() const {
     double sum = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) sum += samples_[i].area * feet_.feet[i].value;
@@ -109,8 +109,8 @@ class Fitter {
 
   std::vector<Protrusion> protruding() { return find_protrusions(surface_, mesh_, places_, negligible_, inside_); }
 
-  // The distance |p - c| - r changes by -(u, 1) * (dc, dr); where p is outside, and as near as c is thick, the
-  // curvature of |p - c| counts, too.
+  // The distance |p - c| - r changes by -(u, 1) * (dc, dr). If p is outside and no farther away than the radius of c,
+  // the curvature of |p - c| counts, too.
   void assemble() {
     equations_.clear();
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -137,12 +137,12 @@ class Fitter {
       equations_.add(protrusion.corners, protrusion.weights, weight * (options_.power - 1) * row * row.transpose(),
                      -weight * protrusion.value * row);
     }
-    // As the other sums, over power / scale^2.
+    // It is scaled as the other sums are, over power / scale^2.
     if (volume_weight_ > 0)
       equations_.add_square(2 * volume_weight_ * scale_ * scale_ / options_.power, volume_error());
   }
 
-  // Radii stay at 0 that would fall below.
+  // Moves the balls. A radius that would fall below 0 becomes 0.
   void move(const std::vector<Ball4>& before, double damping) {
     std::vector<std::uint8_t> held(mesh_.size(), 0);
     for (Index v = 0; v < mesh_.size(); ++v)
@@ -173,13 +173,13 @@ class Fitter {
   const bool medial_;
   const FitOptions options_;
   FootWalker walker_;
-  const std::vector<Protrusion> places_;  // values not known
-  std::vector<InsideBall> inside_;        // for each of them
+  const std::vector<Protrusion> places_;  // the places of balls that may protrude; their values are not set
+  std::vector<InsideBall> inside_;        // the ball inside the solid that was last found for each of them
   NormalEquations equations_;
   std::vector<Protrusion> protrusions_;
   double scale_ = 1, negligible_ = 0;
-  const double volume_factor_;  // of weighted sums of distances, to what is missing over what may be missing
-  double volume_weight_ = 0;    // of the square of what is missing over what may be, in the sum; 0: it does not count
+  const double volume_factor_;  // from weighted sums of distances to multiples of the volume scale
+  double volume_weight_ = 0;    // the weight of the squared volume error in the sum; 0 if it does not count
 };
 
 }  // namespace

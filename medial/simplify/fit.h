@@ -40,7 +40,7 @@ struct FitOptions {
   bool middles = true;  // also test balls in the middles of cells, which may protrude where no sample is
 };
 
-// Moves the balls of a medial mesh, whose cells stay, so that the boundary of its envelope comes near the samples and
+// Moves the balls of a medial mesh, whose cells stay, so that its envelope comes near the samples and
 // no vertex's ball protrudes. It takes Levenberg-Marquardt steps in which every sample keeps its foot; powers above 2
 // are reached by changing the samples' weights. If balls have to be medial, they are made so again after each step. The
 // volume, as far as all samples together determine it, counts, too. `feet` must be on cells of the mesh, or empty; they

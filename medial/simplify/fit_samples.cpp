@@ -9,8 +9,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kPointed = 0.35;  // radians between the normals of a corner and of a triangle at it: no flat place
-constexpr double kSharp = 0.5;     // radians between the normals at an edge
+// Radians between the normals of a corner and of its triangles: above this, the corner is not flat.
+constexpr double kPointed = 0.35;
+constexpr double kSharp = 0.5;  // radians between the normals at an edge
 
 struct Pointed {
   double angle = 0;
@@ -21,7 +22,7 @@ Feature vertex_feature(std::size_t corner) {
   return static_cast<Feature>(static_cast<std::size_t>(Feature::vertex0) + corner);
 }
 
-// The corners of the mesh that are not flat, the most pointed first.
+// Returns the corners of the mesh that are not flat, the most pointed ones first.
 std::vector<Pointed> pointed_corners(const Surface& surface) {
   std::vector<Pointed> corners;
   const auto& mesh = surface.mesh();
@@ -42,7 +43,7 @@ std::vector<Pointed> pointed_corners(const Surface& surface) {
   return corners;
 }
 
-// Along each sharp edge, about as far apart as `spacing`.
+// Adds samples along each sharp edge, about `spacing` apart.
 void add_edges(const Surface& surface, double spacing, std::vector<FitSample>& out) {
   for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
     const auto corners = surface.corners(t);
@@ -58,7 +59,7 @@ void add_edges(const Surface& surface, double spacing, std::vector<FitSample>& o
   }
 }
 
-// `most` of them at even steps.
+// Keeps at most `max` samples, at even steps.
 void thin_out(std::vector<FitSample>& samples, std::size_t max) {
   if (samples.size() <= max) return;
   for (std::size_t i = 0; i < max; ++i) samples[i] = samples[i * samples.size() / max];

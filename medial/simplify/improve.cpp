@@ -49,13 +49,9 @@ class Insertion {
       const bool near_another =
           std::any_of(foot.corners.begin(), foot.corners.end(), [&](Index v) { return touched_[v] != 0; });
       if (near_another) continue;
-      if (sample != nullptr && foot.value > 0 && reach_out(*sample, foot)) {
-        ++done;
-      } else if (divide(foot)) {
-        ++done;
-      } else {
-        continue;
-      }
+      const bool reached = sample != nullptr && foot.value > 0 && reach_out(*sample, foot);
+      if (!reached && !divide(foot)) continue;
+      ++done;
       for (const Index v : foot.corners) touched_[v] = 1;
     }
     // Cells of feet may be divided, so feet are assigned to vertices, which remain.

@@ -10,21 +10,23 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kLipschitzSlack = 1e-9;  // above what rounding can do to a bound
-constexpr double kFromEdgeEnd = 1e-4;     // of a grid edge: no vertex is nearer to its ends, so that none coincide
-constexpr int kIllinoisSteps = 40;        // of the search for a vertex
-constexpr double kOnSurface = 1e-9;       // cells
+constexpr double kLipschitzSlack = 1e-9;  // larger than the rounding error of a bound
+// Of a grid edge: vertices are at least this far from its ends, so that no two coincide.
+constexpr double kFromEdgeEnd = 1e-4;
+constexpr int kIllinoisSteps = 40;   // maximum number of steps in the search for a vertex
+constexpr double kOnSurface = 1e-9;  // cells
 
 using Lattice = std::array<std::uint32_t, 3>;
 
-// Lattice places as sortable numbers; the lowest three bits are left for the edges that start there.
+// Returns a place of the lattice as a number by which places can be sorted. The lowest three bits are free for the
+// edges that start there.
 std::uint64_t key_of(const Lattice& at) { return (((std::uint64_t{at[0]} << 20) | at[1]) << 20 | at[2]) << 3; }
 Lattice lattice_of(std::uint64_t key) {
   constexpr std::uint64_t kMask = (1u << 20) - 1;
   return {static_cast<std::uint32_t>(key >> 43 & kMask), static_cast<std::uint32_t>(key >> 23 & kMask),
           static_cast<std::uint32_t>(key >> 3 & kMask)};
 }
-// The corner of a cube, one bit an axis.
+// Returns the corner of a cube, given one bit for each axis.
 Lattice corner_of(const Lattice& cube, unsigned bits) {
   return {cube[0] + (bits & 1), cube[1] + (bits >> 1 & 1), cube[2] + (bits >> 2 & 1)};
 }
@@ -34,7 +36,7 @@ void sort_unique_keys(std::vector<std::uint64_t>& keys) {
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-// Corners of a tetrahedron ascend along the cube's diagonal, so each edge starts at the lower one.
+// The corners of a tetrahedron ascend along the diagonal of the cube, so each edge starts at its lower corner.
 std::uint64_t edge_of(const Lattice& cube, unsigned from, unsigned to) {
   if (from > to) std::swap(from, to);
   return key_of(corner_of(cube, from)) | (to ^ from);
@@ -66,7 +68,7 @@ TriangleMesh LevelSet::mesh() {
 
 Point LevelSet::place(const Lattice& at) const { return origin_ + cell_ * Vector(at[0], at[1], at[2]); }
 
-// All smallest cubes that the surface can meet: the distance is 1-Lipschitz.
+// Finds all of the smallest cubes that the surface may pass through. This works because the function is 1-Lipschitz.
 void LevelSet::find_cubes() {
   cubes_ = {0};
   for (int level = levels_; level >= 0; --level) {
@@ -113,7 +115,8 @@ double LevelSet::value_at(std::uint64_t corner) const {
                                           corners_.begin())];
 }
 
-// Kuhn's six tetrahedra, one for each order of the axes on the way from a cube's first corner to its last.
+// Divides each cube into Kuhn's six tetrahedra, one for each order of the axes on the way from the first corner of the
+// cube to its last.
 void LevelSet::cut_cubes() {
   std::array<int, 3> axes{0, 1, 2};
   std::array<std::array<unsigned, 4>, 6> tetrahedra{};
@@ -145,7 +148,8 @@ void LevelSet::cut(const Lattice& cube, const std::array<unsigned, 4>& corners, 
   }
   if (count_in == 0 || count_out == 0) return;
   const auto between = [&](std::size_t i, std::size_t k) { return edge_of(cube, corners[i], corners[k]); };
-  // Whether the order of the corners (inner ones first) is that of the tetrahedron, up to an even permutation.
+  // Whether the order of the corners, with the inner ones first, is an even permutation of the order in the
+  // tetrahedron.
   std::array<std::size_t, 4> order{};
   std::copy_n(in.begin(), count_in, order.begin());
   std::copy_n(out.begin(), count_out, order.begin() + static_cast<std::ptrdiff_t>(count_in));
@@ -186,7 +190,7 @@ TriangleMesh LevelSet::place_vertices() const {
   return result;
 }
 
-// Where the surface crosses an edge, by the Illinois method.
+// Finds the place where the surface crosses an edge by the Illinois method.
 Point LevelSet::vertex_on(std::uint64_t edge) const {
   const Lattice from = lattice_of(edge);
   const unsigned bits = static_cast<unsigned>(edge & 7);
@@ -214,8 +218,8 @@ Point LevelSet::vertex_on(std::uint64_t edge) const {
   return a + share * (b - a);
 }
 
-// Whether a place of the lattice is inside. Cubes that the surface cannot meet have no corners here, but those of
-// their neighbours.
+// Whether a place of the lattice is inside. Cubes that the surface cannot pass through have no values here, but their
+// neighbours do.
 bool LevelSet::inside(const Lattice& at) const {
   const std::uint64_t key = key_of(at);
   const auto found = std::lower_bound(corners_.begin(), corners_.end(), key);

@@ -9,27 +9,31 @@
 
 namespace orchard::detail {
 
-// The surface where a function is zero, as a closed manifold mesh that faces where it is positive.
+// Meshes the surface where a function is zero. The mesh is closed and manifold, and faces the side where the function
+// is positive.
 //
-// The signs at the corners of a grid decide, whose cubes are halved where the function may be zero. Each of the
-// smallest cubes is cut into six tetrahedra, which fit together; the part of the surface in each is one triangle or
+// The signs at the corners of a grid decide. The cubes of the grid are halved where the function may be zero. Each of
+// the smallest cubes is cut into six tetrahedra, which fit together; the part of the surface in each is one triangle or
 // two, with corners on its edges. So the mesh is closed, manifold and without self-intersections for every function.
 // - Parts thinner than a cell may be lost, and edges are cut off by less than a cell.
-// - No place of the mesh has a value farther from 0 than a cell: it is no farther than that from a corner of its
-//   triangle, whose value is 0 up to rounding.
-// - A place with a value beyond sqrt(3) cells, the diameter of a cube, is on the side of the mesh that its sign says.
+// - Values at places of the mesh differ from 0 by less than a cell, because such a place is nearer than that to a
+//   corner of its triangle, where the value is 0 up to rounding.
+// - A place whose value is more than sqrt(3) cells, the diameter of a cube, away from 0 is on the side of the mesh that
+//   its sign tells.
 class LevelSet {
  public:
-  // `value`: 1-Lipschitz, and safe to call from many threads; above 0 outside `box`. `cell`: the edge length of the
-  // cubes, below 2^-20 of which the box has no more than.
+  // `value` has to be 1-Lipschitz, safe to call from several threads, and positive outside `box`. `cell` is the edge
+  // length of the smallest cubes; the box must be less than 2^20 of them wide.
   LevelSet(std::function<double(const Point&)> value, const Box& box, double cell, const Progress& progress,
            const char* stage);
 
-  // No triangles if no corner of the grid is inside. Parallel; the same result for any number of threads.
+  // Returns a mesh without triangles if no corner of the grid is inside. Parallel; the result is the same for any
+  // number of threads.
   TriangleMesh mesh();
 
-  // After mesh(): whether a part of the inside around `place` was lost: the cube there is one that the surface can
-  // meet, with no corner inside, nor at its neighbours. Precondition: `place` is in the box.
+  // Call this after mesh(). Returns whether a part of the inside around `place` was lost, which is so if the surface
+  // may pass through the cube there but no corner of it or of its neighbours is inside. Precondition: `place` is in the
+  // box.
   bool lost_at(const Point& place) const;
 
  private:

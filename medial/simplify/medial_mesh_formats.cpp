@@ -67,7 +67,7 @@ std::string to_ply(const MedialMesh& mesh, const AxisContacts* contacts) {
     std::string line;
     append_place(line, mesh.centers[v]);
     append_number(line, mesh.radii[v]);
-    text.append(line, 1);  // without the first blank
+    text.append(line, 1);  // skips the first blank
     text += '\n';
   }
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
@@ -100,14 +100,14 @@ std::string to_obj(const MedialMesh& mesh) {
     group += '\n';
   }
   for (Index i = 0; i < sheets; ++i) text += "g sheet" + std::to_string(i) + '\n' + groups[i];
-  std::string wires;
+  std::string curves;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     if (!structure.on_curve(e)) continue;
-    wires += 'l';
-    for (const Index corner : mesh.edges[e]) append_number(wires, corner + 1);
-    wires += '\n';
+    curves += 'l';
+    for (const Index corner : mesh.edges[e]) append_number(curves, corner + 1);
+    curves += '\n';
   }
-  if (!wires.empty()) text += "g wires\n" + wires;
+  if (!curves.empty()) text += "g curves\n" + curves;
   return text;
 }
 

@@ -27,7 +27,7 @@ double ProtrusionCost::value(const Protrusion& place, const Ball4& ball) {
   return protrusion_of(surface_, ball, negligible_, known_at(place, ball.head<3>()), outward);
 }
 
-// Of a corner of the place's cell, one that holds it if there is any.
+// Returns the known ball for a corner of the place's cell, preferably one that contains the place.
 InsideBall& ProtrusionCost::known_at(const Protrusion& place, const Point& center) {
   for (const Index corner : place.corners) {
     if (inside_[corner].holds(center)) return inside_[corner];

@@ -24,7 +24,7 @@ double ShapeCost::added(Index a, Index b, const Ball4& ball) const {
         after[i] = corners[i] == end ? center : before[i];
         vanishes = vanishes || corners[i] == other;
       }
-      if (vanishes && end == b) continue;  // counted with a
+      if (vanishes && end == b) continue;  // it is counted together with a
       sum -= 1 - triangle_quality(before[0], before[1], before[2]);
       if (!vanishes) sum += 1 - triangle_quality(after[0], after[1], after[2]);
     }

@@ -26,11 +26,12 @@ void check(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions
                      "; repair the mesh first");
   }
   validate(mesh);
-  if (options.samples == 0 || options.check == 0) throw InputError("samples of simplifying: at least 1");
-  if (options.rounds < 0) throw InputError("rounds of simplifying: not negative");
+  if (options.samples == 0 || options.check == 0)
+    throw InputError("the number of samples for simplifying must be at least 1");
+  if (options.rounds < 0) throw InputError("the number of rounds of simplifying must be at least 0");
 }
 
-// One ball for a component that has nothing but it.
+// Whether a component consists of a single ball.
 bool is_single_ball(const ContractibleMesh& mesh) { return mesh.living() == 1; }
 
 SimplifiedMedialMesh finish(const Surface& surface, const MedialMesh& whole, const Descent& descent, Stage stage) {
@@ -53,8 +54,9 @@ std::string too_few(Index wanted, Index reached, Index least) {
          std::to_string(reached);
 }
 
-// Which numbers of vertices are tried for every larger one, too: half-powers of 2. More vertices may find worse places
-// than fewer did; so the distance does not rise with their number.
+// Returns a number of vertices, a half power of 2, that is tried for every larger number as well. Otherwise more
+// vertices might give a worse result than fewer did; in this way, the distance does not rise with the number of
+// vertices.
 Index rung_below(Index count) {
   Index rung = 1;
   for (int k = 0;; ++k) {
@@ -73,8 +75,9 @@ SimplifiedMedialMesh nearer(SimplifiedMedialMesh more, SimplifiedMedialMesh fewe
   return fewer.report.upper <= more.report.upper ? std::move(fewer) : std::move(more);
 }
 
-// The fewest vertices whose two-sided distance is proved to be within the limit, to a fiftieth, by bisection of their
-// number: as a rule the distance falls with it. To tell 20,000 from 20,001 would take as long as all that comes before.
+// Finds the fewest vertices whose two-sided distance is proved to be within the limit, to a fiftieth, by bisection of
+// their number, since the distance usually falls as the number grows. To tell 20,000 from 20,001 would take as long as
+// all the steps before.
 class FewestWithin {
  public:
   FewestWithin(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options, const Progress& progress)
@@ -85,10 +88,10 @@ class FewestWithin {
         descent_(surface, mesh, options, progress) {}
 
   SimplifiedMedialMesh run() {
-    Index high = mesh_.size(), low = 1;  // `high` is enough, as far as is known; one less than `low` is not
+    Index high = mesh_.size(), low = 1;  // `high` vertices suffice as far as is known, and `low - 1` do not
     std::optional<SimplifiedMedialMesh> best;
     double min = std::numeric_limits<double>::infinity();
-    // From few to many at first: few take less time.
+    // The first steps go from few to many, because few vertices take less time.
     Index next = std::min<Index>(high, kFirst);
     while (low <= high && !(best && high - low < low / kFiftieth)) {
       report_progress(progress_, kSimplifyingStage, progress_of(low, high));
@@ -96,7 +99,7 @@ class FewestWithin {
       min = std::min(min, result.report.upper);
       if (result.report.upper <= options_.error) {
         high = next - 1;
-        const bool fewest = result.report.vertices > next || next == 1;  // the topology allows no less
+        const bool fewest = result.report.vertices > next || next == 1;  // the topology does not allow fewer
         best = std::move(result);
         if (fewest) break;
       } else {
@@ -105,9 +108,10 @@ class FewestWithin {
       next = best ? middle(low, high) : std::max(low, std::min<Index>(high, next * 2));
     }
     if (!best) {
-      throw InputError("error " + percent(options_.error) +
-                       " of the diagonal: no number of vertices of this axis is proved to come nearer than " +
-                       percent(min) + "; allow more, or refine the axis further");
+      throw InputError(
+          "error " + percent(options_.error) +
+          " of the diagonal cannot be kept: no number of vertices of this axis is proved to come nearer than " +
+          percent(min) + "; allow more, or refine the axis further");
     }
     return std::move(*best);
   }
@@ -124,7 +128,7 @@ class FewestWithin {
     return 1 - std::log(static_cast<double>(high) / low + 1) / std::log(static_cast<double>(mesh_.size()) + 1);
   }
 
-  // From the nearest stage above that was met on the way.
+  // Starts at the nearest stage with more vertices that has been reached before.
   Stage stage_of(Index count) {
     const auto found = stages_.lower_bound(count);
     Stage stage = found == stages_.end() ? descent_.start(SimplifiedBalls::free) : found->second;
@@ -147,7 +151,7 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
                                           const SimplifyOptions& options, const Progress& progress) {
   check(surface, mesh, options);
   if (options.vertices == 0) {
-    if (!(options.error > 0)) throw InputError("simplifying: a number of vertices, or an error above 0");
+    if (!(options.error > 0)) throw InputError("simplifying needs a number of vertices, or an error above 0");
     return FewestWithin(surface, mesh, options, progress).run();
   }
   report_progress(progress, kSimplifyingStage, 0);
@@ -161,7 +165,7 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
       descent.go_down(stage, count);
       reached = std::min(reached, stage.mesh.living());
       if (stage.mesh.living() > count) break;
-      if (best && stage.mesh.living() == before) break;  // the same again
+      if (best && stage.mesh.living() == before) break;  // it is the same stage again
       SimplifiedMedialMesh result = finish(surface, mesh, descent, stage);
       best = best ? nearer(std::move(*best), std::move(result)) : std::move(result);
     }

@@ -20,7 +20,7 @@ constexpr double kOwn = 0.7;
 // so none of the ridges that come to the tip of a cone or into the corners of a plate is taken for the end.
 constexpr double kRival = 0.5, kSure = 0.25;
 
-// The length of the mean front up to which fires meet at a place, and from which one fire passes.
+// The length of the mean front below which fires meet at a place, and above which a single fire passes.
 constexpr double kFiresMeet = 0.3, kFirePasses = 0.7;
 
 class CurveBurner {
@@ -69,10 +69,10 @@ class CurveBurner {
     return std::isnan(burn_.isolated[edge]) ? removed_at_[edge] : removed_at_[edge] - burn_.isolated[edge];
   }
   bool is_bare(Index edge) const { return at_.triangles_at[edge].empty(); }
-  // How long the fire takes along an edge from its end: where fires meet head-on, as long as the edge; elsewhere, as
-  // far as the edge runs along with the mean front. Where fires meet at an angle, that front runs along the curve on
-  // which they meet, and edges of the triangulation wind around it. Where one fire passes, this is how long it takes
-  // itself.
+  // Returns how long the fire takes along an edge from its end. Where fires meet head-on, this is the length of the
+  // edge. Elsewhere, it is the extent of the edge along the mean front, because fires that meet at an angle have a mean
+  // front along the curve on which they meet, while edges of the triangulation zigzag around that curve. Where a single
+  // fire passes, it is the time that this fire takes.
   double duration(Index edge, Index end) const {
     const Index inner = other_end(edge, end);
     const Vector front = 0.5 * (burn_.vertex_fronts[end] + burn_.vertex_fronts[inner]);
@@ -92,7 +92,7 @@ class CurveBurner {
     return degrees;
   }
 
-  // Everything that has an end, in the order of the times.
+  // Burns all edges that have a free end, in the order of their times.
   void burn_all() {
     std::vector<Index> degree = degrees();
     std::vector<std::uint8_t> alive = burn_.edge_alive;
@@ -108,7 +108,7 @@ class CurveBurner {
     while (!queue.empty()) {
       const auto [time, edge] = queue.top();
       queue.pop();
-      if (!alive[edge]) continue;  // it burned from its other end
+      if (!alive[edge]) continue;  // it has burned from its other end
       const auto [a, b] = mesh_.edges[edge];
       const Index end = degree[a] != 1 ? b : degree[b] != 1 ? a : exposed[b] < exposed[a] ? b : a;
       const Index inner = other_end(edge, end);

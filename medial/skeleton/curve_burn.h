@@ -7,11 +7,11 @@
 
 namespace orchard::detail {
 
-// The curves that are left of a burned complex after insignificant ones were removed.
+// The curves that remain of a burned complex after insignificant ones have been removed.
 struct PrunedCurves {
   std::vector<std::uint8_t> edge_alive, vertex_alive;
-  // The time between the fire of the sheets and that of the curves at each edge; infinite for edges that no fire of
-  // curves reaches.
+  // Of each edge, the time between the fire of the sheets and that of the curves. It is infinite for edges that the
+  // fire of the curves does not reach.
   std::vector<double> significance;
 };
 

@@ -16,7 +16,7 @@
 namespace orchard {
 namespace {
 
-constexpr double kMaxMove = 2;  // edge lengths: how far straightening moves a vertex
+constexpr double kMaxMove = 2;  // in edge lengths: the farthest that straightening moves a vertex
 
 void require_skeleton_options(const SkeletonOptions& options) {
   if (!(options.erosion >= 0 && std::isfinite(options.erosion)))
@@ -28,7 +28,7 @@ void require_skeleton_options(const SkeletonOptions& options) {
   if (options.smoothing < 0) throw InputError("skeleton: smoothing must be at least 0");
 }
 
-// What is left of a divided axis, with the vertices that are used renumbered.
+// Collects the rest of a burned complex, with its vertices renumbered.
 class SkeletonMaker {
  public:
   SkeletonMaker(const MedialMesh& fine, const detail::CellIncidence& at, const detail::SheetBurn& burn,
@@ -76,7 +76,7 @@ class SkeletonMaker {
   CurveSkeleton result_;
 };
 
-// Ends of curves, curves of the axis and corners of closed sheets stay where they are.
+// Ends of curves, curves of the axis and corners of closed sheets are not moved.
 std::vector<std::uint8_t> fixed_vertices(const CurveSkeleton& skeleton, const std::vector<std::uint8_t>& bare) {
   std::vector<std::uint8_t> fixed(skeleton.vertices.size(), 0), degree(skeleton.vertices.size(), 0);
   for (std::size_t e = 0; e < skeleton.edges.size(); ++e) {

@@ -9,11 +9,12 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kMaxDivided = 2e6;  // triangles
-// Of the squared longest edge: the area of a triangle after edges were halved, on average.
+constexpr double kMaxDivided = 2e6;  // the maximum number of triangles
+// The average area of a triangle after edges have been halved until they are short enough, over the squared longest
+// edge.
 constexpr double kAreaOfDivided = 0.2;
 
-// The vertex at the middle of each edge that is too long, which is added to the mesh; kNone for the others.
+// Adds a vertex at the middle of each edge that is too long, and returns it for each edge; kNone for the others.
 std::vector<Index> add_middles_of_long(MedialMesh& mesh, double length) {
   std::vector<Index> middles(mesh.edges.size(), kNone);
   for (Index e = 0; e < mesh.edges.size(); ++e) {
@@ -26,7 +27,8 @@ std::vector<Index> add_middles_of_long(MedialMesh& mesh, double length) {
   return middles;
 }
 
-// Appends the pieces of triangle abc with the middles of its edges, of which some are kNone.
+// Appends the pieces into which triangle abc is divided at the middles of its edges. Edges that are not divided have
+// kNone.
 void add_pieces(const MedialMesh& mesh, std::array<Index, 3> abc, std::array<Index, 3> middles_ab_bc_ca,
                 std::vector<std::array<Index, 3>>& pieces) {
   auto [ab, bc, ca] = middles_ab_bc_ca;
@@ -36,7 +38,7 @@ void add_pieces(const MedialMesh& mesh, std::array<Index, 3> abc, std::array<Ind
     pieces.push_back(abc);
     return;
   }
-  // Turned until the last edge is whole if one is, and the first one is divided.
+  // The corners are rotated until the first edge is divided and the last one is not, if there is such an edge.
   while (count < 3 && !(ca == kNone && ab != kNone)) {
     abc = {abc[1], abc[2], abc[0]};
     std::tie(ab, bc, ca) = std::tuple(bc, ca, ab);
@@ -78,7 +80,7 @@ MedialMesh divided(const MedialMesh& mesh, double length) {
       const auto [ab, ac, bc] = at.sides[t];
       add_pieces(fine, fine.triangles[t], {middles[ab], middles[bc], middles[ac]}, triangles);
     }
-    std::vector<std::array<Index, 2>> edges;  // those of triangles are added again
+    std::vector<std::array<Index, 2>> edges;  // the edges of triangles are added again later
     for (Index e = 0; e < middles.size(); ++e) {
       if (!at.triangles_at[e].empty()) continue;
       const auto [a, b] = fine.edges[e];

@@ -14,10 +14,10 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kNotBurned = std::numeric_limits<double>::infinity();
-// The corners at the ends of side i of a triangle, and the one across from it (CellIncidence::sides).
+// The corners at the ends of side i of a triangle, and the corner opposite to it (CellIncidence::sides).
 constexpr std::array<std::array<Index, 3>, 3> kCornersOfSide{{{0, 1, 2}, {0, 2, 1}, {1, 2, 0}}};
 
-// When a straight front that is at a and b at the given times reaches c.
+// Returns when a straight front that is at a and b at the given times arrives at c.
 double arrival_at(const Point& a, double time_a, const Point& b, double time_b, const Point& c) {
   const Vector along = b - a, to = c - a;
   const double length = along.norm(), slope = (time_b - time_a) / length;
@@ -28,7 +28,7 @@ double arrival_at(const Point& a, double time_a, const Point& b, double time_b, 
   return source >= 0 && source <= length ? time_a + slope * x + rise * y : by_edges;
 }
 
-// The gradient of times that are linear in a triangle; no longer than 1, as no fire is slower.
+// Returns the gradient of times that are linear in a triangle. It is at most 1 long, since no fire is slower than that.
 Vector gradient_of(const std::array<Point, 3>& corners, const std::array<double, 3>& times) {
   const Vector e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], normal = e1.cross(e2);
   const double squared = normal.squaredNorm();
@@ -76,7 +76,7 @@ class SheetBurner {
   double& arrival(Index corner) { return arrivals_[sectors_.root(corner)]; }
   void arrive(Index corner, double time) { arrival(corner) = std::min(arrival(corner), time); }
 
-  // The corners around a vertex that are joined across edges with two triangles burn as one.
+  // The corners around a vertex that are connected across edges with two triangles burn together.
   void join_sectors() {
     for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
       const auto triangles = at_.triangles_at[edge];
@@ -97,7 +97,8 @@ class SheetBurner {
     for (const Index edge : at_.border_edges()) offer(edge, at_.triangles_at[edge][0]);
   }
 
-  // Of the sides that no other triangle has any more, the one that the fire reached first.
+  // Returns the side that the fire reached first, among those that no other triangle has any more; kNone if there is
+  // none.
   Index first_free_side(Index triangle) {
     Index best = kNone;
     std::pair<double, double> least;
@@ -119,7 +120,7 @@ class SheetBurner {
                       at[corners[m]]);
   }
 
-  // By the time at which all corners burn.
+  // Puts a triangle into the queue at the time at which all of its corners burn.
   void offer(Index edge, Index triangle) {
     const auto& [i, k, m] = kCornersOfSide[side_of(triangle, edge)];
     const double across = std::min(arrival(3 * triangle + m), time_across(triangle, edge));
@@ -143,7 +144,7 @@ class SheetBurner {
     }
   }
 
-  // Into the last sheet at an edge, when the others are burned.
+  // Lets the fire go on into the last sheet at an edge after the others have burned.
   void cross(Index edge, Index next) {
     for (const Index vertex : mesh_.edges[edge]) {
       double latest = 0;

@@ -7,7 +7,7 @@
 
 namespace orchard::detail {
 
-// What is left of a complex after its sheets burned from their borders, and when that was.
+// The rest of a complex after its sheets have burned from their borders, and the times of the fire.
 struct SheetBurn {
   // The time at which each edge lost its last triangle; its mean radius for an edge that had none. It is NaN for an
   // edge that is gone or still has triangles.
@@ -21,11 +21,11 @@ struct SheetBurn {
   std::vector<Vector> vertex_fronts;
 };
 
-// Burns the triangles of a complete mesh. Every triangle disappears with an edge that no other triangle has any more,
-// in an elementary collapse, so what is left has the homotopy type of the mesh. All vertices stay.
-// Of several such edges it is the one that burned first, so that what is left runs along with the fire.
-// The front is computed in the plane of each triangle, as a straight one between the times at the two ends of an edge.
-// Where at least three sheets meet, the fire goes on into the last of them when the others are burned. O(n log n).
+// Burns the triangles of a complete mesh. Every triangle disappears together with an edge that belongs to no other
+// triangle any more, in an elementary collapse, so the rest has the homotopy type of the mesh. All vertices stay. If a
+// triangle has several such edges, the one that burned first is taken, so that the rest runs along with the fire. The
+// front is computed in the plane of each triangle, as a straight one between the times at the two ends of an edge.
+// Where at least three sheets meet, the fire goes on into the last of them when the others have burned. O(n log n).
 SheetBurn burn_sheets(const MedialMesh& mesh, const CellIncidence& at);
 
 }  // namespace orchard::detail

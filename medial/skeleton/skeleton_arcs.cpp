@@ -40,7 +40,7 @@ class ArcTracer {
   }
 
  private:
-  // The inner vertices of closed sheets are no nodes.
+  // Inner vertices of closed sheets are not nodes.
   bool is_node(Index vertex) const {
     const std::size_t curves = edges_at_[vertex].size();
     return on_sheet_[vertex] ? curves > 0 : curves != 2;

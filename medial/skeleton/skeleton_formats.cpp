@@ -24,7 +24,7 @@ void append_coordinates(std::string& text, const Point& at, char between) {
   }
 }
 
-// Each vertex with its parent, parents first. Vertices that only closed sheets have are left out.
+// Each vertex with its parent; parents come first. Vertices of closed sheets only are left out.
 struct Forest {
   std::vector<Index> order, parents;
 };

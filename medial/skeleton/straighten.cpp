@@ -12,7 +12,7 @@ namespace {
 
 // Taubin's factors: a step towards the middle of the neighbours, and one away from it.
 constexpr double kTaubinShrink = 0.5, kTaubinGrow = -0.53;
-constexpr double kChordAccuracy = 0.02;  // of `limit`: to which the distance of chords is bounded
+constexpr double kChordAccuracy = 0.02;  // of `limit`: the accuracy to which the distance of chords is bounded
 constexpr int kMaxChordHalvings = 100'000;
 
 class Straightener {
@@ -72,7 +72,7 @@ class Straightener {
     graph_.vertices = std::move(next);
   }
 
-  // By halving segments, those with the largest bounds first, as the distance is 1-Lipschitz.
+  // Bounds the distance by halving segments, those with the largest bounds first, since the distance is 1-Lipschitz.
   double chord_distance() const {
     struct Segment {
       double upper = 0;
@@ -107,7 +107,7 @@ class Straightener {
   const std::vector<Point> start_;
   std::vector<Point> last_good_;
   Rows neighbors_;
-  std::vector<double> room_;  // of each vertex: how far it may be from its start
+  std::vector<double> room_;  // of each vertex: how far it may be from where it started
 };
 
 }  // namespace

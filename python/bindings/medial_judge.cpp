@@ -1,11 +1,16 @@
 // What is measured of medial axes, and what is made of them.
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "medial/medial_measures.h"
 #include "medial_types.h"
 #include "orchard/medial/axis_distance.h"
 #include "orchard/medial/envelope.h"
 #include "orchard/medial/import_axis.h"
+#include "orchard/medial/importance.h"
 #include "orchard/medial/prune.h"
 #include "orchard/medial/simplify.h"
 #include "orchard/medial/topology.h"
@@ -104,8 +109,15 @@ py::tuple simplify(const AxisPointer& axis, Index vertices, double error, bool f
 }
 
 // An axis that was not built here has no contacts; they are found from points of the surface.
-AxisPointer pruned(const AxisPointer& axis, double angle, double scale, Index samples, std::uint64_t seed,
-                   py::object progress) {
+// `limits` are the values by the names of the measures, in the library's units.
+AxisPointer pruned(const AxisPointer& axis, const std::map<std::string, double>& limits, Index samples,
+                   std::uint64_t seed, py::object progress) {
+  const PruneOptions options{.angle = limits.at("angle"),
+                             .scale = limits.at("scale"),
+                             .border_loss = limits.at("border_loss"),
+                             .lambda = limits.at("lambda"),
+                             .erosion = limits.at("erosion"),
+                             .geodesic = limits.at("geodesic")};
   return watched(std::move(progress), [&](const Progress& watch) {
     auto build = axis->build ? std::make_shared<MedialBuild>(*axis->build) : std::make_shared<MedialBuild>();
     if (!axis->build) {
@@ -116,12 +128,32 @@ AxisPointer pruned(const AxisPointer& axis, double angle, double scale, Index sa
       build->sampling = std::move(imported.sampling);
       build->points = samples;
     }
-    build->axis = prune(build->axis, {.angle = angle, .scale = scale});
+    build->axis = prune(*axis->surface, build->axis, options, watch);
     AxisPointer result = Axis::of_mesh(axis->surface, medial_mesh(build->axis));
     result->build = build;
     result->options = axis->options;
     return result;
   });
+}
+
+py::dict importance_of_balls(const Axis& axis, const std::vector<std::string>& names, py::object progress) {
+  constexpr std::array<std::pair<const char*, ImportanceMeasure>, 5> kNamed{
+      {{"border_loss", ImportanceMeasure::border_loss},
+       {"lambda", ImportanceMeasure::lambda},
+       {"scale", ImportanceMeasure::scale},
+       {"erosion", ImportanceMeasure::erosion},
+       {"geodesic", ImportanceMeasure::geodesic}}};
+  if (!axis.build) throw InputError("importance: the contacts of an axis that was not built here are not known");
+  py::dict result;
+  for (const auto& [name, measure] : kNamed) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    std::vector<double> values = watched(progress, [&, &which = measure](const Progress& watch) {
+      return importance(*axis.surface, axis.build->axis, which, watch);
+    });
+    values.resize(axis.mesh.centers.size(), std::numeric_limits<double>::quiet_NaN());  // middles of faces have none
+    result[name] = own(std::move(values));
+  }
+  return result;
 }
 
 py::tuple envelope(const Axis& axis, double cell, py::object progress) {
@@ -160,6 +192,7 @@ void bind_medial_measures(py::module_& module) {
   module.def("ball_errors", &errors_of_balls);
   module.def("simplify", &simplify);
   module.def("prune", &pruned);
+  module.def("importance", &importance_of_balls);
   module.def("envelope", &envelope);
   module.def("axis_distance", &distance);
   module.def("axis_topology", [](const Axis& axis) { return to_python(topology(axis.mesh)); });

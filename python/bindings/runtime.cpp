@@ -27,7 +27,7 @@ Pose pose_of_matrix(const double* m, std::size_t number) {
   // The determinant of the upper left part is the cube of the scale.
   const double determinant =
       m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-  if (!(determinant > 0)) refuse_pose(number, "the matrix is singular or a mirror, no rotation");
+  if (!(determinant > 0)) refuse_pose(number, "the matrix is no rotation: it is singular or mirrors");
   double scale = std::cbrt(determinant);
   if (std::fabs(scale - 1) < 1e-6) scale = 1;  // rounding of a matrix without scale
   Pose pose{.rotation = {m[0] / scale, m[1] / scale, m[2] / scale, m[4] / scale, m[5] / scale, m[6] / scale,
@@ -48,7 +48,7 @@ Pose pose_of_quaternion(const double* p, bool wxyz, std::size_t number) {
     refuse_pose(number, "the quaternion has length " + std::to_string(norm) +
                             ", not 1; normalise it, and check the order: quaternion='wxyz' or 'xyzw'");
   const std::optional<Pose> pose = runtime::pose_from_quaternion(q, to_vec(p));
-  if (!pose) refuse_pose(number, "no rotation");
+  if (!pose) refuse_pose(number, "the quaternion is no rotation");
   return *pose;
 }
 

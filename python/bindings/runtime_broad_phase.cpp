@@ -28,7 +28,7 @@ class Bodies {
     for (std::size_t i = 0; i < input.size(); ++i) {
       const Motion motion = to_motion(input.row(i), i);
       const BodyId id = fixed ? world().add_static(motion, 0, filter) : world().add(0, filter);
-      if (id == runtime::kNoBody) throw py::value_error("bodies: there is room for no more");
+      if (id == runtime::kNoBody) throw py::value_error("bodies: there are too many");
       if (states_.size() <= id.index) states_.resize(id.index + 1);
       states_[id.index] = {motion, now_, id, fixed};
       added.push_back(id.index);
@@ -64,7 +64,7 @@ class Bodies {
 
   // Until the first step with pairs, up to `time`.
   py::dict advance(double time) {
-    if (!(time >= now_)) throw py::value_error("time: it only moves on, and is a number");
+    if (!(time >= now_)) throw py::value_error("time: expected a finite number that is not below the present time");
     runtime::Advance found{};
     {
       runtime::BroadPhase& world = this->world();

@@ -101,14 +101,20 @@ class MedialAxis:
     @property
     def contact_angle(self) -> Floats:
         """The angle in radians between the two contacts of each ball that are seen farthest apart, (k,): what is near
-        pi lies between two walls, small angles are spurs. NaN where it is not known, as of an axis that was read."""
+        pi lies between two opposite sides, small angles are spurs. NaN where it is not known, as of an axis that was read."""
         return typing.cast(Floats, view(self._axis.vertex_angles()))
 
-    def importance(self) -> dict[str, Floats]:
+    def importance(self, *measures: str, progress: Progress = None) -> dict[str, Floats]:
         """Measures of each ball to threshold or colour by, (k,) each: contact_angle in radians; radius; radius_error and
-        protrusion in mesh units."""
+        protrusion in mesh units. measures: some of "border_loss", "lambda", "erosion" and "geodesic", in mesh units, and
+        "scale", a factor, of how much each ball of an axis that was built here matters; infinite where it always does,
+        NaN for the middles of faces of a raw axis. "geodesic" takes longest."""
         errors = self.ball_errors()
-        return {"contact_angle": self.contact_angle, "radius": self.radii, **errors}
+        chosen = [choice("measures", measure, ("border_loss", "lambda", "scale", "erosion", "geodesic"))
+                  for measure in measures]
+        more = _construction.importance(self._axis, chosen, progress) if chosen else {}
+        return {"contact_angle": self.contact_angle, "radius": self.radii, **errors,
+                **{name: view(values) for name, values in more.items()}}
 
     def ball_errors(self, *, centredness: bool = False) -> dict[str, Floats]:
         """What is wrong with each ball, (k,): radius_error and protrusion out of the solid in mesh units; centredness
@@ -142,13 +148,19 @@ class MedialAxis:
             choice("balls", balls, ("medial", "free")) == "free", whole("seed", seed, 0, 2**64 - 1), progress)
         return MedialAxis(few, self.mesh, said)
 
-    def prune(self, *, angle: float = 0, scale: float = 1, samples: int = 5000, seed: int = 1,
+    def prune(self, *, angle: float = 0, scale: float = 1, border_loss: float = 0, lambda_: float = 0,
+              erosion: float = 0, geodesic: float = 0, samples: int = 5000, seed: int = 1,
               progress: Progress = None) -> MedialAxis:
-        """The axis without spurs: angle in degrees cuts cells whose contacts are seen nearer to each other, scale cuts
-        balls that others hold when all are so many times larger. The topology stays. An axis that was not built here
-        gets its contacts from `samples` points of the surface."""
-        pruned = _construction.prune(self._axis, number("angle", angle, 0, 180) * _RADIANS,
-                                     number("scale", scale, 1, 10), whole("samples", samples, 20, 10_000_000),
+        """The axis without what is insignificant by a measure: angle in degrees removes places whose contacts are seen
+        nearer to each other, scale removes balls that others contain when all are so many times larger; the others are
+        those of importance(), in percent of the diagonal. The topology stays. An axis that was not built here gets its
+        contacts from `samples` points of the surface."""
+        limits = {"angle": number("angle", angle, 0, 180) * _RADIANS, "scale": number("scale", scale, 1, 10),
+                  "border_loss": number("border_loss", border_loss, 0, 100) / 100,
+                  "lambda": number("lambda_", lambda_, 0, 100) / 100,
+                  "erosion": number("erosion", erosion, 0, 100) / 100,
+                  "geodesic": number("geodesic", geodesic, 0, 400) / 100}
+        pruned = _construction.prune(self._axis, limits, whole("samples", samples, 20, 10_000_000),
                                      whole("seed", seed, 0, 2**64 - 1), progress)
         return MedialAxis(pruned, self.mesh, {})
 
@@ -268,6 +280,10 @@ def medial_axis(
     topology: str | None = None,
     prune_angle: float | None = None,
     prune_scale: float | None = None,
+    prune_border_loss: float | None = None,
+    prune_lambda: float | None = None,
+    prune_erosion: float | None = None,
+    prune_geodesic: float | None = None,
     refine: bool | None = None,
     border_loss: float | None = None,
     linear_error: float | None = None,
@@ -305,7 +321,8 @@ def medial_axis(
         samples=samples, edge_samples=edge_samples, relaxation=relaxation, iterations=iterations,
         cluster_angle=cluster_angle, crease_angle=crease_angle, seed=seed, algorithm=algorithm, gaps=gaps,
         joined_radius=joined_radius, max_passes=max_passes, thin=thin, coalesce=coalesce, topology=topology,
-        prune_angle=prune_angle, prune_scale=prune_scale, refine=refine, border_loss=border_loss,
+        prune_angle=prune_angle, prune_scale=prune_scale, prune_border_loss=prune_border_loss,
+        prune_lambda=prune_lambda, prune_erosion=prune_erosion, prune_geodesic=prune_geodesic, refine=refine, border_loss=border_loss,
         linear_error=linear_error, reach_rounds=reach_rounds, feature_loss=feature_loss, edge_length=edge_length,
         open_rounds=open_rounds)
     outside = choice("side", side, ("inside", "outside")) == "outside"

@@ -22,7 +22,7 @@ def as_text(name: str, value: typing.Any) -> str:
 def command_name(name: str) -> str:
     """The name of an option in the command line's table; prune_angle is --prune angle=.."""
     if name.startswith("prune_"):
-        return name.replace("_", " ", 1)
+        return "prune " + name.removeprefix("prune_").replace("_", "-")
     return name.replace("_", "-")
 
 

@@ -49,7 +49,7 @@ class Annealer {
 
   const Sphere& ball(Index node) const { return tree_.nodes[node].sphere; }
 
-  // The octants of the bounding box, or of the cube around the parent, that meet triangles inside the balls above.
+  // Adds the octants of the bounding box, or of the cube around the parent, that meet triangles inside the balls above.
   void add_children(Index parent) {
     Octant whole{surface_.bounding_box(), triangles_on_path(parent), parent};
     if (parent != 0) {
@@ -69,7 +69,7 @@ class Annealer {
 
   std::vector<Index> triangles_on_path(Index node) const {
     std::vector<Index> triangles;
-    // With room for roundings: a triangle too many does no harm.
+    // a margin for rounding errors; a triangle too many does no harm
     constexpr double kRoom = 1 + 1e-9;
     surface_.triangles_near({ball(node).center, kRoom * ball(node).radius}, triangles);
     for (Index above = tree_.nodes[node].parent; above != kNone; above = tree_.nodes[above].parent)
@@ -80,8 +80,8 @@ class Annealer {
     return triangles;
   }
 
-  // Children of two parents that no triangle meets both of cannot uncover what the others hold: such parents are
-  // annealed at the same time, each with a cover of its own triangles.
+  // If no triangle meets both of two parents, their children cannot uncover what the other's children cover. Such
+  // parents are annealed at the same time, each with a cover of its own triangles.
   void anneal_level(Index level, Index depth, KeepBest keep, const Progress& progress) {
     std::vector<Index> parents;
     for (Index node = 0; node < tree_.nodes.size(); ++node)
@@ -110,11 +110,11 @@ class Annealer {
     }
   }
 
-  // Splits lists of triangles into groups without a triangle in two lists of a group; each list, in order, goes to the
-  // first group that it can.
+  // Divides lists of triangles into groups in which no triangle is in two lists. Each list, in order, goes into the
+  // first group where that is so.
   std::vector<std::vector<std::size_t>> apart(const std::vector<std::vector<Index>>& lists) const {
     std::vector<std::vector<std::size_t>> groups;
-    std::vector<std::vector<char>> taken;  // by each group
+    std::vector<std::vector<char>> taken;  // the triangles that each group contains
     for (std::size_t i = 0; i < lists.size(); ++i) {
       std::size_t group = 0;
       const auto clash = [&](Index triangle) { return taken[group][triangle] != 0; };
@@ -139,12 +139,12 @@ class Annealer {
 void check(const AnnealingOptions& o) {
   if (o.branching < 2 || o.branching > 64) throw InputError("branching must lie between 2 and 64");
   if (!(o.min_scale > 0) || !(o.min_scale <= o.max_scale) || !(o.move >= 0))
-    throw InputError("annealing: moves and scales must be positive, the least scale first");
+    throw InputError("annealing: moves and scales must be above 0, with the smallest scale first");
   if (!(o.cooling > 0) || !(o.cooling < 1) || !(o.first_acceptance > 0) || !(o.first_acceptance < 1))
     throw InputError("annealing: the cooling and the first acceptance must lie between 0 and 1");
   if (o.max_accepted < 1 || o.max_rejected < 1 || o.max_uncovering < 1)
-    throw InputError("annealing: at least one change at each temperature");
-  if (o.first_trials < 1) throw InputError("annealing: at least one trial for the first temperature");
+    throw InputError("annealing: there must be at least one change at each temperature");
+  if (o.first_trials < 1) throw InputError("annealing: there must be at least one trial for the first temperature");
 }
 
 }  // namespace

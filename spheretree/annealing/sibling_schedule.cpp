@@ -9,8 +9,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::uint64_t kScheduleStage = 400;  // of the random numbers
-// A child that has become redundant would shrink for ever.
+constexpr std::uint64_t kScheduleStage = 400;  // the stream of random numbers
+// The smallest radius, over the parent's. Without a limit, a child that has become redundant would shrink forever.
 constexpr double kMinRadius = 1e-3;  // of its parent's radius
 
 }  // namespace
@@ -78,7 +78,8 @@ Sphere SiblingSchedule::changed(const Sphere& ball) {
   return next;
 }
 
-// The temperature at which the mean rise over some changes would pass with the wanted probability.
+// Returns the temperature at which a change with the mean rise of some trial changes is accepted with the wanted
+// probability.
 double SiblingSchedule::first_temperature() {
   double sum = 0;
   for (int i = 0; i < options_.first_trials; ++i) {
@@ -91,8 +92,8 @@ double SiblingSchedule::first_temperature() {
   return -sum / options_.first_trials / std::log(options_.first_acceptance);
 }
 
-// As written: first whether the surface stays covered, of what would not be accepted, too; for what is not covered is
-// tried again, and must not count as rejected.
+// As the dissertation has it, the cover is checked first, even for changes that would not be accepted. Changes that
+// uncover the surface are tried again, and must not count as rejected.
 SiblingSchedule::Outcome SiblingSchedule::try_change(double temperature) {
   ++report_.changes;
   const auto k = static_cast<Index>(random_.below(parent_.child_count));
@@ -123,7 +124,7 @@ void SiblingSchedule::note_best() {
   for (Index k = 0; k < parent_.child_count; ++k) best_.push_back(child(k).sphere);
 }
 
-// It covered what it has to when it was noted, and nothing else has changed there since.
+// The best state covered its part of the surface when it was stored, and no other balls there have changed since.
 void SiblingSchedule::restore_best() {
   for (Index k = 0; k < parent_.child_count; ++k) {
     child(k).sphere = best_[k];

@@ -8,7 +8,7 @@
 
 namespace orchard::detail {
 
-// Whether a set of siblings ends as the best one that it has been, or as the last one.
+// Whether annealing returns the best state of the siblings or the last one.
 enum class KeepBest : bool { no, yes };
 
 // Anneals the children of one node (dissertation 5.3.1).

@@ -10,16 +10,16 @@
 namespace orchard::detail {
 namespace {
 
-// Where fewer vertices than this for each child are left, their points are merged instead: many points on one sphere,
-// as around the axis of a cylinder, are one vertex, which could not be split.
+// If there are fewer vertices than this for each child, their points are merged instead of the vertices. Many points on
+// one sphere, as around the axis of a cylinder, form a single vertex, which could not be divided.
 constexpr std::size_t kVerticesPerChild = 2;
-constexpr std::size_t kPointsPerChild = 2;  // at least, or there are fewer children
-// A sphere as tight as this, as a fraction of R, is left as it is.
+constexpr std::size_t kPointsPerChild = 2;  // at least this many for each child; otherwise there are fewer children
+// As a fraction of R: tighter spheres are not changed.
 constexpr double kTight = 1e-3;
-// Of the looseness, in the sum over siblings that is to be low; by level. What is loose at the top is loose all the way
-// down.
+// By level: the power of the looseness in the sum over siblings that is minimised. A loose ball at the top makes all
+// levels below it loose.
 constexpr double kPowers[] = {3.5, 3, 3};
-// How many merged spheres, for each one wanted, a fit of siblings starts with.
+// By level: the number of merged spheres with which a fit of siblings starts, over the number wanted.
 constexpr double kStarts[] = {1.5, 1};
 
 }  // namespace
@@ -84,7 +84,7 @@ std::vector<Child> ChildBuilder::children_of(const Portion& portion, Index max) 
   return as_merged(parts, groups, by_points ? std::vector<Index>{} : vertices);
 }
 
-// The vertices that touch any of the points.
+// Returns the vertices that touch any of the points.
 std::vector<Index> ChildBuilder::touching(const std::vector<Index>& points) const {
   std::vector<Index> vertices;
   for (Index p : points) vertices.insert(vertices.end(), vertices_of_[p].begin(), vertices_of_[p].end());
@@ -93,7 +93,7 @@ std::vector<Index> ChildBuilder::touching(const std::vector<Index>& points) cons
   return vertices;
 }
 
-// Each sphere around all points of its parts, which others may have as well.
+// Returns a sphere around all points of each group of parts. Groups may have points in common.
 std::vector<Child> ChildBuilder::as_merged(const Parts& parts, const std::vector<MergedParts>& groups,
                                            const std::vector<Index>& vertices) const {
   std::vector<Child> children;
@@ -114,8 +114,8 @@ std::vector<Child> ChildBuilder::as_merged(const Parts& parts, const std::vector
   return children;
 }
 
-// From more spheres than wanted as well: which of them are best to do without, their fit tells better than the
-// merging.
+// Fits siblings, also starting from more spheres than wanted: the fit decides better than the merging which of them to
+// leave out.
 std::vector<Child> ChildBuilder::fitted(const Portion& portion, const Parts& parts, std::size_t wanted) const {
   std::vector<std::size_t> targets;
   for (const double more : kStarts) targets.push_back(static_cast<std::size_t>(more * static_cast<double>(wanted)));
@@ -127,7 +127,7 @@ std::vector<Child> ChildBuilder::fitted(const Portion& portion, const Parts& par
   return shared_out(portion, starts, wanted);
 }
 
-// As many as wanted, from a family of another size.
+// Returns as many children as wanted, starting from a family of another size.
 std::vector<Child> ChildBuilder::resized(const Portion& portion, const std::vector<Child>& family, Index wanted) const {
   std::vector<FittedBall> start;
   start.reserve(family.size());

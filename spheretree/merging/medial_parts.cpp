@@ -6,7 +6,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kNearPoints = 6;  // neighbours of a point that stand for adjacency where there is none
+// The number of nearest points that count as adjacent to a point without adjacent ones.
+constexpr std::size_t kNearPoints = 6;
 
 }  // namespace
 

@@ -59,7 +59,7 @@ class Closer {
   }
 
  private:
-  // Adds the uncovered regions to what the nodes that they cost least have to hold; returns these nodes, ascending.
+  // Assigns each uncovered region to the node that covers it at the lowest cost. Returns these nodes, ascending.
   std::vector<Index> give(const std::vector<UncoveredRegion>& uncovered) {
     const std::vector<Taking> takings = find_cover_candidates(uncovered, [&](const UncoveredRegion& region) {
       CoverCandidates best;
@@ -71,7 +71,7 @@ class Closer {
     for (std::size_t i = 0; i < uncovered.size(); ++i) {
       const std::vector<Point>& corners = uncovered[i].corners;
       const auto [candidate, whole] = takings[i];
-      if (candidate == kNone) continue;  // across the border of a path region: cover() mends it
+      if (candidate == kNone) continue;  // the region crosses the border of a path region, so cover() closes it later
       marked[candidate] = 1;
       held_[candidate].push_back(uncovered[i].farthest);
       if (whole) held_[candidate].insert(held_[candidate].end(), corners.begin(), corners.end());
@@ -88,8 +88,7 @@ class Closer {
     center_distance_[i] = fitted.center_distance;
   }
 
-  // Of the leaves below the node whose path region, but for the leaf itself, holds the points: the one that they cost
-  // least.
+  // Finds the cheapest of the leaves below the node whose path region, without the leaf itself, contains the points.
   void descend(Index index, std::span<const Point> points, CoverCandidate& best) const {
     const SphereNode& node = tree_.nodes[index];
     double reach = 0;
@@ -109,7 +108,7 @@ class Closer {
   const Surface& surface_;
   std::vector<std::vector<Point>>& held_;
   const double power_, radius_, margin_;
-  std::vector<double> center_distance_;  // signed distances of the centres
+  std::vector<double> center_distance_;  // signed distances of the balls' centres
   tbb::enumerable_thread_specific<BallFitter> fitters_;
 };
 

@@ -10,13 +10,13 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kSplitGain = 0.97;  // a split that leaves more of the looseness is not worth a sphere
+constexpr double kSplitGain = 0.97;  // a split that leaves a larger share of the looseness is not worth another sphere
 
 struct Holder {
   Index node = kNone;
   double radius = std::numeric_limits<double>::infinity();
 };
-// The tightest leaf that the point has a path to.
+// Finds the tightest leaf whose path contains the point.
 void find_holder(const SphereTree& tree, Index index, const Point& point, Holder& best) {
   const SphereNode& node = tree.nodes[index];
   if ((point - node.sphere.center).squaredNorm() > node.sphere.radius * node.sphere.radius) return;

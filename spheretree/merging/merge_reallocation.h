@@ -6,12 +6,12 @@
 
 namespace orchard::detail {
 
-// Takes out what the last level of a closed tree can do without, and returns how many nodes that are. Points of a node
-// that is gone go to the tightest leaf of those that they have a path to. portions[i]: of node i.
+// Removes redundant nodes of the last level of a closed tree, and returns their number. The points of a removed node go
+// to the tightest leaf of those whose paths contain them. portions[i] is the portion of node i.
 Index remove_redundant_nodes(SphereTree& tree, const Surface& surface, std::vector<Portion>& portions);
 
-// Splits the loosest spheres, as long as the level has room: `branching` spheres for each family that is not empty, up
-// to max_children() in one.
+// Splits the loosest spheres as long as the level has room for more: `branching` spheres for each family that is not
+// empty, and at most max_children() in one family.
 void split_loosest(const ChildBuilder& maker, Index branching, std::vector<std::vector<Child>>& families);
 
 }  // namespace orchard::detail

@@ -13,7 +13,8 @@
 namespace orchard::detail {
 namespace {
 
-// Directions spread over the sphere by the golden angle: a group's extreme points along them stand for all its points.
+// The number of directions, spread over the sphere by the golden angle. The extreme points of a group along them
+// represent all of its points.
 constexpr int kCoreDirections = 40;
 const std::array<Vector, kCoreDirections>& core_directions() {
   static const std::array<Vector, kCoreDirections> directions = [] {
@@ -28,13 +29,14 @@ const std::array<Vector, kCoreDirections>& core_directions() {
   return directions;
 }
 
-// A pair of adjacent groups, with the sphere that would replace them cached.
+// A pair of adjacent groups, with the sphere that would replace both.
 struct Candidate {
   double cost;
   Index a, b;  // a < b
   Sphere sphere;
 };
-// The queue's head is the cheapest; ties go to the lowest indices, so that the result is the same everywhere.
+// The head of the queue is the cheapest pair, and of equal ones the one with the lowest indices, so that the result is
+// the same on every machine.
 struct HigherCost {
   bool operator()(const Candidate& x, const Candidate& y) const {
     if (x.cost != y.cost) return x.cost > y.cost;
@@ -80,10 +82,10 @@ class Merger {
   }
 
  private:
-  // A merged set; `into` is the set that swallowed it, so that indices form a forest.
+  // A merged group. `into` is the group that it was merged into, so that the indices form a forest.
   struct Node {
     Sphere sphere;
-    std::vector<Index> core;  // some of its points
+    std::vector<Index> core;  // the extreme points of the group
     Index into;
   };
   using Queue = std::priority_queue<Candidate, std::vector<Candidate>, HigherCost>;
@@ -148,7 +150,8 @@ class Merger {
     return extreme;
   }
 
-  // More components than groups wanted: the smallest sphere joins the group that it costs least to join.
+  // If more components remain than groups are wanted, the smallest sphere is merged with the group for which this costs
+  // least.
   Candidate cheapest_join_of_components() {
     Index min = kNone;
     for (Index i = 0; i < nodes_.size(); ++i)
@@ -182,8 +185,8 @@ class Merger {
   std::vector<Node> nodes_;
   std::size_t alive_;
   Queue queue_;
-  std::unordered_set<std::uint64_t> keyed_;  // pairs that were brought up to date; never iterated
-  bool keyed_all_ = false;                   // the pairs that were adjacent at first
+  std::unordered_set<std::uint64_t> keyed_;  // pairs whose cost was updated; never iterated
+  bool keyed_all_ = false;                   // whether the pairs that were adjacent at first have been updated
   std::vector<Index> scratch_;
   std::vector<Point> positions_;
 };

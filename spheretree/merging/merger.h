@@ -7,16 +7,17 @@
 
 namespace orchard::detail {
 
-// What merging starts with: medial vertices or single surface points, each with the surface points that it must hold.
+// What merging starts with: medial vertices or single surface points, each with the surface points that it must
+// contain.
 struct Parts {
   std::vector<Sphere> spheres;
-  std::vector<std::vector<Index>> points;      // of each, ascending, of the axis
+  std::vector<std::vector<Index>> points;      // the points of the axis that each part must contain, ascending
   std::vector<std::array<Index, 2>> adjacent;  // pairs of parts, the lower first
 };
 
 // Parts merged into one sphere.
 struct MergedParts {
-  Sphere sphere;             // holds the points, but for what the group's core left out
+  Sphere sphere;             // contains the points, up to those that the group's core leaves out
   std::vector<Index> parts;  // ascending
 };
 

@@ -60,7 +60,7 @@ class MergeTree {
     return nodes;
   }
 
-  // Whether any node of the level above got children.
+  // Adds a level. Returns whether any node of the level above has got children.
   bool add_level(Index level) {
     const std::vector<Index> parents = nodes_of(level - 1);
     std::vector<std::vector<Child>> families(parents.size());
@@ -74,7 +74,7 @@ class MergeTree {
     return tree_.nodes.size() > before;
   }
 
-  // Looser families get more of the level's spheres than tighter ones.
+  // Gives loose families more of the level's spheres than tight ones.
   void balance(const std::vector<Index>& parents, std::vector<std::vector<Child>>& families) const {
     std::vector<Family> loads(families.size());
     tbb::parallel_for(std::size_t{0}, families.size(), [&](std::size_t i) {
@@ -127,8 +127,8 @@ class MergeTree {
     row.growth = std::max(row.growth, closed.growth);
   }
 
-  // Takes out what the last level can do without and splits its loosest spheres instead, as many as their parents have
-  // room for. Whether anything was split.
+  // Removes redundant spheres of the last level and splits its loosest spheres instead, as many as their parents have
+  // room for. Returns whether any was split.
   bool reallocate_freed_budget(Index level, MergeReport::Level& row) {
     const Index removed = detail::remove_redundant_nodes(tree_, surface_, portions_);
     row.removed += removed;
@@ -143,7 +143,7 @@ class MergeTree {
     return split > 0;
   }
 
-  // The last level, off the tree.
+  // Removes the last level from the tree and returns it.
   std::vector<std::vector<Child>> take_off(Index level, const std::vector<Index>& parents) {
     std::vector<std::vector<Child>> families(parents.size());
     for (std::size_t i = 0; i < parents.size(); ++i) {
@@ -161,7 +161,7 @@ class MergeTree {
   detail::ChildBuilder maker_;
   const double margin_;
   SphereTree tree_;
-  std::vector<Portion> portions_;  // of each node; empty once it has children
+  std::vector<Portion> portions_;  // the portion of each node; empty once the node has children
 };
 
 }  // namespace

@@ -10,10 +10,10 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kSiblingEvaluations = 10;
-constexpr int kDividingRounds = 6;  // of dividing and fitting, at first
+constexpr int kDividingRounds = 6;  // rounds of dividing and fitting at the beginning
 constexpr int kExchangeRounds = 5;
-constexpr int kMaxExchanges = 24;  // for eight siblings; more for more
-constexpr int kVictims = 7;        // that an exchange tries to do without, the cheapest first
+constexpr int kMaxExchanges = 24;  // the number of exchanges for eight siblings; more siblings get more
+constexpr int kVictims = 7;        // the number of balls, the cheapest first, that an exchange tries to remove
 
 class Fit {
  public:
@@ -32,7 +32,7 @@ class Fit {
     best_ = min;
     fill_up(wanted);
     exchange();
-    fill_up(wanted);  // an exchange may have lost one
+    fill_up(wanted);  // an exchange may have lost a ball
     return std::move(best_state_);
   }
 
@@ -62,7 +62,7 @@ class Fit {
     }
   }
 
-  // Fits the balls that are marked, drops those without points.
+  // Fits the balls that are marked, and drops those without points.
   void fit(Siblings& state, const std::vector<char>& marked) {
     own_.resize(std::max(own_.size(), state.balls.size()));
     for (auto& list : own_) list.clear();
@@ -80,7 +80,7 @@ class Fit {
     for (Index& owner : state.owner) owner = place[owner];
   }
 
-  // Whether this got better than the best so far; then it is the best.
+  // Fits in rounds. If the result is better than the best so far, it becomes the best. Returns whether it did.
   bool improve(Siblings& state, int rounds, bool all) {
     bool better = false;
     double last = kInfinity;
@@ -93,7 +93,7 @@ class Fit {
         if (state.owner[p] != before[p]) marked[state.owner[p]] = marked[before[p]] = 1;
       fit(state, marked);
       const double now = objective(state);
-      // Rounds gain less and less: what falls too slowly to get there is given up.
+      // Gains get smaller from round to round. If the cost falls too slowly to get below the best, the rest is skipped.
       if (!patient_ && now - best_ > (last - now) * (rounds - 1 - round)) break;
       last = now;
       if (now >= best_ && best_state_.balls.size() >= state.balls.size()) continue;
@@ -104,7 +104,7 @@ class Fit {
     return better;
   }
 
-  // A new ball at the point of the ball that is farthest from its centre.
+  // Adds a new ball at the point of the loosest ball that is farthest from its centre.
   void split(Siblings& state, Index loosest) const {
     Index far = kNone;
     double max = -1;
@@ -136,7 +136,7 @@ class Fit {
     return best_state_.balls.size() > before;
   }
 
-  // What the others would cost more if they took over a ball's points, for every ball, the cheapest first.
+  // Returns the balls, sorted by the additional cost of the others if they take over the points of the ball.
   std::vector<Index> cheapest_to_lose(const Siblings& state) const {
     const auto count = static_cast<Index>(state.balls.size());
     std::vector<std::vector<double>> reach(count, std::vector<double>(count, 0));  // [lost][candidate]
@@ -167,7 +167,7 @@ class Fit {
 
   void lose_cheapest() {
     Siblings state = std::move(best_state_);
-    state.balls[cheapest_to_lose(state)[0]].center_distance = kInfinity;  // gets no points
+    state.balls[cheapest_to_lose(state)[0]].center_distance = kInfinity;  // so that it gets no points
     best_state_ = {};
     best_ = kInfinity;
     improve(state, kExchangeRounds, false);

@@ -9,9 +9,9 @@ namespace {
 
 using Links = std::vector<std::vector<Index>>;
 
-// rests_on[i]: which of the redundant nodes, by their place in the list, node i rests on.
+// rests_on[i] lists the redundant nodes, by their positions in the list, that node i rests on.
 Links links_between(std::span<const RedundantNode> redundant) {
-  std::unordered_map<Index, Index> place;  // looked up only, never iterated
+  std::unordered_map<Index, Index> place;  // used for look-up only, never iterated
   for (Index i = 0; i < redundant.size(); ++i) place.emplace(redundant[i].node, i);
   Links rests_on(redundant.size());
   for (Index i = 0; i < redundant.size(); ++i)
@@ -21,7 +21,7 @@ Links links_between(std::span<const RedundantNode> redundant) {
   return rests_on;
 }
 
-// Finds one cycle among the nodes that are not kept, by depth-first search; empty if there is none.
+// Finds a cycle among the nodes that are not kept, by depth-first search. It is empty if there is none.
 class CycleFinder {
  public:
   CycleFinder(const Links& links, const std::vector<char>& kept)
@@ -94,7 +94,7 @@ std::vector<Index> acyclic_selection(std::span<const RedundantNode> redundant) {
   while (true) {
     const std::vector<Index> cycle = CycleFinder(rests_on, kept).find();
     if (cycle.empty()) return nodes_not(kept, redundant);
-    std::vector<Index> load(redundant.size(), 0);  // how many of those that go rest on each
+    std::vector<Index> load(redundant.size(), 0);  // the number of removed nodes that rest on each node
     for (Index i = 0; i < rests_on.size(); ++i)
       if (!kept[i])
         for (Index other : rests_on[i]) ++load[other];

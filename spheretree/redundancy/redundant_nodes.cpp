@@ -17,7 +17,7 @@ std::vector<Index> siblings_of(const SphereTree& tree, Index node) {
   return siblings;
 }
 
-// The coverers that the node's part of every triangle it meets can be proven to rest on; nothing if it cannot.
+// Returns the coverers on which the node's part of every triangle can be proven to rest; nullopt if there is no proof.
 std::optional<std::vector<Index>> coverers_of(const SphereTree& tree, const Surface& surface, Index node,
                                               const std::vector<Index>& candidates) {
   if (candidates.empty()) return std::nullopt;

@@ -44,7 +44,7 @@ std::vector<Search> searches_for(Index spheres, Effort effort) {
   for (const Objective objective : kAll) searches.push_back({objective, Effort::low});
   searches.push_back({Objective::volume, Effort::low, 1});
   if (effort == Effort::standard) return searches;
-  for (const std::uint64_t seed : {0, 1})
+  for (const std::uint64_t seed : {0U, 1U})
     for (const Objective objective : kAll) searches.push_back({objective, Effort::standard, seed});
   return searches;
 }

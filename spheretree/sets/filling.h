@@ -5,18 +5,18 @@
 
 namespace orchard::detail {
 
-// Balls in the solid that touch its surface in two places or more, about so many, spread as surface points are; radii a
-// few roundings smaller than the distance to the surface.
+// Returns about `count` balls in the solid that touch its surface at two places or more, spread as surface points are.
+// Their radii are smaller than the distance to the surface by a few rounding errors.
 std::vector<Sphere> inscribed_balls(const Surface& surface, Index count, std::uint64_t seed);
 
-// The largest ball around a place that surely lies in the solid; its radius is not above 0 where there is none.
+// Returns the largest ball around a place that certainly lies in the solid. Its radius is 0 or less if there is none.
 Sphere inscribed_ball(const Surface& surface, const Point& center);
 
-// Adds balls in the solid until there are `count`: the largest that keep apart. What is covered stays so, and nothing
-// more sticks out.
+// Adds balls in the solid until there are `count` of them. Each is the largest one that stays apart from the others. No
+// covered place becomes uncovered, and the protrusion does not grow.
 void add_inner_balls(const Surface& surface, Index count, double min_radius, std::vector<Sphere>& balls);
 
-// A set of the fit inside or balanced: as many balls as options.spheres.
+// Returns as many balls as options.spheres for the fit inside or balanced.
 std::vector<Sphere> filled_set(const Surface& surface, const SphereSetOptions& options, const Progress& progress);
 
 }  // namespace orchard::detail

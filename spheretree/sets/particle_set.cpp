@@ -17,15 +17,15 @@ namespace {
 
 using detail::ParticleSet;
 
-// Balls are made smaller by this part, so that what rounding may do to distances is far from what is allowed.
+// Balls are reduced by this share, so that rounding errors of distances are far below what is allowed.
 constexpr double kShrinkage = 1e-11;
-// The largest radius of a set, over that of the largest ball in the solid: all are tried for few balls, and in this
-// order until the moments fit for more.
+// The largest radius of a set, over that of the largest ball in the solid. All of these are tried for few balls; for
+// many, in this order until the moments fit.
 constexpr double kCaps[] = {1, 0.8, 0.65, 0.5, 0.35, 0.22, 0.13, 0.07};
-constexpr Index kThorough = 300;  // balls
-// Radii that are made smaller for the moments keep this part of their volume.
+constexpr Index kThorough = 300;  // up to this number of balls, all caps are tried
+// Balls that are reduced for the sake of the moments keep at least this share of their volume.
 constexpr double kLeastVolume = 0.02;
-constexpr int kFits = 4;  // since a smaller ball has a smaller moment of its own
+constexpr int kFits = 4;  // the number of iterations, because a smaller ball also has a smaller moment of its own
 
 double volume_of(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
 
@@ -64,7 +64,7 @@ class ParticleSearch {
     }
     for (const bool with_moments : {false, true})
       if (!is_enough() || (with_moments && options_.spheres <= kThorough)) try_equal(with_moments);
-    if (!best_) throw InputError("no ball finds room in the solid; is it thinner than its coordinates tell?");
+    if (!best_) throw InputError("no ball has room in the solid; it may be as thin as the rounding of its coordinates");
     return std::move(*best_);
   }
 
@@ -96,7 +96,7 @@ class ParticleSearch {
     consider(std::move(balls));
   }
 
-  // Smaller balls keep apart and stay in the solid, so that the moments are free to choose volumes.
+  // Smaller balls stay apart and in the solid, so their volumes can be chosen to match the moments.
   void fit_volumes(std::vector<Sphere>& balls, std::vector<double> least) const {
     detail::WeightBounds bounds;
     bounds.wanted = bounds.upper = volumes_of(balls);
@@ -133,8 +133,8 @@ class ParticleSearch {
     ParticleSet set;
     set.figures = particle_figures(balls, masses_of(balls), solid_, options_.particles);
     set.balls = std::move(balls);
-    // Sets that miss nothing are compared by how much they fill; others by what they miss, but balls that fill next to
-    // nothing are of no use, however right they are.
+    // Sets that fulfil all requirements are compared by the volume that they fill, and others by how far they miss
+    // them. Balls that fill next to nothing are useless even if their moments are right.
     const double excess = particle_excess(set, options_, diagonal_), filled = set.figures.filled;
     const double score = excess <= 1 ? filled : -excess / std::sqrt(filled);
     if (best_ && score <= score_) return;
@@ -148,11 +148,11 @@ class ParticleSearch {
   const Progress& progress_;
   const MassProperties solid_;
   const double diagonal_;
-  const double least_radius_;  // before the margin is taken off
+  const double least_radius_;  // before the safety margin is subtracted
   const detail::PackingOptions packing_;
   const std::vector<Sphere> places_;
   std::optional<ParticleSet> best_;
-  double excess_ = 0, score_ = 0;  // of the best
+  double excess_ = 0, score_ = 0;  // of the best set so far
 };
 
 }  // namespace
@@ -172,7 +172,7 @@ ParticleFigures particle_figures(std::span<const Sphere> balls, std::vector<doub
   for (Index a = 0; a < balls.size(); ++a)
     for (Index b = a + 1; b < balls.size(); ++b) {
       const double reach = balls[a].radius + balls[b].radius;
-      // Far apart, whatever is rounded.
+      // these are far apart even after rounding
       if ((balls[a].center - balls[b].center).squaredNorm() > 1.001 * reach * reach) continue;
       const double share = overlap_share(balls[a], balls[b]);
       if (share > figures.largest_overlap) figures.largest_overlap = share, figures.overlapping = {a, b};

@@ -14,14 +14,15 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kGoldenAngle = 2.39996322972865332;  // radians
-// A point that lies less deep in another ball than this part of the largest radius is on the boundary: roundings.
+// As a share of the largest radius: a point that is less deep in another ball counts as on the boundary, because of
+// rounding.
 constexpr double kOnBoundary = 1e-12;
-constexpr Index kLeastSamples = 32;          // of a ball, however small it is beside the others
-constexpr Index kCuroboSphereSamples = 200;  // on each ball, as cuRobo takes them
+constexpr Index kLeastSamples = 32;          // the minimum for a ball, even if it is small compared with the others
+constexpr Index kCuroboSphereSamples = 200;  // the number on each ball in cuRobo's measure
 constexpr double kCuroboPercentile = 0.95;
-constexpr std::uint64_t kSampleStage = 6500;  // of the random numbers
+constexpr std::uint64_t kSampleStage = 6500;  // the stream of random numbers
 
-// Area-stratified random points of a surface.
+// Returns random points of a surface, stratified by area.
 std::vector<Point> surface_points(const Surface& surface, Index count, std::uint64_t seed) {
   const std::size_t triangles = surface.mesh().triangles.size();
   std::vector<double> until(triangles);
@@ -44,7 +45,7 @@ double mean(const std::vector<double>& values) {
   return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Between the two values around it, as the usual libraries of arrays interpolate.
+// Interpolates between the two values around the quantile, as common libraries of arrays do.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
@@ -104,7 +105,7 @@ bool UnionBoundary::is_free(const Point& point, Index ball, Index other) const {
     if (n == other) continue;
     const double room = balls_[n].radius - slack_;
     if (room > 0 && (point - balls_[n].center).squaredNorm() < room * room) {
-      // Of two equal balls, the first one has the boundary.
+      // If two balls are equal, the boundary belongs to the first one.
       const bool same = balls_[n].center == balls_[ball].center && balls_[n].radius == balls_[ball].radius;
       if (!same || n < ball) return false;
     }
@@ -114,7 +115,7 @@ bool UnionBoundary::is_free(const Point& point, Index ball, Index other) const {
 
 double UnionBoundary::depth(const Point& point) const {
   double best = kInfinity;
-  // What some sphere is near by itself: then few samples are near enough to be looked at.
+  // The distance from the nearest point of a single sphere bounds the result, so that few samples have to be compared.
   for (Index b = 0; b < balls_.size(); ++b) {
     const Vector away = point - balls_[b].center;
     const double length = away.norm(), distance = std::abs(balls_[b].radius - length);
@@ -139,7 +140,7 @@ double UnionBoundary::depth(const Point& point) const {
   return best;
 }
 
-// The nearest points of the circles in which the ball's sphere meets its neighbours.
+// Returns the distance to the nearest points of the circles in which the ball's sphere meets its neighbours.
 double UnionBoundary::through_circles(const Point& point, Index ball, double least) const {
   const Sphere& own = balls_[ball];
   for (Index n : neighbors_[ball]) {

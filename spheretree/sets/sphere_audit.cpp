@@ -21,7 +21,7 @@ namespace {
 constexpr DistanceTolerance kGapTolerance{1e-5, 1e-3};
 
 void require_balls(std::span<const Sphere> balls) {
-  if (balls.empty()) throw InputError("a set of spheres without a sphere cannot be audited");
+  if (balls.empty()) throw InputError("the set has no sphere, so there is nothing to audit");
   for (std::size_t i = 0; i < balls.size(); ++i)
     if (!balls[i].center.allFinite() || !(balls[i].radius > 0) || !std::isfinite(balls[i].radius))
       throw InputError("sphere " + std::to_string(i) +
@@ -88,7 +88,7 @@ SphereAudit audit_spheres(const Surface& surface, std::span<const Sphere> balls,
   audit.touches = std::any_of(balls.begin(), balls.end(), [&](const Sphere& ball) { return touches(surface, ball); });
   find_open(surface, balls, options, progress, audit);
   if (!surface.solid()) return audit;
-  SphereAudit::BesideSolid& beside = audit.beside_solid.emplace();
+  SphereAudit::BesideSolid& beside = audit.beside_solid.emplace(SphereAudit::BesideSolid{});
   report_progress(progress, "measuring spheres", 0);
   find_protrusion(surface, balls, beside);
   report_progress(progress, "measuring spheres", 0.3);

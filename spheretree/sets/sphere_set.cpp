@@ -13,7 +13,7 @@
 namespace orchard {
 namespace {
 
-// Roundings of a signed distance and of a radius' sum, per unit of coordinate.
+// The rounding error of a signed distance and of a sum of radii, per unit of the coordinates.
 constexpr double kInsideRounding = 0x1p-45;
 
 bool lies_inside(const Surface& surface, const Sphere& ball) {
@@ -25,7 +25,8 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw InputError(what);
 }
 
-// Sets of any number of spheres by the same options otherwise, and what they miss.
+// Builds sets with different numbers of spheres by the same options, and measures by how much they miss the
+// requirements.
 class SetBuilder {
  public:
   SetBuilder(const Surface& surface, const SphereSetOptions& options, const Progress& progress)
@@ -48,7 +49,7 @@ class SetBuilder {
   bool asks_for_error() const { return options_.error > 0 || options_.volume_error > 0; }
   static bool misses_nothing(const SphereSetBuild& build) { return build.kept && build.error_reached; }
 
-  // How large the errors are that were asked for, as multiples of what is allowed: the largest one.
+  // Returns the largest error as a multiple of what is allowed.
   double excess(const SphereSetBuild& build) const {
     const SphereAudit::BesideSolid& beside = *build.audit.beside_solid;
     const double solid = beside.volume.solid, diagonal = surface_.bounding_box().diagonal().norm();
@@ -65,7 +66,7 @@ class SetBuilder {
                      build.particles->inertia_error / options_.particles.inertia_error});
   }
 
-  // The largest part by which a sphere is too small; at most 1 if none is.
+  // Returns the largest factor by which a sphere is too small; at most 1 if none is.
   double narrowness(const SphereSetBuild& build) const {
     return options_.min_radius > 0 ? options_.min_radius / (build.spheres.back().radius - options_.padding) : 0;
   }
@@ -88,7 +89,7 @@ class SetBuilder {
     for (Sphere& ball : balls) ball.radius = std::max(ball.radius, own.min_radius);
     if (own.solid) detail::close_voids(surface_, balls);
     if (balls.size() < own.spheres) detail::add_inner_balls(surface_, own.spheres, own.min_radius, balls);
-    // No room for more spheres of that size: some are there twice.
+    // There is no room for more spheres of that size, so some are repeated.
     for (std::size_t b = 0; balls.size() < own.spheres; ++b) balls.push_back(balls[b]);
     return balls;
   }
@@ -121,7 +122,7 @@ class SetBuilder {
   const Progress& progress_;
 };
 
-// Doubling, then halving what is between: errors fall with the number, if not at every step.
+// Doubles the number and then bisects, because errors fall with the number, if not in every step.
 SphereSetBuild fewest(const SetBuilder& builder, Index most) {
   Index failed = 0, tried = std::min<Index>(2, most);
   SphereSetBuild best = builder.build(tried);
@@ -144,8 +145,9 @@ SphereSetBuild fewest(const SetBuilder& builder, Index most) {
   return best;
 }
 
-// How many spheres would do where `missing` misses something: by the law of powers that the last two sets are on, and
-// each guess is tried. Smaller spheres are missed with fewer of them, all else with more.
+// Searches for the number of spheres with which `missing` is fulfilled. Guesses follow the power law through the last
+// two sets, and each guess is tried. A lower limit on the size is fulfilled by fewer spheres, and all other
+// requirements by more.
 class EnoughSearch {
  public:
   EnoughSearch(const SetBuilder& builder, const SphereSetBuild& missing) : builder_(builder) { note(missing); }
@@ -163,7 +165,7 @@ class EnoughSearch {
 
  private:
   static constexpr int kMaxTrials = 4;
-  static constexpr double kBeyond = 2;  // a guess beyond this many times kMaxSetSpheres is not worth a trial
+  static constexpr double kBeyond = 2;  // a guess beyond this many times kMaxSetSpheres is not tried
   static constexpr double kAmple = 1.15;
 
   struct Tried {

@@ -9,9 +9,9 @@
 namespace orchard {
 namespace {
 
-// Corners within this part of the largest radius of a sphere may be on either side of it.
+// As a share of the largest radius: corners that are this near to a sphere may be on either side of it.
 constexpr double kUnsure = 1e-9;
-constexpr int kMaxGrowthRounds = 50;  // of growing
+constexpr int kMaxGrowthRounds = 50;  // the maximum number of rounds of growth
 
 struct Corner {
   Point at;
@@ -28,8 +28,8 @@ std::vector<std::vector<Index>> later_neighbors(std::span<const Sphere> balls) {
   return result;
 }
 
-// The two points that three spheres share, or none. Where their centres lie on a line, they share a circle if anything:
-// that is an edge, of which no place is a corner.
+// Appends the two points that three spheres have in common, if there are any. If the centres are on one line, the
+// spheres have at most a circle in common, which is an edge without corners.
 void append_corners(const Sphere& a, const Sphere& b, const Sphere& c, std::vector<Point>& points) {
   const Vector ab = b.center - a.center, ac = c.center - a.center, normal = ab.cross(ac);
   const double squared = normal.squaredNorm(), scale = ab.squaredNorm() * ac.squaredNorm();
@@ -53,7 +53,7 @@ bool is_held(const Point& at, std::span<const Sphere> balls, const std::array<In
   return false;
 }
 
-// Corners of the union's boundary in the solid.
+// Returns the corners of the union's boundary that are in the solid.
 std::vector<Corner> inner_corners(const Surface& surface, std::span<const Sphere> balls) {
   double slack = 0;
   for (const Sphere& ball : balls) slack = std::max(slack, kUnsure * ball.radius);
@@ -86,7 +86,7 @@ std::vector<std::vector<Point>> detail::voids_of(const Surface& surface, std::sp
     done[first] = true;
     std::vector<Point>& own = voids.emplace_back();
     while (!open.empty()) {
-      const Corner corner = corners[open.back()];
+      const Corner& corner = corners[open.back()];
       open.pop_back();
       own.push_back(corner.at);
       for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -102,7 +102,8 @@ std::vector<std::vector<Point>> detail::voids_of(const Surface& surface, std::sp
   return voids;
 }
 
-// Balls are convex, and a void lies in the convex hull of its corners: a ball that holds these holds it.
+// A void lies in the convex hull of its corners, and balls are convex. So a ball that contains the corners contains the
+// void.
 void detail::close_voids(const Surface& surface, std::vector<Sphere>& balls) {
   const double margin = tolerance::kCoverMargin * surface.bounding_radius();
   for (int round = 0; round < kMaxGrowthRounds; ++round) {

@@ -11,7 +11,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kPointsPerCell = 6;
-// However thin the solid is in its box, no more points than this many times those wanted inside.
+// The maximum number of points in the box over the number wanted inside, for solids that are thin in their box.
 constexpr double kMostPerInside = 12;
 
 double squared(double x) { return x * x; }
@@ -53,9 +53,9 @@ void VolumePoints::sort_into_cells(const std::vector<Point>& points, const std::
     for (int axis = 0; axis < 3; ++axis)
       at[static_cast<std::size_t>(axis)] = std::clamp(static_cast<int>((p[axis] - box_.min()[axis]) / cell_), 0,
                                                       cells_[static_cast<std::size_t>(axis)] - 1);
-    return static_cast<std::size_t>((at[2] * cells_[1] + at[1]) * cells_[0] + at[0]);
+    return cell_at(at[0], at[1], at[2]);
   };
-  begin_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
+  begin_.assign(cell_at(0, 0, cells_[2]) + 1, 0);
   for (const Point& p : points) ++begin_[cell_of(p) + 1];
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   std::vector<Index> next(begin_.begin(), begin_.end() - 1);
@@ -80,7 +80,7 @@ void VolumePoints::for_each_near(const Box& box, const Visit& visit) const {
   }
   for (int z = low[2]; z <= high[2]; ++z)
     for (int y = low[1]; y <= high[1]; ++y) {
-      const auto row = static_cast<std::size_t>((z * cells_[1] + y) * cells_[0]);
+      const auto row = cell_at(0, y, z);
       const Index end = begin_[row + static_cast<std::size_t>(high[0]) + 1];
       for (Index i = begin_[row + static_cast<std::size_t>(low[0])]; i < end; ++i) visit(i);
     }
@@ -99,7 +99,7 @@ bool VolumePoints::is_in(const Sphere& ball, Index i) const {
          ball.radius * ball.radius;
 }
 
-// Of the points in a ball that so many balls of the set hold.
+// Returns the worth of those points in a ball that exactly `holders` balls of the set contain.
 double VolumePoints::worth_in(const Sphere& ball, std::uint16_t holders) const {
   double worth = 0;
   for_each_near(box_around(ball), [&](Index i) {
@@ -113,7 +113,7 @@ double VolumePoints::gain_of_change(const Sphere& from, const Sphere& to) const 
   for_each_near(box_around(from).merged(box_around(to)), [&](Index i) {
     if (held_[i] > 1) return;
     const bool was = is_in(from, i);
-    if (held_[i] == 1 && !was) return;  // by another ball
+    if (held_[i] == 1 && !was) return;  // it is contained in another ball
     const bool is = is_in(to, i);
     if (was != is) gain += is ? worth_[i] : -worth_[i];
   });

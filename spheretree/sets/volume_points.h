@@ -42,6 +42,12 @@ class VolumePoints {
   template <class Visit>
   void for_each_near(const Box& box, const Visit& visit) const;
 
+  std::size_t cell_at(int x, int y, int z) const {
+    const auto size = [&](std::size_t axis) { return static_cast<std::size_t>(cells_[axis]); };
+    return (static_cast<std::size_t>(z) * size(1) + static_cast<std::size_t>(y)) * size(0) +
+           static_cast<std::size_t>(x);
+  }
+
   Box box_;
   double cell_ = 1;  // mesh units
   std::array<int, 3> cells_{1, 1, 1};

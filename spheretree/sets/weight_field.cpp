@@ -35,7 +35,8 @@ WeightField::WeightField(const Surface& surface, const SetWeights& weights) : bo
   const NearestSample vertices(weights.of_vertices.empty() ? std::vector<Point>() : surface.mesh().vertices);
   auto values = std::make_shared<std::vector<double>>(kCells * kCells * kCells);
   tbb::parallel_for(0, kCells * kCells * kCells, [&](int i) {
-    const Vector at(i % kCells, i / kCells % kCells, i / (kCells * kCells));
+    const int x = i % kCells, y = i / kCells % kCells, z = i / (kCells * kCells);
+    const Vector at(x, y, z);
     const Point low = box_.min() + step.cwiseProduct(at);
     double factor = factor_of(weights.regions, Box(low, Point(low + step)));
     const Point middle = low + step / 2;

@@ -7,13 +7,14 @@
 
 namespace orchard::detail {
 
-// Weights on a grid over a box; beyond it, as at its border. Copies share the grid.
+// Weights on a grid over a box. Outside the box, the weight is that of the nearest place on its border. Copies share
+// the grid.
 class WeightField {
  public:
   WeightField() = default;  // 1 everywhere
   WeightField(const Surface& surface, const SetWeights& weights);
 
-  // The same of a surface that is moved and scaled so that its bounding box becomes this one.
+  // Returns the weights for a surface that is moved and scaled so that its bounding box becomes `box`.
   WeightField in(const Box& box) const;
   double at(const Point& point) const;
   bool empty() const { return values_ == nullptr; }

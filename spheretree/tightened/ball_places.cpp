@@ -9,7 +9,7 @@
 namespace orchard::detail {
 namespace {
 
-// What distances may be off by, as a part of them, with a lot to spare.
+// An upper bound on the relative error of distances, with a large margin.
 constexpr double kPlaceRounding = 1e-9;
 
 }  // namespace
@@ -30,13 +30,13 @@ void BallPlaces::set(Index ball, const FittedBall& now) {
   four.half_radius[lane] = 0.5 * now.radius;
 }
 
-// Whatever is farther than `spread` times the farthest of the `count` nearest so far is out of the question.
+// Skips everything that is farther than `spread` times the farthest of the `count` nearest so far.
 inline void BallPlaces::gather(const Query& query) const {
   const Four& own = fours_[query.of / kLanes];
   const std::size_t lane = query.of % kLanes;
   const double x = own.x[lane], y = own.y[lane], z = own.z[lane];
   std::vector<double> least;  // ascending
-  double largest = 0;         // number that they came from
+  double largest = 0;         // the largest number that they came from
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t block = 0; block < fours_.size(); ++block) {
     const Four& four = fours_[block];

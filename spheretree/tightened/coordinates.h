@@ -6,9 +6,9 @@
 
 namespace orchard::detail {
 
-// Points by their coordinates, of which some are measured side by side.
+// Points stored by coordinate, so that several are measured in one step.
 struct Coordinates {
-  static constexpr std::size_t kBlock = 128;  // points that are measured by one call at most
+  static constexpr std::size_t kBlock = 128;  // the maximum number of points that one call measures
 
   std::vector<double> x, y, z;
   std::size_t size() const { return x.size(); }
@@ -22,7 +22,7 @@ struct Coordinates {
       for (std::size_t k = 0; k < count; ++k) visit(begin + k, squared[k]);
     }
   }
-  // Squared distances of the next ones from `begin` on; returns how many that are.
+  // Writes the squared distances of the points from `begin` on. Returns how many there are.
   std::size_t measure_block(std::size_t begin, const Point& from, double* squared) const;
 };
 

@@ -8,7 +8,7 @@
 namespace orchard::detail {
 namespace {
 
-// What is told apart by distance alone may be wrong by a few roundings.
+// Distances may be off by a few rounding errors, so comparisons have this margin.
 constexpr double kReachFactor = 1 + 1e-9;
 
 bool apart(const Sphere& ball, const Point& center, double reach) {
@@ -18,9 +18,9 @@ bool apart(const Sphere& ball, const Point& center, double reach) {
 
 bool within(const Sphere& where, const Point& point) { return (point - where.center).norm() <= where.radius; }
 
-// Most triangles that only one ball of a level holds have no leaf near them once it is gone: nothing of such a triangle
-// is covered, and no circle bounds what is open. Appends its corners in the sphere. Not told where none is: then the
-// triangle may reach into the sphere or not.
+// Without the ball, most triangles that only one ball of a level covers have no leaf near them. Then the whole triangle
+// is open, and no circle bounds the open part. Returns true in that case and appends the triangle's corners in the
+// sphere. If no corner is in the sphere, it returns false, because the triangle may or may not reach into it.
 bool wholly_open(const std::array<Point, 3>& corners, const Sphere& where, std::span<const PathBall> near,
                  std::vector<OpenArc>& arcs) {
   if (std::any_of(near.begin(), near.end(), [](const PathBall& ball) { return ball.leaf; })) return false;
@@ -63,7 +63,7 @@ bool LevelCover::in_path_region(Index path_region, const Point& point) const {
   return true;
 }
 
-// The balls near the part of the triangle in the sphere, parents first.
+// Collects the balls near the part of the triangle in the sphere, parents first.
 void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change,
                         NearBalls& near) const {
   upper_.gather(corners, where, near);
@@ -84,14 +84,14 @@ void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where
   }
 }
 
-// Balls that meet it, in path regions that may.
+// Returns the balls that meet it, in path regions that may meet it.
 std::vector<Index> LevelCover::others_near(Index ball) const {
   std::vector<Index> others;
   find_others_near(ball, upper_.roots(), others);
   return others;
 }
 
-// Of those below some balls of the tree above.
+// Finds those below some balls of the tree above.
 void LevelCover::find_others_near(Index ball, std::span<const Index> upper, std::vector<Index>& others) const {
   const Sphere& sphere = balls_[ball].sphere;
   for (Index node : upper) {
@@ -117,7 +117,7 @@ void LevelCover::triangles_near(Index ball, std::vector<Index>& triangles) const
     for (std::size_t i = 0; i < others.size(); ++i) {
       const PlacedBall& other = balls_[others[i]];
       if (!surely_holds(other.sphere, box) || !path_holds(other.path_region, box)) continue;
-      std::swap(others[0], others[i]);  // boxes near each other come one after the other
+      std::swap(others[0], others[i]);  // adjacent boxes follow each other
       return true;
     }
     return false;

@@ -11,17 +11,19 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kTakingRounds = 8;  // of taking uncovered regions in, after those that search and those that only tighten
-constexpr double kFirstMargin = 0.5;  // of the last growth: what is left to be grown over is no smaller
-constexpr int kClosedRounds = 4;      // of the search that never uncovers anything
+// Rounds of covering uncovered regions, after those that search and those that only tighten.
+constexpr int kTakingRounds = 8;
+// Over the last growth: gaps that remain to be closed by growing are at least this large.
+constexpr double kFirstMargin = 0.5;
+constexpr int kClosedRounds = 4;  // rounds of the search that never uncovers anything
 
 class Finish {
  public:
   Finish(const Surface& surface, LevelSolver& solver, PartialTree& partial, const FinishOptions& options)
       : surface_(surface), solver_(solver), partial_(partial), options_(options), radius_(surface.bounding_radius()) {}
 
-  // Finds uncovered regions and has the balls take them in, until only those are left that the last growth fills. In
-  // the first rounds, the search goes on with what was found among its samples.
+  // Finds uncovered regions and assigns them to balls, until only those are left that the last growth closes. In the
+  // first rounds, places found in them are added to the samples, and the search goes on.
   void close_uncovered(TightenReport::Level& report) {
     Coverage coverage;
     std::vector<Sphere> changed_balls;
@@ -49,7 +51,7 @@ class Finish {
     }
   }
 
-  // Settles what is left by growing.
+  // Closes the rest by enlarging balls.
   void grow(TightenReport::Level& report) {
     take_balls();
     for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
@@ -60,7 +62,7 @@ class Finish {
     partial_.take_spheres(closed, places);
   }
 
-  // The surface is covered: what was grown carelessly is fitted again, with nothing uncovered.
+  // Now the surface is covered. Balls that were enlarged too much are fitted again without uncovering anything.
   void tighten_closed() {
     std::vector<std::vector<Index>> places;
     const SphereTree closed = partial_.tree(places);
@@ -99,7 +101,7 @@ class Finish {
           {{ball.center, ball.radius + tolerance::kCoverMargin * radius_}, partial_.parents()[ball.path_region]});
   }
 
-  // The balls that may have let something go, as they were.
+  // Returns the balls that may have uncovered something, as they were before.
   std::vector<Sphere> changed(const std::vector<LevelBall>& before) const {
     const std::vector<LevelBall>& after = solver_.balls();
     std::vector<Sphere> changed;

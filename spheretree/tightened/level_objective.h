@@ -11,11 +11,11 @@ namespace orchard::detail {
 // others.
 struct LevelCost {
   double power = 4;
-  double cap = 0, cap_power = 8;  // cap 0: none
+  double cap = 0, cap_power = 8;  // no cap if it is 0
   double size_power = 0;
-  double limit = 0;                      // mesh units; balls that are looser cost a thousand times as much; 0: none
-  double unit = 0;                       // mesh units; 0: the mean looseness of the balls that the level starts with
-  const WeightField* weights = nullptr;  // where looseness counts more; nullptr: alike everywhere
+  double limit = 0;                      // mesh units: looser balls cost a thousand times as much; none if it is 0
+  double unit = 0;                       // mesh units; 0 for the mean looseness of the level's first balls
+  const WeightField* weights = nullptr;  // where looseness counts more; nullptr for equal weights
 };
 
 // The objective that the search of a level minimizes. It does not change once its unit is known.
@@ -25,8 +25,8 @@ class LevelObjective {
   LevelObjective(const LevelCost& by, std::span<const LevelBall> start, double bounding_radius);
 
   double cost(const FittedBall& ball) const;
-  double cost(std::span<const LevelBall> balls) const;  // their sum
-  double slope(const FittedBall& ball) const;           // of a ball's cost, by its radius
+  double cost(std::span<const LevelBall> balls) const;  // the sum of the costs
+  double slope(const FittedBall& ball) const;           // the derivative of the ball's cost by its radius
   double unit() const { return by_.unit; }              // of the looseness, mesh units
 
  private:

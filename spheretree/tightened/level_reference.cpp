@@ -14,9 +14,9 @@
 namespace orchard::detail {
 namespace {
 
-// Larger levels of an octree are many times as loose as a tree's.
+// Larger levels are not compared, because those of an octree are then many times as loose as the tree's.
 constexpr Index kMostCompared = 4096;
-// Surfaces meet at least about four cubes of eight.
+// A surface meets at least about four of eight cubes.
 constexpr int kLogOfGrowth = 2;
 
 }  // namespace
@@ -36,7 +36,7 @@ LevelTightness tightness(std::span<const double> values) {
 
 OctreeReference::OctreeReference(const Surface& surface, std::span<const Index> spheres)
     : surface_(surface), spheres_(spheres.begin(), spheres.end()) {
-  // Level by level: the first one that no level has room for is not needed.
+  // Builds it level by level, up to the first level that is too large for all levels of the tree.
   const Index most = std::min(spheres.back(), kMostCompared);
   for (Index depth = 1; depth <= static_cast<Index>(std::bit_width(most) / kLogOfGrowth + 1); ++depth) {
     octree_ = octree(surface, {.depth = depth});

@@ -7,31 +7,32 @@
 
 namespace orchard::detail {
 
-// How tight a level is: mean and largest inaccuracy of its balls, in mesh units. 0: not measured.
+// The tightness of a level: the mean and the largest inaccuracy of its balls, in mesh units; 0 if it was not measured.
 struct LevelTightness {
   double mean = 0, max = 0;
 };
 
-// The inaccuracy of each ball of a level, in mesh units, as measure() has it, from above.
+// Returns an upper bound on the inaccuracy of each ball of a level, as measure() computes it, in mesh units.
 std::vector<double> inaccuracies(const Surface& surface, std::span<const LevelNode> level);
 LevelTightness tightness(std::span<const double> values);
 
-// The octree that a tree's levels are compared with: it says how loose a level may be, and gives starts and, where
-// nothing else is tight enough, whole levels.
+// The octree with which the levels of a tree are compared. It gives a limit for how loose a level may be, and starts,
+// and whole levels where no other method is tight enough.
 class OctreeReference {
  public:
-  // spheres: how many each level of the tree may have.
+  // `spheres` has the maximum number of spheres of each level of the tree.
   OctreeReference(const Surface& surface, std::span<const Index> spheres);
 
   const Sphere& root() const { return octree_.nodes[0].sphere; }
-  // The least mean and the least maximum of the octree's levels below the root that have at most so many spheres;
-  // infinite if there are none.
+  // Returns the smallest mean and the smallest maximum of the octree's levels below the root that have at most `balls`
+  // spheres; infinity if there are none.
   LevelTightness bound(Index balls);
-  // A tree's levels down to this one, the octree's own: for each, the deepest one that has room in it, so that a level
-  // may repeat the one above.
+  // Returns the octree's own levels for those of a tree down to this one. Each is the deepest one that has room there,
+  // so a level may repeat the one above.
   PartialTree levels(const PartialTree& root, Index level) const;
-  // The octree's balls for a level of so many, each in the path region with room that holds most of its samples. They
-  // are fewer if the octree's are; then the loosest balls are there twice, and one of the two is to go elsewhere.
+  // Returns the octree's balls for a level of `balls` spheres, each in the path region with room that contains most of
+  // its samples. If the octree has fewer, the loosest balls are repeated, and one of the two copies should be moved
+  // elsewhere.
   std::vector<LevelBall> start(const PathRegions& regions, Index balls, Index max_children) const;
 
  private:
@@ -41,8 +42,8 @@ class OctreeReference {
   const Surface& surface_;
   std::vector<Index> spheres_;
   SphereTree octree_;
-  std::vector<Index> begins_;             // of each level's nodes, and the end
-  std::vector<LevelTightness> measured_;  // by level, as far as it was asked for
+  std::vector<Index> begins_;             // where the nodes of each level begin, and the end of the last
+  std::vector<LevelTightness> measured_;  // the levels that have been measured so far
 };
 
 }  // namespace orchard::detail

@@ -13,7 +13,7 @@ constexpr Index kBatch = 16;
 
 Sphere sphere_of(const FittedBall& ball) { return {ball.center, ball.radius}; }
 
-// What a covering trial was judged by are the balls that meet its own, old and new.
+// A trial on a covering level was judged by the balls that meet its own balls, old and new.
 bool meets_any(const LevelTrial& trial, const LevelBalls& balls, const std::vector<Sphere>& changed) {
   const auto meets = [&](const FittedBall& ball) {
     return std::any_of(changed.begin(), changed.end(), [&](const Sphere& other) {
@@ -52,7 +52,7 @@ void LevelSearch::find_costs(const LevelBalls& balls) {
   for (Index b = 0; b < balls.size(); ++b) costs_[b] = objective_.cost(balls[b]);
 }
 
-// Trials begin where the cost is, and the less where they have failed already.
+// Trials begin where the cost is largest, and less often where they have failed before.
 void LevelSearch::want() {
   wanted_.resize(costs_.size());
   double sum = 0;
@@ -71,7 +71,8 @@ LevelTrial LevelSearch::propose(const LevelBalls& balls, std::uint64_t number, c
   return trial;
 }
 
-// A trial counts only if what it was judged by is still there: no earlier trial of the batch changed it.
+// A trial counts only if the balls by which it was judged are still there, so that no earlier trial of the batch
+// changed them.
 void LevelSearch::apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover) {
   std::vector<char> taken(balls.size(), 0);
   std::vector<Sphere> changed;

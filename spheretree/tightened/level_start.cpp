@@ -12,10 +12,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kLloydRounds = 8;  // of Lloyd's iteration
+constexpr int kLloydRounds = 8;  // rounds of Lloyd's iteration
 constexpr int kStartEvaluations = 8;
 
-// Finds the largest of numbers, the first if there are several, that never rise: a heap of what they once were.
+// Finds the largest of several numbers that never increase, and the first one if several are equal. It is a heap of
+// earlier values.
 class LargestFirst {
  public:
   explicit LargestFirst(const std::vector<double>& now) : now_(now) {
@@ -34,7 +35,7 @@ class LargestFirst {
 
  private:
   struct Entry {
-    double value;  // as it was when the entry was last looked at
+    double value;  // the value when the entry was last compared
     Index index;
   };
   static bool after(const Entry& one, const Entry& other) {
@@ -45,14 +46,15 @@ class LargestFirst {
   std::vector<Entry> heap_;
 };
 
-// Whether a ball with such a centre gets less loose than `least` by a point at a distance with this square.
+// Whether a ball with this distance of its centre becomes less loose than `least` by containing a point at this squared
+// distance.
 bool is_below(double least, double squared, double center_distance) {
   const double room = least - center_distance;
   return room > 0 && squared < room * room;
 }
 
-// While this runs, a ball's samples are those that it owns: every sample has one owner. A radius below 0 marks a ball
-// that owns none.
+// During this search, the samples of a ball are those that it owns, and every sample has one owner. A radius below 0
+// marks a ball that owns none.
 class LevelStart {
  public:
   LevelStart(const Surface& surface, const PathRegions& regions, const LevelOptions& options)
@@ -108,7 +110,7 @@ class LevelStart {
     }
   }
 
-  // The path region with room that holds most of the samples near a seed; kNone if all are full.
+  // Returns the path region with room that contains most of the samples near a place; kNone if all are full.
   Index region_for_seed(const FittedBall& seed, Index sample) const {
     const double near = 1.2 * (samples_.points[sample] - seed.center).norm();
     Index best = kNone, max = 0;
@@ -135,7 +137,7 @@ class LevelStart {
     });
   }
 
-  // Has each unused ball take its share of what one of the loosest holds.
+  // Moves each unused ball to share the samples of one of the loosest balls.
   void move_unused() {
     std::vector<Index> unused, used;
     for (Index b = 0; b < balls_.size(); ++b) {
@@ -162,7 +164,8 @@ class LevelStart {
     unused.radius = -1;
   }
 
-  // The ball that gets least loose by each sample; kNone if no ball lies in a path region of it.
+  // Returns for each sample the ball that becomes least loose by it; kNone if no ball lies in a path region of the
+  // sample.
   std::vector<Index> owners() const {
     struct RegionBalls {
       std::vector<Index> balls;
@@ -201,7 +204,7 @@ class LevelStart {
   const Samples& samples_;
   const LevelOptions& options_;
   std::vector<LevelBall> balls_;
-  std::vector<Index> children_;  // how many balls lie in each path region
+  std::vector<Index> children_;  // of each path region: the number of balls in it
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSampleEvaluations = 14, kSurfaceEvaluations = 10;
 
-// What a thread works in, kept from one ball to the next for the room that its lists have.
+// The memory of a thread, kept from one ball to the next to avoid allocations.
 struct Worker {
   Worker(const Surface& surface, BallMeasure measure) : fitter(surface, measure) {}
   BallFitter fitter;
@@ -21,7 +21,8 @@ struct Worker {
   std::vector<OpenArc> arcs;
 };
 
-// The ball fitted to the surface that it alone covers; nothing if that is not worth while, or would uncover any.
+// Returns the ball fitted to the part of the surface that only it covers; nullopt if that is not worthwhile or would
+// uncover something.
 std::optional<FittedBall> tighter_on_surface(const Surface& surface, const LevelBall& ball, const LevelCover& cover,
                                              Index number, Worker& worker) {
   const PlacedBall old = cover.balls()[number];
@@ -48,7 +49,7 @@ std::vector<Point> ends_of(const std::vector<OpenArc>& arcs) {
   return points;
 }
 
-// Balls that are apart share no sample: what one of them lets go of is none of the others' business.
+// Balls that are apart have no sample in common, so they can be fitted at the same time.
 void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
   struct Fit {
     std::optional<LevelBall> tighter;

@@ -77,7 +77,7 @@ SphereTree PartialTree::tree(std::vector<std::vector<Index>>& places) const {
   result.branching = 0;
   result.nodes.push_back({.sphere = levels_[0][0].sphere});
   places[0][0] = 0;
-  std::vector<Index> row{0};  // of the level, in the tree's order
+  std::vector<Index> row{0};  // the nodes of the level, in the tree's order
   for (std::size_t level = 0; level + 1 < levels_.size(); ++level) {
     std::vector<std::vector<Index>> children(levels_[level].size());
     for (Index i = 0; i < levels_[level + 1].size(); ++i)

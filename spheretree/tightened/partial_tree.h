@@ -9,16 +9,17 @@ namespace orchard::detail {
 
 struct LevelNode {
   Sphere sphere;
-  Index parent = kNone;  // on the level above
-  bool leaf = false;     // needs no children
-  bool grown = true;     // by the last growth (uncovered_regions.h)
+  Index parent = kNone;  // the number of the parent on the level above
+  bool leaf = false;     // whether it needs no children
+  bool grown = true;     // whether the last growth (uncovered_regions.h) has been applied to it
 };
 using Level = std::vector<LevelNode>;
 
-// A tree in the making, level by level, where parents may still change. Level 0 is the root, a ball around the surface.
+// A tree that is built level by level, in which parents may still change. Level 0 is the root, a ball around the
+// surface.
 class PartialTree {
  public:
-  // The root holds the surface, whose bounding radius is given.
+  // The root contains the surface, whose bounding radius is given.
   PartialTree(const Sphere& root, double bounding_radius);
 
   std::size_t size() const { return levels_.size(); }
@@ -26,21 +27,21 @@ class PartialTree {
   const Level& last() const { return levels_.back(); }
   std::span<const Level> levels() const { return levels_; }
   void add_level();
-  // The levels down to this one, as they are: what is below may have grown them.
+  // Returns the levels down to this one as they are now, including growth by later levels.
   PartialTree down_to(Index level) const;
 
-  // Nodes of the level above the last that need children; the path regions of these are what balls may lie in.
+  // The nodes of the level above the last that need children. Balls may lie in their path regions.
   std::span<const Index> parents() const { return parents_; }
-  // The balls from the root to each of them, without half of their last growth, or of what they leave around the
-  // surface.
+  // Returns the balls from the root to each of these nodes, without half of their last growth, or of the margin that
+  // they have around the surface.
   std::vector<std::vector<Sphere>> paths() const;
-  // The same of the nodes that are leaves already.
+  // Returns the same for the nodes that are already leaves.
   std::vector<std::vector<Sphere>> leaf_paths() const;
 
-  // A node above the last level that got no children, and was to have some, holds nothing that others do not: it is
-  // left out.
+  // Returns the tree. A node above the last level that was to get children but has none covers nothing that others do
+  // not, and is left out.
   SphereTree tree() const;
-  // The same, with each node's place in it; kNone: left out.
+  // Also returns the position of each node in the tree; kNone for those that are left out.
   SphereTree tree(std::vector<std::vector<Index>>& places) const;
   void take_spheres(const SphereTree& tree, const std::vector<std::vector<Index>>& places);
 

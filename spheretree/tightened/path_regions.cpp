@@ -70,7 +70,7 @@ void PathRegions::make_grid() {
   corner_ = box.min() - Vector::Constant(mean_radius);
   const Vector sides = box.sizes() + Vector::Constant(2 * mean_radius);
   cell_side_ = std::max(kCellSide * mean_radius, sides.maxCoeff() / kMostCells);
-  for (int k = 0; k < 3; ++k) cells_[k] = static_cast<Index>(sides[k] / cell_side_) + 1;
+  for (std::size_t k = 0; k < 3; ++k) cells_[k] = static_cast<Index>(sides[static_cast<int>(k)] / cell_side_) + 1;
   near_.resize(std::size_t{cells_[0]} * cells_[1] * cells_[2]);
   for (Index r = 0; r < size(); ++r) {
     const Sphere& ball = paths_[r].back();
@@ -85,8 +85,9 @@ void PathRegions::make_grid() {
 
 PathRegions::Cell PathRegions::cell_at(const Point& point) const {
   Cell cell;
-  for (int k = 0; k < 3; ++k) {
-    const double at = (point[k] - corner_[k]) / cell_side_;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    const double at = (point[axis] - corner_[axis]) / cell_side_;
     cell[k] = static_cast<Index>(std::clamp(at, 0.0, cells_[k] - 1.0));
   }
   return cell;

@@ -30,7 +30,7 @@ detail::Work work_for(Effort effort) {
   return {0.7, 14, 0, 48, {6, 1}};
 }
 
-// As the finished tree is compared with it; without nodes if it is not.
+// Returns the octree with which the finished tree is compared; without nodes if it is not.
 SphereTree octree_to_compare_with(const Surface& surface, const TightenOptions& options) {
   if (!detail::goes_on_everywhere(options.refinement)) return {};
   SphereTree compared = octree(surface, {.depth = options.depth});
@@ -76,7 +76,7 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   TightenOptions own = options;
   if (options.effort != Effort::high)
     return Tightener(surface, samples, surface.bounding_ball(), own, work_for(options.effort), weights, progress).run();
-  // The later runs say how far they are in what is left, and never go back.
+  // Later runs report their share of the rest, and the reported progress never decreases.
   double reported = 0;
   const auto share = [&](double from, double to) -> Progress {
     return [&, from, to](std::string_view stage, double fraction) {
@@ -92,7 +92,8 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   const std::vector<LevelLooseness> allowed = looseness_by_level(usual.tree, compared, surface);
   if (allowed.size() != usual.report.levels.size() + 1) return usual;
   own.effort = Effort::high;
-  // Levels below may have spheres removed above: then those above are left as they are.
+  // With better lower levels, more spheres may become redundant above them. Then the levels above stay as they are in
+  // the usual tree.
   for (Index same = 0; same < usual.report.levels.size();) {
     Tightener thorough(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), weights, rest);
     TightenBuild best = thorough.run_beside(standard, same, allowed, compared);

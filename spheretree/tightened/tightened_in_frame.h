@@ -4,8 +4,8 @@
 
 namespace orchard::detail {
 
-// tightened_tree() of a surface in its frame, with points that were made there or taken there (canonical_frame.h).
-// `weights`: in that frame, where looseness counts more.
+// Builds tightened_tree() for a surface in its frame, with points that were sampled there or moved there
+// (canonical_frame.h). `weights` are in that frame and say where looseness counts more.
 TightenBuild tightened_in_frame(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options,
                                 const Progress& progress, const WeightField& weights = {});
 

@@ -7,8 +7,8 @@
 
 namespace orchard::detail {
 
-// What a level is compared by: its spheres' inaccuracy, in mesh units, and the volume outside that it has with the
-// leaves above it.
+// By what a level is compared: the inaccuracy of its spheres, in mesh units, and the volume outside that it has
+// together with the leaves above it.
 struct LevelLooseness {
   double mean = 0, max = 0, outside_volume = 0;
   bool is_within(const LevelLooseness& other) const {
@@ -17,18 +17,19 @@ struct LevelLooseness {
   double product() const { return mean * max * outside_volume; }
 };
 
-// Whether a tree that is refined so goes on everywhere down to its depth.
+// Whether a tree with this refinement is refined everywhere down to its depth.
 inline bool goes_on_everywhere(const Refinement& refinement) {
   return refinement.error <= 0 && refinement.regions.empty();
 }
 
-// Whether removing redundant spheres has made a level looser in the mean than the one above it, or than the octree's:
-// tight spheres can be redundant. Such a tree keeps its redundant spheres. An octree without nodes stands for trees
-// that are not compared, since they do not go on everywhere down to their depth. Precondition: both trees are measured.
+// Whether removing redundant spheres has made the mean of a level looser than that of the level above it or of the
+// octree. That happens because tight spheres can be redundant. Such a tree keeps its redundant spheres. An octree
+// without nodes means that the tree is not compared, because it is not refined everywhere. Precondition: both trees are
+// measured.
 bool is_loosened(const SphereTree& tree, const SphereTree& octree);
 
-// That of each level, as it is in the finished tree: without redundant spheres, unless it is_loosened() by that.
-// Precondition: the tree is conservative, the octree measured.
+// Returns the looseness of each level of the finished tree: without redundant spheres, unless is_loosened() by removing
+// them. Precondition: the tree is conservative, and the octree is measured.
 std::vector<LevelLooseness> looseness_by_level(const SphereTree& tree, const SphereTree& octree,
                                                const Surface& surface);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kClosingEvaluations = 10;
 constexpr int kTrialClosingRounds = 8;
-// What breaks ties between balls that would not get looser at all, as a fraction of the radius.
+// As a fraction of the radius: a small cost that decides between balls that would not get looser at all.
 constexpr double kTie = 1e-12;
 
 Sphere around(const LevelBalls& all, std::span<const Index> some) {
@@ -42,7 +42,7 @@ class TrialCloser {
 
   bool worthwhile() const { return objective_.cost(trial_.balls) < trial_.max_cost; }
 
-  // False: after some rounds something is still open, or the trial is not worthwhile any more.
+  // Returns false if something is still open after some rounds, or if the trial is no longer worthwhile.
   bool close() {
     for (int round = 1; round <= kTrialClosingRounds; ++round) {
       arcs_.clear();
@@ -62,7 +62,7 @@ class TrialCloser {
     return false;
   }
 
-  // Each to what it alone holds.
+  // Fits each ball to what only it contains.
   void refit() {
     for (std::size_t i = 0; i < added_.size(); ++i) {
       std::vector<PlacedBall> others = added_;
@@ -88,7 +88,7 @@ class TrialCloser {
     added_[i] = {{ball.center, ball.radius}, trial_.balls[i].path_region};
   }
 
-  // Of the trial's balls in whose path region both ends lie.
+  // Returns the cheapest of the trial's balls whose path region contains both ends.
   std::size_t cheapest_candidate(const OpenArc& arc) const {
     double min = std::numeric_limits<double>::infinity();
     std::size_t candidate = kNone;
@@ -111,9 +111,9 @@ class TrialCloser {
   LevelTrial& trial_;
   const double radius_, margin_;
   BallFitter& fitter_;
-  std::vector<PlacedBall> added_;  // the trial's balls, as the cover takes them
-  std::vector<Sphere> where_;      // what may be open
-  std::vector<Index> resting_;     // triangles in which it may
+  std::vector<PlacedBall> added_;  // the trial's balls in the form of the cover
+  std::vector<Sphere> where_;      // places that may be open
+  std::vector<Index> resting_;     // triangles that may be open
   LevelCover::Scratch scratch_;
   std::vector<OpenArc> arcs_;
 };

@@ -67,9 +67,9 @@ TEST(Inaccuracy, IsZeroForASphereInsideTheSolid) {
   EXPECT_EQ(inaccuracy(surface, {Point::Zero(), 0.9}, {kTolerance, 0}).upper, 0);
 }
 
-// The signed distance is 0 on the walls between the cubes, which a search must not follow down: it took 200,000 places
+// The signed distance is 0 on the faces between the cubes, which a search must not follow down: it took 200,000 places
 // for each of these spheres.
-TEST(Inaccuracy, IsZeroForASphereAcrossInnerWallsInNoTime) {
+TEST(Inaccuracy, IsZeroForASphereAcrossInteriorSurfaceInNoTime) {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {
     const Point at(i % 2, (i / 2) % 2, i / 4);

@@ -62,7 +62,7 @@ RUNS = [
     ("inspect_axis", "inspect axis/box.ma"),
     ("spheres", "spheres box.obj -n 6 -o spheres --effort low"),
     ("spheres", "spheres box.obj -n 20 --fit particles --masses -o particles --effort low"),
-    ("spheres", "spheres box.obj -n 6 --fit balanced --curve 2,4 -o balanced --effort low"),
+    ("spheres", "spheres box.obj -n 6 --fit balanced --error-curve 2,4 -o balanced --effort low"),
     ("inspect_spheres", "inspect spheres/box-set.txt"),
     ("inspect_points", "inspect points.xyz"),
     ("audit", "audit spheres/box-set.txt box.obj"),

@@ -196,7 +196,7 @@ TEST(ReadOff, NamesTheLineAndTheFault) {
       {start + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", {"line 4", "three finite numbers"}},
       {start + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", {"line 4", "three finite numbers"}},
       {start + points, {"line 5", "0 of 1 faces"}},
-      {start + points + "2 0 1\n", {"no faces of three corners"}},
+      {start + points + "2 0 1\n", {"no faces with three"}},
       {start + points + "x 0 1\n", {"line 6", "3 or more"}},
       {start + points + "-3 0 1 2\n", {"line 6", "3 or more"}},
       {start + points + "3 0 1\n", {"line 6", "ends before corner 3"}},

@@ -37,9 +37,9 @@ std::vector<Vector> vertex_normals(const TriangleMesh& mesh) {
 }
 
 // Normal noise along the normals, by Box and Muller.
-TriangleMesh with_noise(TriangleMesh mesh, double level, std::uint64_t seed) {
+TriangleMesh with_noise(TriangleMesh mesh, double deviation, std::uint64_t seed) {
   const std::vector<Vector> normals = vertex_normals(mesh);
-  const double deviation = level * diagonal_length(mesh);
+  const double deviation = deviation * diagonal_length(mesh);
   Random random(seed, 7);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
@@ -82,44 +82,44 @@ double root_mean_square(const TriangleMesh& mesh, const TriangleMesh& clean) {
   return std::sqrt(sum / static_cast<double>(mesh.vertices.size())) / diagonal_length(clean);
 }
 
-TEST(NoiseLevel, IsFoundWithinAFifth) {
+TEST(NoiseDeviation, IsFoundWithinAFifth) {
   for (const TriangleMesh& clean : {icosphere(4), grid_box(16), torus(48, 24)})
-    for (const double level : {0.001, 0.003, 0.006})
+    for (const double deviation : {0.001, 0.003, 0.006})
       for (std::uint64_t seed = first_seed(); seed < first_seed() + 3 * more(); ++seed)
-        EXPECT_NEAR(noise_level(with_noise(clean, level, seed)), level, 0.2 * level) << seed;
+        EXPECT_NEAR(noise_deviation(with_noise(clean, deviation, seed)), deviation, 0.2 * deviation) << seed;
 }
 
-TEST(NoiseLevel, OfCleanMeshesIsLow) {
-  for (const TriangleMesh& clean : {icosphere(4), torus(48, 24)}) EXPECT_LT(noise_level(clean), 1e-4);
-  EXPECT_EQ(noise_level(l_shape()), 0);
-  EXPECT_EQ(noise_level(grid_box(16)), 0) << "its sides are flat";
+TEST(NoiseDeviation, OfCleanMeshesIsLow) {
+  for (const TriangleMesh& clean : {icosphere(4), torus(48, 24)}) EXPECT_LT(noise_deviation(clean), 1e-4);
+  EXPECT_EQ(noise_deviation(l_shape()), 0);
+  EXPECT_EQ(noise_deviation(grid_box(16)), 0) << "its sides are flat";
 }
 
-TEST(NoiseLevel, DoesNotDependOnSizeOrThreads) {
+TEST(NoiseDeviation, DoesNotDependOnSizeOrThreads) {
   TriangleMesh mesh = with_noise(icosphere(3), 0.004, 5);
-  const double level = noise_level(mesh);
+  const double deviation = noise_deviation(mesh);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(noise_level(mesh), level);
+    EXPECT_EQ(noise_deviation(mesh), deviation);
   }
   for (Point& vertex : mesh.vertices) vertex *= 0x1p-20;
-  EXPECT_EQ(noise_level(mesh), level);
+  EXPECT_EQ(noise_deviation(mesh), deviation);
 }
 
 TEST(Denoise, BringsTheSurfaceBackToWithinHalfOfTheNoise) {
   for (const TriangleMesh& clean : {icosphere(4), grid_box(16), torus(96, 48)})
-    for (const double level : {0.001, 0.003, 0.006})
+    for (const double deviation : {0.001, 0.003, 0.006})
       for (std::uint64_t seed = first_seed(); seed < first_seed() + 3 * more(); ++seed) {
-        const DenoisedMesh smooth = denoise(with_noise(clean, level, seed), {.level = level});
-        EXPECT_LT(root_mean_square(smooth.mesh, clean), 0.55 * level) << level;
-        EXPECT_LE(smooth.moved_max, 3 * level * (1 + 1e-9));
+        const DenoisedMesh smooth = denoise(with_noise(clean, deviation, seed), {.deviation = deviation});
+        EXPECT_LT(root_mean_square(smooth.mesh, clean), 0.55 * deviation) << deviation;
+        EXPECT_LE(smooth.moved_max, 3 * deviation * (1 + 1e-9));
         EXPECT_EQ(smooth.mesh.triangles, clean.triangles);
       }
 }
 
 TEST(Denoise, KeepsTheEdgesOfABox) {
   const TriangleMesh clean = grid_box(16);
-  const DenoisedMesh smooth = denoise(with_noise(clean, 0.002, 2), {.level = 0.002});
+  const DenoisedMesh smooth = denoise(with_noise(clean, 0.002, 2), {.deviation = 0.002});
   double worst = 0;
   for (std::size_t v = 0; v < clean.vertices.size(); ++v) {
     const Point& at = clean.vertices[v];
@@ -131,34 +131,34 @@ TEST(Denoise, KeepsTheEdgesOfABox) {
 
 TEST(Denoise, DoesNotDependOnSizeOrThreads) {
   TriangleMesh mesh = with_noise(icosphere(3), 0.004, 5);
-  const DenoisedMesh smooth = denoise(mesh, {.level = 0.004});
+  const DenoisedMesh smooth = denoise(mesh, {.deviation = 0.004});
   EXPECT_GT(smooth.rounds, 0);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(denoise(mesh, {.level = 0.004}).mesh.vertices, smooth.mesh.vertices);
+    EXPECT_EQ(denoise(mesh, {.deviation = 0.004}).mesh.vertices, smooth.mesh.vertices);
   }
   for (Point& vertex : mesh.vertices) vertex *= 0x1p10;
-  const DenoisedMesh larger = denoise(mesh, {.level = 0.004});
+  const DenoisedMesh larger = denoise(mesh, {.deviation = 0.004});
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     ASSERT_EQ(larger.mesh.vertices[v], Point(smooth.mesh.vertices[v] * 0x1p10));
 }
 
 TEST(Denoise, LeavesTheMeshWithoutNoiseOrRounds) {
   const TriangleMesh mesh = with_noise(icosphere(2), 0.004, 5);
-  EXPECT_EQ(denoise(mesh, {.level = 0}).mesh.vertices, mesh.vertices);
-  EXPECT_EQ(denoise(mesh, {.level = 0.004, .max_rounds = 0}).mesh.vertices, mesh.vertices);
+  EXPECT_EQ(denoise(mesh, {.deviation = 0}).mesh.vertices, mesh.vertices);
+  EXPECT_EQ(denoise(mesh, {.deviation = 0.004, .max_rounds = 0}).mesh.vertices, mesh.vertices);
 }
 
 TEST(Denoise, LeavesAFlatMeshInItsPlane) {
   const TriangleMesh square{{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)}, {{0, 1, 2}, {0, 2, 3}}};
-  for (const Point& vertex : denoise(square, {.level = 0.01}).mesh.vertices) EXPECT_EQ(vertex.z(), 0);
+  for (const Point& vertex : denoise(square, {.deviation = 0.01}).mesh.vertices) EXPECT_EQ(vertex.z(), 0);
 }
 
-TEST(Denoise, RefusesLevelsThatAreNone) {
+TEST(Denoise, RefusesDeviationsOutOfRange) {
   const TriangleMesh mesh = icosphere(1);
-  for (const double level : {-0.001, 0.051, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW(denoise(mesh, {.level = level}), InputError) << level;
-  EXPECT_THROW(denoise(mesh, {.level = 0.001, .max_rounds = -1}), InputError);
+  for (const double deviation : {-0.001, 0.051, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(denoise(mesh, {.deviation = deviation}), InputError) << deviation;
+  EXPECT_THROW(denoise(mesh, {.deviation = 0.001, .max_rounds = -1}), InputError);
 }
 
 }  // namespace

@@ -110,19 +110,20 @@ TEST(SimulationMeshes, TellWhatWasLeftOut) {
 }
 
 TEST(SimulationMeshes, AreRefusedWithPlaceFaultAndRemedy) {
-  const std::pair<const char*, const char*> cases[] = {{"vtk/huge-counts.vtk", "points are promised"},
-                                                       {"vtk/huge-polygons.vtk", "numbers are promised"},
-                                                       {"vtk/nan.vtk", "line 6"},
-                                                       {"vtk/structured.vtk", "save its surface"},
-                                                       {"msh/huge.msh", "line 5"},
-                                                       {"msh/missing-node.msh", "names node 7"},
-                                                       {"mesh/out-of-range.mesh", "line 8"},
-                                                       {"meshb/loop.meshb", "byte 8"},
-                                                       {"vtp/wild-offsets.vtp", "do not ascend"},
-                                                       {"vtp/wild-points.vtp", "names point 77"},
-                                                       {"vtp/fewer-points.vtp", "12 coordinates of 99999999999 points"},
-                                                       {"vtp/nan-used.vtp", "finite"},
-                                                       {"vtp/appended-lz4.vtp", "save it with zlib"}};
+  const std::pair<const char*, const char*> cases[] = {
+      {"vtk/huge-counts.vtk", "points are promised"},
+      {"vtk/huge-polygons.vtk", "numbers are promised"},
+      {"vtk/nan.vtk", "line 6"},
+      {"vtk/structured.vtk", "save its surface"},
+      {"msh/huge.msh", "line 5"},
+      {"msh/missing-node.msh", "names node 7"},
+      {"mesh/out-of-range.mesh", "line 8"},
+      {"meshb/loop.meshb", "byte 8"},
+      {"vtp/wild-offsets.vtp", "do not ascend"},
+      {"vtp/wild-points.vtp", "names point 77"},
+      {"vtp/fewer-points.vtp", "12 coordinates do not fit 99999999999 points"},
+      {"vtp/nan-used.vtp", "finite"},
+      {"vtp/appended-lz4.vtp", "save it with zlib"}};
   for (const auto& [file, words] : cases) test::expect_input_error([&] { read_mesh(corpus(file)); }, {file, words});
   test::expect_input_error([&] { read_mesh_and_report(corpus("vtp/image.vti"), "vtp"); },
                            {"PolyData and UnstructuredGrid"});

@@ -117,7 +117,7 @@ TEST(MedialAxis, OfATorusFollowsTheCoreCircle) {
   int wide = 0;
   for (Index i = 0; i < axis.size(); ++i) {
     const Point& c = axis.centers[i];
-    // The flat facets have spurs between them; what is seen between walls is not theirs.
+    // The flat facets have spurs between them; what is seen between two sides of the solid is not theirs.
     if (angles[i] < 2) continue;
     ++wide;
     const double from_core = std::hypot(std::hypot(c.x(), c.y()) - 1, c.z());

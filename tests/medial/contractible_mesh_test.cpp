@@ -184,7 +184,7 @@ TEST(LeastVertices, AreNoMoreThanThoseOfAnyComplexAndThoseOfSome) {
   EXPECT_EQ(detail::least_vertices(0, 10), 6u);
 }
 
-TEST(ContractibleMesh, FoldsRingsThatShareAVertexToTheLeastNumber) {
+TEST(ContractibleMesh, MergesEdgesOfRingsThatShareAVertexDownToTheLeastNumber) {
   for (const int rings : {1, 2, 3, 5, 8}) {
     MedialMesh rose;
     rose.centers.emplace_back(0, 0, 0);
@@ -201,7 +201,7 @@ TEST(ContractibleMesh, FoldsRingsThatShareAVertexToTheLeastNumber) {
     complete(rose);
     ContractibleMesh mesh(rose);
     EXPECT_TRUE(contractible_edges(mesh).empty());
-    while (mesh.fold()) {
+    while (mesh.merge_edges()) {
       EXPECT_EQ(topology(mesh.mesh()), (Topology{1, rings, 0}));
       EXPECT_NO_THROW(validate(mesh.mesh()));
     }

@@ -75,8 +75,8 @@ std::vector<GapCase> gap_cases() {
       {"Fig_6_15_Knees", extruded(knees(0.02), 1), points(700, 150), 0.25},
       {"Fig_6_18_ShortShelf", extruded(short_shelf(0.05), 1), points(500, 150), 0.25},
       {"Fig_6_19_TwoTeeth", extruded(two_teeth(0.04), 1), points(1000, 200), 0.25},
-      {"Fig_6_21_VNotch", extruded(v_notch(0.15), 1), points(700, 150), 0.25},
-      {"Fig_6_22_UNotch", extruded(u_notch(0.05), 1), points(700, 150), 0.25},
+      {"Fig_6_21_VGroove", extruded(v_groove(0.15), 1), points(700, 150), 0.25},
+      {"Fig_6_22_UGroove", extruded(u_groove(0.05), 1), points(700, 150), 0.25},
       {"UShape", u_shape(0.02), points(800, 200), 0.3},
       {"TwoBoxes", two_boxes(0.01), points(600, 200), 0.5},
       {"TwoBoxesHairApart", two_boxes(1e-4), points(600, 200), 0.5},
@@ -202,8 +202,8 @@ TEST(GapRepair, StrictFlagsAllThatLooseFlags) {
   EXPECT_GT(crossing[1], 0u);
 }
 
-TEST(GapRepair, ForgivesSmallFoldsWithinTheJoinedRadius) {
-  const Surface surface(test::extruded(test::v_notch(0.15), 1));
+TEST(GapRepair, ForgivesSmallValleysWithinTheJoinedRadius) {
+  const Surface surface(test::extruded(test::v_groove(0.15), 1));
   Index last = kNone;
   for (const double radius : {0.0, 1.0, 4.0, 1000.0}) {
     const GapRepair repaired = sampled_and_repaired(surface, points(700, 150),

@@ -18,7 +18,7 @@ MedialMesh completed(MedialMesh mesh) {
   return mesh;
 }
 
-// Three squares of n x n cells around a common edge of length 1, and a wire of length 3 from its end.
+// Three squares of n x n cells around a common edge of length 1, and a curve of length 3 from its end.
 MedialMesh three_squares(int n) {
   MedialMesh mesh;
   std::vector<std::vector<std::vector<Index>>> number(3);
@@ -70,7 +70,7 @@ TEST(ShapeMeasures, OfSheetsAroundASeamAreThoseByHand) {
   EXPECT_EQ(own.small_sheets, 0u);
   EXPECT_EQ(own.tiny_sheets, 0u);
   EXPECT_NEAR(own.seam_length, 1, 1e-12);
-  EXPECT_NEAR(own.wire_length, 3, 1e-12);
+  EXPECT_NEAR(own.curve_length, 3, 1e-12);
   EXPECT_NEAR(own.quality_mean, 6 / std::sqrt(3.0) * 0.5 / ((2 + std::sqrt(2.0)) / 2 * std::sqrt(2.0)), 1e-12);
   // Two corners each; the ends of the seam have three border edges.
   EXPECT_NEAR(own.border_turns, 6.0 / own.border_vertices, 1e-12);

@@ -16,7 +16,7 @@
 namespace orchard {
 namespace {
 
-// Three sheets on one seam, the first of two triangles that end in a sharp edge, and a wire.
+// Three sheets on one seam, the first of two triangles that end in a sharp edge, and a curve.
 MedialMesh seam() {
   MedialMesh mesh;
   mesh.centers = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {1, 1, 0.1}, {3, 0, 0}};
@@ -41,7 +41,7 @@ class MedialMeshFormats : public testing::Test {
       std::filesystem::temp_directory_path() / ("orchard_formats_" + std::to_string(getpid()));
 };
 
-TEST_F(MedialMeshFormats, FlagSeamsWiresAndSharpEdgesAndReadBackTheSame) {
+TEST_F(MedialMeshFormats, FlagSeamsCurvesAndSharpEdgesAndReadBackTheSame) {
   const MedialMesh mesh = seam();
   const FlaggedMedialMesh flagged = with_feature_flags(mesh);
   ASSERT_EQ(flagged.edges.size(), mesh.edges.size());
@@ -99,10 +99,10 @@ TEST_F(MedialMeshFormats, ArePlyThatReadersTakeWithRadiiAndEdges) {
   EXPECT_TRUE(lines && (lines >> std::ws).eof());
 }
 
-TEST_F(MedialMeshFormats, AreObjWithAGroupForEachSheetAndOneOfWires) {
+TEST_F(MedialMeshFormats, AreObjWithAGroupForEachSheetAndOneOfCurves) {
   const std::string text = to_obj(seam());
   for (const char* group :
-       {"g sheet0\nf 1 2 3\nf 2 3 6\n", "g sheet1\nf 1 2 4\n", "g sheet2\nf 1 2 5\n", "g wires\nl 2 7\n"})
+       {"g sheet0\nf 1 2 3\nf 2 3 6\n", "g sheet1\nf 1 2 4\n", "g sheet2\nf 1 2 5\n", "g curves\nl 2 7\n"})
     EXPECT_NE(text.find(group), std::string::npos) << group << text;
   EXPECT_EQ(read_mesh(written(text, ".obj")).triangles.size(), 4U);
 }

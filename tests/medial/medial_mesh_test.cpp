@@ -209,13 +209,13 @@ TEST_F(MaFile, ThatIsDamagedIsRefusedByNameAndLine) {
   EXPECT_NE(fault("4294967295 0 0\nv 0 0 0 1\n").find("cut off"), std::string::npos);
   EXPECT_NE(fault("1 1 0\nv 0 0 0 1\ne 0 1\n").find("beyond the last vertex"), std::string::npos);
   EXPECT_NE(fault("1 1 0\nv 0 0 0 1\ne 0 0\n").find("twice"), std::string::npos);
-  EXPECT_NE(fault("1 0 0\nv 0 0 0 -1\n").find("negative radius"), std::string::npos);
+  EXPECT_NE(fault("1 0 0\nv 0 0 0 -1\n").find("the radius is negative"), std::string::npos);
   EXPECT_NE(fault("1 0 0\nv 0 nan 0 1\n").find("not finite"), std::string::npos);
   EXPECT_NE(fault("1 0 0\nx 0 0 0 1\n").find("starts with \"v\""), std::string::npos);
   EXPECT_NE(fault("-1 0 0\n").find("whole number"), std::string::npos);
-  EXPECT_NE(fault("2 0 0\nv 0 0 0 1 0 0\nv 0 0 0 1 0 2\n").find("line 3: a flag"), std::string::npos);
-  EXPECT_NE(fault("2 1 0\nv 0 0 0 1\nv 0 0 0 1\ne 0 1 0 -1\n").find("line 4: a flag"), std::string::npos);
-  EXPECT_NE(fault("1 0 0\nv 0 0 0 1 4294967296\n").find("32-bit"), std::string::npos);
+  EXPECT_NE(fault("2 0 0\nv 0 0 0 1 0 0\nv 0 0 0 1 0 2\n").find("line 3: the flag"), std::string::npos);
+  EXPECT_NE(fault("2 1 0\nv 0 0 0 1\nv 0 0 0 1\ne 0 1 0 -1\n").find("line 4: the flag"), std::string::npos);
+  EXPECT_NE(fault("1 0 0\nv 0 0 0 1 4294967296\n").find("32 bits"), std::string::npos);
   EXPECT_NE(fault("1 0 0\nv 0 0 0 1 0 1\n").find("every vertex is flagged as deleted"), std::string::npos);
   EXPECT_THROW(read_ma("no/such/file.ma"), InputError);
 }

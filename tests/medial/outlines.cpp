@@ -59,11 +59,11 @@ Outline two_teeth(double gap) {
           {3.5, top}, {2.5, top}, {2.5, 1}, {1.5, 1}, {1.5, top}, {0.5, top}, {0.5, 1}, {0, 1}};
 }
 
-Outline v_notch(double width) {
+Outline v_groove(double width) {
   return {{0, 0}, {3, 0}, {3, 2}, {1.5 + width / 2, 2}, {1.5, 0.3}, {1.5 - width / 2, 2}, {0, 2}};
 }
 
-Outline u_notch(double width) {
+Outline u_groove(double width) {
   const double left = 1.5 - width / 2, right = 1.5 + width / 2;
   return {{0, 0}, {3, 0}, {3, 2}, {right + width, 2}, {right, 0.3}, {left, 0.3}, {left - width, 2}, {0, 2}};
 }

@@ -15,7 +15,7 @@ Outline thin_bridge(double thickness);  // 6.14: two blocks joined by a bridge t
 Outline knees(double gap);              // 6.15: two legs whose knees bend towards each other
 Outline short_shelf(double gap);        // 6.18: a long side faces a short one across a gap
 Outline two_teeth(double gap);          // 6.19: a ceiling that two teeth come near, with nothing between them
-Outline v_notch(double width);          // 6.21: a deep V cut into a block
-Outline u_notch(double width);          // 6.22: a U with a bottom that small
+Outline v_groove(double width);         // 6.21: a deep V cut into a block
+Outline u_groove(double width);         // 6.22: a U with a bottom that small
 
 }  // namespace orchard::test

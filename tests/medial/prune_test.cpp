@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "axis/scale_axis.h"
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/random.h"
 #include "orchard/medial/build.h"
+#include "orchard/medial/importance.h"
 #include "orchard/medial/topology.h"
 #include "support/shapes.h"
 
@@ -25,7 +25,7 @@ MedialAxis axis_of(const Surface& surface, Index points = 1000) {
 TEST(Prune, WithTheDefaultsChangesNothing) {
   const Surface surface(test::l_shape());
   const MedialAxis axis = axis_of(surface);
-  const MedialAxis same = prune(axis, {});
+  const MedialAxis same = prune(surface, axis, {});
   EXPECT_EQ(same.centers, axis.centers);
   EXPECT_EQ(same.neighbors.items, axis.neighbors.items);
   EXPECT_EQ(same.faces.items, axis.faces.items);
@@ -39,7 +39,7 @@ TEST(Prune, KeepsTheTopologyWhateverTheOptions) {
     for (const PruneOptions& options : {PruneOptions{.angle = 20 * kDegree}, PruneOptions{.angle = 100 * kDegree},
                                         PruneOptions{.angle = std::numbers::pi}, PruneOptions{.scale = 1.1},
                                         PruneOptions{.scale = 5}, PruneOptions{.angle = 60 * kDegree, .scale = 1.3}}) {
-      const MedialAxis pruned = prune(axis, options);
+      const MedialAxis pruned = prune(surface, axis, options);
       validate(pruned, surface);
       const MedialMesh result = medial_mesh(pruned);
       validate(result);
@@ -54,7 +54,7 @@ TEST(Prune, CutsMoreOffForLargerAnglesAndScales) {
   const MedialAxis axis = axis_of(surface);
   Index last = axis.size() + 1;
   for (const double angle : {0.0, 30.0, 90.0, 180.0}) {
-    const Index left = prune(axis, {.angle = angle * kDegree}).size();
+    const Index left = prune(surface, axis, {.angle = angle * kDegree}).size();
     EXPECT_LE(left, last);
     last = left;
   }
@@ -65,7 +65,7 @@ TEST(Prune, CutsMoreOffForLargerAnglesAndScales) {
 TEST(Prune, ByAngleSeparatesTheSheetsOfABox) {
   const Surface surface(test::box({0, 0, 0}, {1, 4, 4}));
   const MedialAxis axis = axis_of(surface, 2000);
-  const MedialAxis middle = prune(axis, {.angle = 150 * kDegree});
+  const MedialAxis middle = prune(surface, axis, {.angle = 150 * kDegree});
   const auto faces_at = [](const MedialAxis& some, bool in_the_middle) {
     Index count = 0;
     for (Index face = 0; face < some.faces.size(); ++face) {
@@ -78,13 +78,13 @@ TEST(Prune, ByAngleSeparatesTheSheetsOfABox) {
   // What stays of the others lies nearer to the edges than the points do to each other, where angles mean nothing.
   EXPECT_GT(faces_at(middle, true), 0.6 * faces_at(axis, true));
   EXPECT_LT(faces_at(middle, false), 0.5 * faces_at(axis, false));
-  EXPECT_GT(faces_at(prune(axis, {.angle = 60 * kDegree}), false), 0.8 * faces_at(axis, false));
+  EXPECT_GT(faces_at(prune(surface, axis, {.angle = 60 * kDegree}), false), 0.8 * faces_at(axis, false));
 }
 
 TEST(Prune, ByScaleCutsTheSheetsIntoEdges) {
   const Surface surface(test::box({0, 0, 0}, {1, 4, 4}));
   const MedialAxis axis = axis_of(surface, 2000);
-  const MedialAxis pruned = prune(axis, {.scale = 2.5});
+  const MedialAxis pruned = prune(surface, axis, {.scale = 2.5});
   // A ball on a sheet into an edge, at depth t, has its centre sqrt(2) (0.5 - t) from the largest one there, which
   // holds it when both are enlarged by more than sqrt(2).
   EXPECT_LT(pruned.size(), axis.size() / 2);
@@ -94,33 +94,64 @@ TEST(Prune, ByScaleCutsTheSheetsIntoEdges) {
 }
 
 TEST(Prune, RefusesOptionsOutOfRange) {
-  EXPECT_THROW(prune({}, {.angle = -1}), InputError);
-  EXPECT_THROW(prune({}, {.angle = 4}), InputError);
-  EXPECT_THROW(prune({}, {.scale = 0.5}), InputError);
+  const Surface ball(test::icosphere(1));
+  EXPECT_THROW(prune(ball, {}, {.angle = -1}), InputError);
+  EXPECT_THROW(prune(ball, {}, {.angle = 4}), InputError);
+  EXPECT_THROW(prune(ball, {}, {.scale = 0.5}), InputError);
+  EXPECT_THROW(prune(ball, {}, {.lambda = -0.1}), InputError);
+  EXPECT_THROW(prune(ball, {}, {.erosion = std::nan("")}), InputError);
 }
 
-TEST(CoveredWhenScaled, AgreesWithEveryPair) {
-  std::vector<Point> centers;
-  std::vector<double> radii;
-  for (Index i = 0; i < 300; ++i) {
-    Random random(9, i);
-    centers.emplace_back(random.uniform(), random.uniform(), random.uniform());
-    radii.push_back(random.uniform(0.01, 0.4));
-  }
-  for (const double scale : {1.0, 1.2, 2.0}) {
-    const std::vector<std::uint8_t> covered = detail::covered_when_scaled(centers, radii, scale);
-    int count = 0;
-    for (std::size_t i = 0; i < centers.size(); ++i) {
-      bool expected = false;
-      for (std::size_t k = 0; scale > 1 && k < centers.size(); ++k) {
-        expected = expected ||
-                   (radii[k] > radii[i] && (centers[i] - centers[k]).norm() - scale * radii[k] < -scale * radii[i]);
-      }
-      EXPECT_EQ(covered[i] != 0, expected) << i;
-      count += expected ? 1 : 0;
+MedialAxis refined_axis_of(const Surface& surface) {
+  MedialBuildOptions options{.sampling = {.face_points = 400, .edge_points = 100}, .check_promise = false};
+  options.refine.emplace();
+  return build_medial_axis(surface, options).axis;
+}
+
+TEST(Prune, OfARefinedAxisKeepsTheTopologyByEveryMeasure) {
+  for (const TriangleMesh& mesh : {test::torus(24, 12), test::l_shape()}) {
+    const Surface surface(mesh);
+    const MedialAxis axis = refined_axis_of(surface);
+    const Topology wanted = solid_topology(surface);
+    for (const PruneOptions& options :
+         {PruneOptions{.angle = 100 * kDegree}, PruneOptions{.scale = 1.3}, PruneOptions{.border_loss = 0.05},
+          PruneOptions{.lambda = 0.1}, PruneOptions{.erosion = 0.05}, PruneOptions{.geodesic = 0.5},
+          PruneOptions{.angle = 60 * kDegree, .lambda = 0.03, .erosion = 0.02}}) {
+      const MedialMesh result = medial_mesh(prune(surface, axis, options));
+      validate(result);
+      EXPECT_EQ(topology(result), wanted);
     }
-    EXPECT_EQ(count > 0, scale > 1);
   }
+}
+
+// The middle sheet of a plate is at least its thickness from the rims, and sheets into edges are at most sqrt(2) / 2
+// wide.
+TEST(Prune, OfARefinedAxisCutsTrianglesAlongTheLevel) {
+  const Surface surface(test::box({0, 0, 0}, {1, 4, 4}));
+  const MedialAxis axis = refined_axis_of(surface);
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  for (const double level : {0.25, 0.5}) {
+    const MedialAxis pruned = prune(surface, axis, {.border_loss = level * 0.2 / diagonal});
+    const std::vector<double> losses = importance(surface, pruned, ImportanceMeasure::border_loss);
+    double least = 1;
+    for (const double loss : losses) least = std::min(least, loss);
+    EXPECT_NEAR(least, level * 0.2, 0.02 * level);
+    const double angle_radius = least / (std::sqrt(2.0) - 1);  // of balls at a right-angled edge that lose this
+    EXPECT_NEAR(*std::min_element(pruned.radii.begin(), pruned.radii.end()), angle_radius, 0.05 * angle_radius);
+  }
+}
+
+TEST(Prune, IsTheLastStepOfABuild) {
+  const Surface surface(test::box({0, 0, 0}, {1, 4, 4}));
+  MedialBuildOptions options{.sampling = {.face_points = 800, .edge_points = 200}};
+  options.refine.emplace();
+  options.prune.angle = 100 * kDegree;
+  const MedialBuild build = build_medial_axis(surface, options);
+  EXPECT_LT(build.axis.size(), build.unpruned_vertices);
+  EXPECT_GT(*std::min_element(build.axis.radii.begin(), build.axis.radii.end()), 0.25)
+      << "only the middle sheet is left, up to the triangle across its seam";
+  EXPECT_TRUE(build.features.empty()) << "no sheet reaches an edge any more";
+  EXPECT_TRUE(build.promise.keeps_topology());
 }
 
 }  // namespace

@@ -91,9 +91,9 @@ TEST(MedialQuality, TellsCoverageErrorsAtBordersFromThoseWithin) {
   const test::KnownAxis box = test::known_box({1, 2, 3});
   const Point center = Surface(box.solid).bounding_box().center();
   const Vector half(0, 0, 1.25);
-  const MedialMesh wire{
+  const MedialMesh curve{
       .centers = {center - half, center + half}, .radii = {0.25, 0.25}, .edges = {{0, 1}}, .triangles = {}};
-  const MedialQuality quality = medial_quality(Surface(box.solid), wire, kFew);
+  const MedialQuality quality = medial_quality(Surface(box.solid), curve, kFew);
   EXPECT_NEAR(quality.inner_coverage.max, (std::sqrt(1.25) - 0.25) / quality.diagonal, 0.01);
   EXPECT_LE(quality.inner_coverage.max, (std::sqrt(1.25) - 0.25) / quality.diagonal);
   EXPECT_NEAR(quality.coverage.max, (std::sqrt(1.25 + 0.0625) - 0.25) / quality.diagonal, 1e-12);
@@ -311,7 +311,7 @@ TEST(MedialQuality, WorstPlacesAreApartAndFromTheWorstDown) {
   }
 }
 
-TEST(MedialQuality, CountsSheetsWiresAndFlakes) {
+TEST(MedialQuality, CountsSheetsCurvesAndFlakes) {
   MedialMesh mesh;
   mesh.centers = {{0, 0, 0},      {9, 0, 0},    {0, 9, 0}, {9, 9, 0}, {-9, 0, 0},
                   {-9.1, 0.1, 0}, {-9.1, 0, 0}, {0, 0, 9}, {5, 5, 5}};
@@ -320,9 +320,9 @@ TEST(MedialQuality, CountsSheetsWiresAndFlakes) {
   mesh.edges = {{0, 4}, {0, 7}};
   complete(mesh);
   const MedialPieces pieces = medial_pieces(mesh);
-  EXPECT_EQ(pieces.sheets, 2u);
-  EXPECT_EQ(pieces.wires, 2u);  // two edges at one vertex, and the ball that is alone
-  EXPECT_EQ(pieces.small, 2u);  // the small triangle and that ball
+  EXPECT_EQ(pieces.face_components, 2u);
+  EXPECT_EQ(pieces.curve_components, 2u);  // two edges at one vertex, and the ball that is alone
+  EXPECT_EQ(pieces.small, 2u);             // the small triangle and that ball
   const double flake = 0.1 + 0.1 + std::sqrt(0.02);
   EXPECT_NEAR(border_length(mesh), 4 * 9 + flake, 1e-9);
   MedialMesh ball{.centers = {{0, 0, 0}}, .radii = {1}, .edges = {}, .triangles = {}};
@@ -376,7 +376,7 @@ MedialMesh square(double z, double size) {
 
 constexpr Index kSearch = 1'000'000;
 
-// A sheet and a wire in a box, most of whose balls end before the surface, and some beyond it.
+// A sheet and a curve in a box, most of whose balls end before the surface, and some beyond it.
 MedialMesh random_mesh(Random& random) {
   MedialMesh mesh;
   for (int v = 0; v < 5; ++v) {

@@ -43,7 +43,7 @@ class ReadAxis : public testing::Test {
   fs::path folder_;
 };
 
-// A triangle and a wire at its last corner.
+// A triangle and a curve at its last corner.
 void expect_kite(const MedialMesh& mesh) {
   EXPECT_EQ(mesh.size(), 4u);
   EXPECT_EQ(mesh.edges, (std::vector<std::array<Index, 2>>{{0, 1}, {0, 2}, {1, 2}, {2, 3}}));
@@ -89,7 +89,7 @@ TEST_F(ReadAxis, TakesTheStructureOfMatstructWhereverItsLinesBreak) {
   EXPECT_EQ(axis.structure[1], (StructurePart{7, 2, {0, 1, 2}}));
   EXPECT_EQ(axis.structure[2], (StructurePart{9, 3, {2}}));
   refuses("b.ma", mesh + "1\n0 0 1\n1\n", "names a cell beyond the last one");
-  refuses("c.ma", mesh + "1\n0 9 1\n0\n", "a kind of part");
+  refuses("c.ma", mesh + "1\n0 9 1\n0\n", "the kind of the part");
   refuses("d.ma", mesh + "2\n0 0 1\n0\n", "may be cut off");
 }
 
@@ -211,41 +211,41 @@ TEST_F(ReadAxis, TakesStructureGraphs) {
 }
 
 TEST_F(ReadAxis, NamesFileAndLineOfWhatIsWrong) {
-  refuses("a.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 -1\ne 0 1\n", "line 3: a negative radius");
+  refuses("a.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 -1\ne 0 1\n", "line 3: the radius is negative");
   refuses("b.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 nan\ne 0 1\n", "line 3");
-  refuses("c.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 1\ne 0 2\n", "line 4: a vertex number beyond");
+  refuses("c.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 1\ne 0 2\n", "line 4: a vertex number is beyond");
   refuses("d.ma", "2 1 0\nv 0 0 0 1\nv 1 0", "line 3");
-  refuses("a.obj", "v 0 0 0\nf 1 2 3\n", "line 2: a vertex number beyond");
-  refuses("b.obj", "v 0 0 nan\n", "line 1: a number that is not finite");
-  refuses("c.obj", "v 0 0 0 1\nv 0 0 1 -2\n", "line 2: a negative radius");
-  refuses("d.obj", "v 0 0 0 1\nv 0 0 1\n", "line 2: no radius where others have one");
+  refuses("a.obj", "v 0 0 0\nf 1 2 3\n", "line 2: the vertex number is beyond");
+  refuses("b.obj", "v 0 0 nan\n", "line 1: the number is not finite");
+  refuses("c.obj", "v 0 0 0 1\nv 0 0 1 -2\n", "line 2: the radius is negative");
+  refuses("d.obj", "v 0 0 0 1\nv 0 0 1\n", "line 2: the vertex has no radius, but others have one");
   refuses("e.obj", "ply\nformat ascii 1.0\n", "line 1: this is no line of an .obj file");
-  refuses("f.obj", "v 0 0 0\nv 1 0 0\nl 1 1\n", "line 3: a vertex number twice");
+  refuses("f.obj", "v 0 0 0\nv 1 0 0\nl 1 1\n", "line 3: the line or face names a vertex twice");
   refuses("a.txt", "v 0 0 0 1\nv 0 0 0\n", "line 2: expected 4 numbers");
-  refuses("b.txt", "0 0 0 -1\n", "line 1: a negative radius");
+  refuses("b.txt", "0 0 0 -1\n", "line 1: the radius is negative");
   refuses("c.txt", "3\n0 0 0 1\n", "may be cut off");
   refuses("d.txt", "some words\n", "line 1: expected");
   refuses("e.txt", "0 0 0 inf\n", "line 1");
   refuses("a.sph", "4 2\n0 0 0 1\n", "may be cut off");
-  refuses("b.sph", "4 1\n0 0 0 -1\n", "line 2: a negative radius");
+  refuses("b.sph", "4 1\n0 0 0 -1\n", "line 2: the radius is negative");
   refuses("c.sph", "8 2\n0 0 0 1\n", "a sphere-tree is no axis");
   refuses("d.sph", "4 1\n0 0 0 1\n0 0 0 1\n", "more lines");
   refuses("a.off", "OFF\n2 1 0\n0 0 0\n1 0 0\n3 0 1 2\n", "beyond the last vertex");
   refuses("b.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n", "may be cut off");
   refuses("c.off", "COFF\n1 0 0\n0 0 0\n", "begins with \"OFF\"");
-  refuses("a.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 3\n", "line 2: a parent");
-  refuses("c.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 -3\n", "line 2: a parent that is no node");
-  refuses("b.swc", "1 1 0 0 0 -1 -1\n", "line 1: a negative radius");
+  refuses("a.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 3\n", "line 2: the parent");
+  refuses("c.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 -3\n", "line 2: the parent is no node");
+  refuses("b.swc", "1 1 0 0 0 -1 -1\n", "line 1: the radius is negative");
   refuses("a.polylines.txt", "3 0 0 0 1 0 0\n", "line 1");
-  refuses("a.stl", "solid\n", "is no kind of medial axis that is read");
+  refuses("a.stl", "solid\n", "is no format of medial axes that can be read");
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
       "float z\nproperty float r\nelement edge 1\nproperty int vertex1\nproperty int vertex2\n"
       "end_header\n";
-  refuses("a.ply", head + "0 0 0 -1\n0 0\n", "line 12: a negative radius");
-  refuses("b.ply", head + "0 0 nan 1\n0 0\n", "line 12: a coordinate that is not finite");
-  refuses("c.ply", head + "0 0 0 1\n0 1\n", "line 13: a vertex number that is none of 0 to 0");
-  refuses("d.ply", head + "0 0 0 1\n", "ends early");
+  refuses("a.ply", head + "0 0 0 -1\n0 0\n", "line 12: the radius is negative");
+  refuses("b.ply", head + "0 0 nan 1\n0 0\n", "line 12: a coordinate is not finite");
+  refuses("c.ply", head + "0 0 0 1\n0 1\n", "line 13: a vertex number is not from 0 to 0");
+  refuses("d.ply", head + "0 0 0 1\n", "ends before the rows");
   refuses("e.ply", "OFF\n", "e.ply");
   expect_input_error([&] { read_axis(folder_ / "none.ma"); }, {"none.ma"});
   expect_input_error([&] { read_axis(folder_); }, {folder_.string()});

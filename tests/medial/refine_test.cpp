@@ -54,7 +54,7 @@ std::vector<Solid> solids() {
           {"cylinder", test::known_cylinder(24, 4).solid, 0.85},
           {"torus", test::known_torus(32, 16).solid, 0.5},
           {"bridge", test::extruded(test::thin_bridge(0.05), 1)},
-          {"notch", test::extruded(test::v_notch(0.2), 1)}};
+          {"groove", test::extruded(test::v_groove(0.2), 1)}};
 }
 
 // Between a sphere and the one around it that is twice as large: the sphere half way.

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "gaps/fold_bottom.h"
 #include "gaps/neck_test.h"
+#include "gaps/valley_bottom.h"
 #include "orchard/voronoi/exact.h"
 #include "outlines.h"
 #include "support/shapes.h"
@@ -62,7 +62,7 @@ TEST(RepairPoint, LiesStraightAcrossAGapBetweenParallelSides) {
 }
 
 TEST(RepairPoint, LiesAsDeepInAVAsThePointDoes) {
-  Scene scene(test::extruded(test::v_notch(0.4), 1));
+  Scene scene(test::extruded(test::v_groove(0.4), 1));
   // The V's sides meet in (1.5, 0.3) and are mirror images of each other.
   add_point(scene.surface, scene.sampling, {1.5 - 0.1, 1.2, 0.5});
   for (const double x : {0.0, 3.0}) {
@@ -108,29 +108,29 @@ TEST(RepairPoint, NeverFloats) {
   }
 }
 
-TEST(FoldBottom, IsTheNearestPointOfTheCommonEdgeUnlessAVertexIsInReach) {
-  const Surface surface(test::extruded(test::v_notch(0.4), 1));
+TEST(ValleyBottom, IsTheNearestPointOfTheCommonEdgeUnlessAVertexIsInReach) {
+  const Surface surface(test::extruded(test::v_groove(0.4), 1));
   SurfaceSampling sampling;
   add_point(surface, sampling, {1.4, 1.2, 0.4});
   const Index across = surface.closest({1.6, 1.2, 0.4}).triangle;
-  const auto edge = bottom_of_fold(surface, sampling, 0, across, 0.1);
+  const auto edge = bottom_of_valley(surface, sampling, 0, across, 0.1);
   ASSERT_TRUE(edge.has_value());
   EXPECT_NEAR((edge->position - Point(1.5, 0.3, sampling.points[0].z())).norm(), 0, 1e-9);
-  const auto vertex = bottom_of_fold(surface, sampling, 0, across, 10);
+  const auto vertex = bottom_of_valley(surface, sampling, 0, across, 10);
   ASSERT_TRUE(vertex.has_value());
   EXPECT_NEAR((vertex->position - Point(1.5, 0.3, 0)).norm(), 0, 1e-9);
 }
 
-TEST(FoldBottom, IsNowhereBetweenSidesThatDoNotMeet) {
+TEST(ValleyBottom, IsNowhereBetweenSidesThatDoNotMeet) {
   const Surface surface(test::two_boxes(0.1));
   SurfaceSampling sampling;
   add_point(surface, sampling, surface.bounding_box().min());
   const Index across = surface.closest(surface.bounding_box().max()).triangle;
-  EXPECT_FALSE(bottom_of_fold(surface, sampling, 0, across, 10).has_value());
+  EXPECT_FALSE(bottom_of_valley(surface, sampling, 0, across, 10).has_value());
 }
 
 TEST(Neck, IsACellThatWrapsAroundAWire) {
-  // Three points along a wire: the middle one's cell is a ring, and so it shares no point with three others.
+  // Three points along a rod: the middle one's cell is a ring, and so it shares no point with three others.
   Scene scene(test::box({0, 0, 0}, {10, 0.1, 0.1}));
   for (const Point& near : {Point(5, 0.05, 0), Point(1, 0.05, 0), Point(9, 0.04, 0), Point(0, 0, 0.1)}) {
     add_point(scene.surface, scene.sampling, near);
@@ -141,7 +141,7 @@ TEST(Neck, IsACellThatWrapsAroundAWire) {
   EXPECT_EQ(scene.crossings[0].component.euler_characteristic, 0);
   const auto [position, triangle] = farthest_corner(*scene.restricted, scene.crossings[0].component, kNone);
   EXPECT_NEAR(std::abs(position.x() - 5), 2, 0.1) << "half-way to the next point";
-  EXPECT_NEAR(position.z(), 0.1, 1e-9) << "on the far side of the wire";
+  EXPECT_NEAR(position.z(), 0.1, 1e-9) << "on the far side of the rod";
 }
 
 }  // namespace

@@ -44,8 +44,8 @@ TEST(MedialSegments, EndAtJunctionsAndTellSheetsFromCurves) {
   const MedialAxis axis = strip_with_flap_and_tail();
   const MedialSegments found = medial_segments(axis, {.touching = 0.01});
   ASSERT_EQ(found.segments.size(), 4u);  // three sheets at the junction, and the tail
-  EXPECT_TRUE(found.segments[0].sheet && found.segments[1].sheet && found.segments[2].sheet);
-  EXPECT_FALSE(found.segments[3].sheet);
+  EXPECT_TRUE(found.segments[0].has_faces && found.segments[1].has_faces && found.segments[2].has_faces);
+  EXPECT_FALSE(found.segments[3].has_faces);
   EXPECT_EQ(found.segments[3].cells, 2u);
   EXPECT_EQ(found.of_face, (std::vector<Index>{0, 1, 2}));
   EXPECT_EQ(found.of_vertex[0], 0u);
@@ -106,7 +106,7 @@ TEST(MedialSegments, OfABoxAreItsThirteenSheets) {
   const MedialAxis axis = build_medial_axis(surface, {.sampling = {.face_points = 3200, .edge_points = 800}}).axis;
   const double spacing = std::sqrt(surface.report().area / 4000);
   const MedialSegments found = medial_segments(axis, {.touching = 2 * spacing});
-  const Index cells = axis.faces.size() + axis.walls.size();
+  const Index cells = axis.faces.size() + axis.topology_faces.size();
   Index large = 0, trunks = 0;
   for (const auto& segment : found.segments) {
     if (100 * segment.cells < cells) continue;

@@ -231,7 +231,7 @@ TEST(SimplifiedMedialMesh, IsNoFartherOffWithMoreBalls) {
   for (std::size_t i = 1; i < results.size(); ++i) EXPECT_LE(results[i - 1].report.upper, results[i].report.upper) << i;
 }
 
-// The distance from the surface of the farthest of random places of the envelope's boundary.
+// The distance from the surface of the farthest of random places of the envelope.
 double max_attained(const Surface& surface, const MedialMesh& mesh, Random& random) {
   const detail::Reconstruction reconstruction(mesh);
   double attained = 0;
@@ -321,19 +321,19 @@ TEST(SimplifiedMedialMesh, HasItsDentsSeenFromTheBallsThatItHad) {
                   .edges = {},
                   .triangles = {{0, 1, 2}, {0, 2, 3}}};
   complete(half);
-  const detail::Reconstruction envelope(half);
+  const detail::Reconstruction reconstruction(half);
   std::vector<Sphere> left, lost;
   for (int k = 2; k <= 14; ++k) {
     for (int j = 2; j <= 6; ++j) left.push_back({at(0.25 * j, 0.25 * k), 0.5});
     for (int j = 7; j <= 14; ++j) lost.push_back({at(0.25 * j, 0.25 * k), 0.5});
   }
-  EXPECT_TRUE(detail::dents_seen_from(left, plate, envelope, 0.1).empty());
-  const auto dents = detail::dents_seen_from(lost, plate, envelope, 0.1);
+  EXPECT_TRUE(detail::dents_seen_from(left, plate, reconstruction, 0.1).empty());
+  const auto dents = detail::dents_seen_from(lost, plate, reconstruction, 0.1);
   ASSERT_GT(dents.size(), 12U);
   EXPECT_NEAR(dents.front().depth, 0.5, 1e-12);
   for (const auto& [place, depth, outward] : dents) {
     EXPECT_NEAR(plate.signed_distance(place), -depth, 1e-12);
-    EXPECT_NEAR(envelope.distance(place), 0, 1e-5);
+    EXPECT_NEAR(reconstruction.distance(place), 0, 1e-5);
     EXPECT_NEAR(plate.distance(place + depth * outward), 0, 1e-12);
   }
 }

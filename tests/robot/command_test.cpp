@@ -121,7 +121,7 @@ TEST(RobotCommand, RefusesBadInputInOneLineAndLeavesNothingBehind) {
       {quick(kArm, folder, {"--trajectory", csv}), "t.csv, line 1"},
       {quick(kArm, folder, {"--from", csv}), "--effort has no effect"},
       {{"audit", csv, kArm}, "t.csv"},
-      {{"audit", here.add("u.csv", "x,y,z,r,link\n0,0,0,1,elsewhere\n"), kArm}, "no sphere is on a link"},
+      {{"audit", here.add("u.csv", "x,y,z,r,link\n0,0,0,1,elsewhere\n"), kArm}, "no sphere belongs to a link"},
       {{"audit", here.add("w.txt", "0 0 0 1\n"), here.add("box.obj", test::box(Point(0, 0, 0), Point(1, 1, 1))),
         "--visual"},
        "--visual has no effect"}};

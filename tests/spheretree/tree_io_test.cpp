@@ -75,10 +75,10 @@ TEST_F(SphFile, NamesFileAndLineOfWhatItCannotRead) {
       {"0 8\n", ", line 1: \"levels branching\" must be two whole numbers, 1 to 64 and 1 to 4096"},
       {"3 8\n0 0 0 1 1\n1 2 three 4 5\n", ", line 3: expected \"x y z radius\", four finite numbers, at \"three"},
       {"3 8\n\n0 0 0\n", ", line 3: expected \"x y z radius\""},
-      {"3 8\n0 0 0 nan 1\n", ", line 2: a number that is not finite"},
+      {"3 8\n0 0 0 nan 1\n", ", line 2: the number is not finite"},
       {"3 8\n0 0 0 1e999 1\n", ", line 2: expected \"x y z radius\""},
       {"3 8\n0 0 0 -1 1\n", ", line 2: the first node, the root, must be in use"},
-      {"60 4000\n0 0 0 1 1\n", ", line 1: promises more than"}};
+      {"60 4000\n0 0 0 1 1\n", ", line 1: the file promises more than"}};
   for (const auto& [text, fault] : cases) {
     const std::string error = error_of(text);
     EXPECT_EQ(error.find(path_.string()), 0u) << error;

@@ -24,7 +24,7 @@ namespace {
 using test::TestFolder;
 using test::values;
 
-// A triangle, a wall beside it, and a tail.
+// A triangle, a topology face beside it, and a tail.
 MedialAxis small_complex() {
   MedialAxis axis;
   axis.points = {{0.3, 0.3, 1}, {0.3, 0.3, -1}, {0.6, 0.6, 1}, {0.6, 0.6, -1}};
@@ -42,9 +42,9 @@ MedialAxis small_complex() {
   axis.faces.items = {0, 1, 2};
   axis.faces.close_row();
   axis.face_points = {{0, 1}};
-  axis.walls.items = {1, 3, 2};
-  axis.walls.close_row();
-  axis.wall_points = {{2, 3}};
+  axis.topology_faces.items = {1, 3, 2};
+  axis.topology_faces.close_row();
+  axis.topology_face_points = {{2, 3}};
   return axis;
 }
 
@@ -60,8 +60,8 @@ TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
   EXPECT_EQ(grid->GetNumberOfPoints(), 5);
   ASSERT_EQ(grid->GetNumberOfCells(), 3);
   vtkCellData* cells = grid->GetCellData();
-  EXPECT_EQ(values(cells, "wall"), (std::vector<double>{0, 1, 0}));
-  EXPECT_EQ(values(cells, "sheet"), (std::vector<double>{1, 1, 0}));
+  EXPECT_EQ(values(cells, "topology_face"), (std::vector<double>{0, 1, 0}));
+  EXPECT_EQ(values(cells, "has_faces"), (std::vector<double>{1, 1, 0}));
   EXPECT_EQ(values(cells, "point_b"), (std::vector<double>{1, 3, -1}));
   EXPECT_EQ(values(cells, "added"), (std::vector<double>{0, 1, 0}));
   EXPECT_NEAR(values(cells, "contact_angle")[0], 178, 6);
@@ -95,7 +95,7 @@ TEST(MedialGrid, AndTheFilesByPartsGiveAFaceTheSameAngle) {
     reader->Update();
     std::vector<double> in_grid = values(reader->GetOutput()->GetCellData(), "contact_angle");
     ASSERT_GE(in_grid.size(), axis.faces.size());
-    in_grid.resize(axis.faces.size());  // walls and lines follow
+    in_grid.resize(axis.faces.size());  // topology faces and lines follow
     EXPECT_EQ(values(test::read_poly_data(folder.path() / "axis-faces.vtp")->GetCellData(), "contact_angle"), in_grid);
   }
 }

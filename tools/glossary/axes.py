@@ -102,11 +102,11 @@ def trunk_and_branch():
     return picture
 
 
-def wall():
-    picture = Picture("A wall is a Voronoi face between two neighbours on the surface that does not reach it")
+def topology_face():
+    picture = Picture("A topology face is a Voronoi face between two neighbours on the surface that does not reach it")
     at = seen_from(0.3, 0.55, 54, 26 + 66j)
     picture.path([at(x, y, 0) for x, y in ((0, 0), (4.6, 0), (4.6, 2.6), (0, 2.6))], "solid", closed=True)
-    a, b = (1.75, 1.1), (2.75, 1.1)  # the wall lies in the plane halfway between them
+    a, b = (1.75, 1.1), (2.75, 1.1)  # the face lies in the plane halfway between them
     x = (a[0] + b[0]) / 2
     for at_x, at_y in ((0.6, 0.5), (0.8, 2.0), (1.6, 2.3), (3.9, 0.6), (3.6, 1.9), (2.3, 0.25)):
         picture.dot(at(at_x, at_y, 0), radius=2.4)
@@ -116,11 +116,11 @@ def wall():
     picture.path([at(u, v, 1.7) for u, v in ((0.4, 0.4), (4.2, 0.4), (4.2, 1.7), (0.4, 1.7))], "sheet", closed=True)
     picture.line(at(x, 0.4, 1.7), at(x, 1.7, 1.7), "term")
     picture.dot(at(*a, 0), "dot-term", 4), picture.dot(at(*b, 0), "dot-term", 4)
-    picture.text(at(x, 0.5, 0.9) - 8 + 0j, "wall", "note-term", "end")
+    picture.text(at(x, 0.5, 0.9) - 8 + 0j, "topology face", "note-term", "end")
     picture.text(at(0.9, 0.75, 1.7), "sheet", "note-axis")
     picture.text(at(0.15, 0.12, 0) + 60 - 34j, "surface", anchor="middle")
     return picture
 
 
 PICTURES = {"medial-axis": medial_axis, "raw-and-refined": raw_and_refined, "sheets-seams-borders": sheets_seams_borders,
-            "trunk-and-branch": trunk_and_branch, "wall": wall}
+            "trunk-and-branch": trunk_and_branch, "topology-face": topology_face}

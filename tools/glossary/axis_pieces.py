@@ -114,14 +114,14 @@ def flap():
     return picture
 
 
-def fold():
-    picture = Picture("A face whose two points have one contact folds onto its sheet or stands on the surface; it is removed")
-    for left, folded in ((0, False), (160, True)):
+def single_contact_face():
+    picture = Picture("A face whose two points have one contact lies on its sheet a second time or stands on the surface; it is removed")
+    for left, single in ((0, False), (160, True)):
         low, high = left + 12 + 46j, left + 148 + 46j
         picture.path([low, high, high + 96j, low + 96j], "inside", closed=True)
         picture.line(low, high, "surface")
         middle = left + 80 + 94j
-        if not folded:
+        if not single:
             picture.line(low + 96j, high + 96j, "surface")
             p, q = left + 52 + 46j, left + 108 + 142j
             feet = [left + 80 + 46j, left + 80 + 142j]
@@ -139,7 +139,7 @@ def fold():
             picture.dot(foot, "dot-term", 4)
         picture.dot(middle, "dot-axis")
     picture.text(80 + 178j, "face of a sheet", "note-axis", "middle")
-    picture.text(240 + 178j, "folded face", "note-term", "middle")
+    picture.text(240 + 178j, "single-contact face", "note-term", "middle")
     picture.text(80 + 24j, "two contacts", anchor="middle")
     picture.text(240 + 24j, "one contact", anchor="middle")
     return picture
@@ -172,4 +172,4 @@ def spur():
     return picture
 
 
-PICTURES = {"spur": spur, "stem-and-bridge": stem_and_bridge, "spike-and-flake": spike_and_flake, "notch": notch, "flap": flap, "fold": fold}
+PICTURES = {"spur": spur, "stem-and-bridge": stem_and_bridge, "spike-and-flake": spike_and_flake, "notch": notch, "flap": flap, "single-contact-face": single_contact_face}

@@ -95,8 +95,8 @@ def surface_points():
     return picture
 
 
-def inner_wall():
-    picture = Picture("Where a surface cuts itself, a part of it lies inside the solid: an inner wall")
+def interior_surface():
+    picture = Picture("Where a surface cuts itself, a part of it lies inside the solid: interior surface")
     a, b = (118 + 108j, 72), (202 + 108j, 72)
     top, bottom = meeting_points(a, b)
     angle_a, angle_b = cmath.phase(top - a[0]), cmath.phase(top - b[0])
@@ -108,9 +108,9 @@ def inner_wall():
     picture.path(arc_places(b[0], b[1], angle_b, math.tau - angle_b), "term")
     for at, label in ((85 + 104j, "1"), (160 + 104j, "2"), (235 + 104j, "1")):
         picture.text(at, label, anchor="middle")
-    picture.text(160 + 14j, "inner walls: surface inside the solid", "note-term", "middle")
+    picture.text(160 + 14j, "interior surface: inside the solid", "note-term", "middle")
     return picture
 
 
 PICTURES = {"solid": solid, "radius-and-diagonal": radius_and_diagonal, "cluster": cluster, "surface-points": surface_points,
-            "inner-wall": inner_wall}
+            "interior-surface": interior_surface}

@@ -27,12 +27,12 @@ using CellBase =
     CGAL::Triangulation_cell_base_with_info_3<Index, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
 using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
-// Round-off magnified more than this many times in a circumcentre calls for rational arithmetic.
+// A circumcentre that magnifies rounding errors more than this many times is computed with rational numbers.
 constexpr double kWellConditioned = 0x1p10;
 
-constexpr std::size_t kPlacedAtOnce = 1024;  // vertices that a thread takes at a time
+constexpr std::size_t kPlacedAtOnce = 1024;  // vertices of one task of a thread
 
-// All points by position, identical ones by index.
+// Returns all points in the order of their positions, and identical ones in the order of their indices.
 std::vector<Index> by_position(std::span<const Point> points) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), Index{0});
@@ -41,7 +41,7 @@ std::vector<Index> by_position(std::span<const Point> points) {
   return order;
 }
 
-// Pairs (point left out, the lowest one that it is identical to).
+// Returns pairs of a point that is left out and the lowest point that it is identical to.
 std::vector<std::array<Index, 2>> identical(std::span<const Point> points) {
   std::vector<std::array<Index, 2>> pairs;
   Index first = kNone;
@@ -55,7 +55,7 @@ std::vector<std::array<Index, 2>> identical(std::span<const Point> points) {
   return pairs;
 }
 
-// The points without those, each with its index.
+// Returns the points that are not left out, each with its index.
 std::vector<std::pair<Kernel::Point_3, Index>> distinct_points(std::span<const Point> points) {
   std::vector<Index> order = by_position(points);
   order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return points[a] == points[b]; }),
@@ -74,8 +74,8 @@ Point rational_circumcenter(const std::array<Point, 4>& p) {
   return {CGAL::to_double(center.x()), CGAL::to_double(center.y()), CGAL::to_double(center.z())};
 }
 
-// A power of two, about the largest component: divided by it, products of several neither overflow nor vanish, and no
-// digit changes.
+// Returns a power of two of about the size of the largest component. After division by it, products of several
+// components neither overflow nor underflow, and no digit changes.
 double binary_size(const Vector& v) {
   const double largest = v.cwiseAbs().maxCoeff();
   return largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, std::ilogb(largest)) : 1;
@@ -98,7 +98,7 @@ void place_finite(VoronoiVertex& vertex, std::span<const Point> points) {
   vertex.radius = length(vertex.center - p[3]);
 }
 
-// Of the triangle from a to b and c, with rational numbers: not of length 1.
+// Returns the normal of the triangle a, b, c, computed with rational numbers. Its length is not 1.
 Vector rational_normal(const Point& a, const Point& b, const Point& c) {
   using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
   const auto exact = [](const Point& q) { return Rational::Point_3(q.x(), q.y(), q.z()); };
@@ -111,7 +111,7 @@ Vector rational_normal(const Point& a, const Point& b, const Point& c) {
 
 void place_at_infinity(VoronoiVertex& vertex, std::span<const Point> points) {
   std::array<Index, 4> corner = vertex.forming_points;
-  // An odd permutation moves the infinite point from i to the last place; a swap of the others makes it even again.
+  // An odd permutation moves the infinite point from i to the last place, and another swap makes the permutation even.
   const auto i = static_cast<std::size_t>(std::find(corner.begin(), corner.end(), kInfinitePoint) - corner.begin());
   if (i != 3) {
     std::swap(corner[i], corner[3]);

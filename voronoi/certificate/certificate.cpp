@@ -17,30 +17,33 @@
 namespace orchard::detail {
 namespace {
 
-// The part of the intrusion that a point may take up in the mean, where there are many: a straight line meets few of
-// them.
+// If there are many points: the share of the intrusion that a point may use up on average. A straight line meets only a
+// few of them.
 constexpr double kMean = 1.0 / 512;
 
-// What a facet may take off, where the bounds are too much for all: of what all of them may, this part for each vertex.
+// If the bounds of all facets together are too large: the share that a single facet may take off, of what all of them
+// may take off for each vertex.
 constexpr double kShares = 64;
 
-// Vertices that a thread looks at at once. That is worth while for sets that are too small for regions.
+// The number of vertices that a thread examines at once. It is also worthwhile for sets that are too small for regions.
 constexpr Index kBlock = 1u << 14, kHullBlock = 1u << 10;
 constexpr std::size_t kWorthThreads = 2;
 
-// Where there are no more points than that, they all are in the cache.
+// Up to this number of points, all of them are in the cache.
 constexpr std::size_t kCached = 1u << 13;
 
-// Of mending and looking at what is new.
+// rounds of repairing the diagram and examining the new vertices
 constexpr int kRounds = 24;
 
-// Times that the hull as a whole is looked at, each after what was wrong there has been rebuilt.
+// The number of times that the hull as a whole is examined, each time after its faulty parts have been rebuilt.
 constexpr int kHullRounds = 4;
 
-// How many doubts are still local ones, those of all rounds together: more are rebuilt sooner than mended.
+// The number of doubts, in all rounds together, up to which they count as local. If there are more, rebuilding is
+// faster than repairing.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
-// Facets that mending may look at, for each point and beside those: what takes more is rebuilt sooner.
+// The number of facets that repairing may examine, for each point and in addition. If it needs more, rebuilding is
+// faster.
 constexpr std::size_t kMendingForEach = 4, kMending = 1u << 16;
 
 void sort_unique(std::vector<Index>& numbers) {
@@ -101,7 +104,7 @@ Certificate Certifier::run(std::size_t points) {
   return {};
 }
 
-// All that is new; and where facets are in doubt, what they are mended by.
+// Examines everything that is new. Facets in doubt are repaired if there is a repairer.
 bool Certifier::look_at_all() {
   found_.hull.clear();
   if (!look_at_each_oriented() || forming_.count() != points_ || !look_at_each_facet() || !look_at_edges(found_.hull))
@@ -115,7 +118,7 @@ bool Certifier::mend_doubts() {
                    [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
   for (int round = 0; !found_.doubts.empty(); ++round) {
     doubtful_ += found_.doubts.size();
-    // Insertions alone mend no more, and parts were too large.
+    // insertions alone do not repair it any further, and the parts were too large
     const bool is_stuck = round > 0 && !mender_->may_patch() && found_.doubts.size() >= last;
     if (is_stuck || round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn)
       return false;
@@ -137,7 +140,7 @@ bool Certifier::look_at_mended(const std::vector<Index>& changed) {
   return !found_.doubts.empty() || look_at_hull();
 }
 
-// What the hull as a whole shows to be wrong, and what is in doubt around it then.
+// Rebuilds the parts that the hull as a whole shows to be wrong, and repairs what is in doubt around them afterwards.
 bool Certifier::patch(const std::vector<Index>& wrong) {
   if (mender_ == nullptr) return false;
   const std::vector<Index> changed = mender_->patch(wrong);
@@ -162,7 +165,7 @@ bool Certifier::look_at_each_oriented() {
                         });
 }
 
-// Those of the hull aside.
+// Examines all facets except those of the hull.
 bool Certifier::look_at_each_facet() {
   const auto count = static_cast<Index>(workspace_.vertices.size());
   return look_in_blocks(
@@ -177,12 +180,13 @@ bool Certifier::look_at_each_facet() {
       });
 }
 
-// The edges between the facets of vertices at infinity, ascending, that are seen from there.
+// Examines the edges between the facets of these vertices at infinity (ascending) and of their neighbours, each once.
 bool Certifier::look_at_edges(const std::vector<Index>& hull) {
   const auto count = static_cast<Index>(hull.size());
   return look_in_blocks((count + kCertificateBatch - 1) / kCertificateBatch, kHullBlock / kCertificateBatch,
                         [&](Certifier& part, Index batch) {
-                          // Listed first, so that the vertices across are in the cache when they are asked for.
+                          // The edges are listed first, so that the vertices across them are in the cache when they are
+                          // needed.
                           std::array<HullEdge, std::size_t{3} * kCertificateBatch> edges;
                           std::size_t listed = 0;
                           for (Index i = batch * kCertificateBatch;
@@ -199,14 +203,14 @@ bool Certifier::look_at_edges(const std::vector<Index>& hull) {
                         });
 }
 
-// good(part, i) for all i below the count, until one is not; by several threads where there are many. Nothing changes
-// on the way but a vertex that is looked at itself.
+// Calls good(part, i) for all i below the count, until it returns false; in several threads if there are many. The only
+// thing that may change meanwhile is the vertex that is being examined.
 template <class Good>
 bool Certifier::look_in_blocks(Index count, Index block, const Good& good) {
   if (workspace_.points.size() < large_set() / kWorthThreads || first_new_ > 0) {
     for (Index i = 0; i < count; ++i)
       if (!good(*this, i)) return false;
-    return found_.suspects.size() <= kMaxSuspects + kOfDent;
+    return found_.suspects.size() <= kMaxSuspects + kOfReflexEdge;
   }
   std::vector<Findings> found((count + block - 1) / block);
   const std::thread::id caller = std::this_thread::get_id();
@@ -219,10 +223,10 @@ bool Certifier::look_in_blocks(Index count, Index block, const Good& good) {
     looked_at_ += std::size_t{end - begin} * (kBlock / block);
   });
   for (const Findings& each : found) found_.add(each);
-  return found_.good && found_.suspects.size() <= kMaxSuspects + kOfDent;
+  return found_.good && found_.suspects.size() <= kMaxSuspects + kOfReflexEdge;
 }
 
-// Each of all vertices is looked at twice at first, and some again later.
+// Every vertex is examined twice at first, and some again later.
 double Certifier::share_done(double looked_at) const {
   return std::min(looked_at / (2 * static_cast<double>(workspace_.vertices.size())), 1.0);
 }
@@ -234,7 +238,8 @@ bool Certifier::look_at_changed(const std::vector<Index>& changed) {
   return true;
 }
 
-// After mending: what is around an edge of the hull may have changed, though the facets next to it have not.
+// Examines the edges of the hull after a repair: vertices around such an edge may have changed although the facets next
+// to it have not.
 bool Certifier::look_at_hull() {
   if (first_new_ > 0) {
     found_.suspects.clear();
@@ -252,17 +257,18 @@ bool Certifier::look_at_hull() {
 void Certifier::forget_changed_suspects() {
   std::vector<Index>& suspects = found_.suspects;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < suspects.size(); i += kOfDent) {
-    const auto dent = suspects.begin() + static_cast<std::ptrdiff_t>(i);
+  for (std::size_t i = 0; i < suspects.size(); i += kOfReflexEdge) {
+    const auto edge = suspects.begin() + static_cast<std::ptrdiff_t>(i);
     const auto is_gone = [this](Index v) { return workspace_.is_free(v) || has_changed(v); };
-    if (std::any_of(dent, dent + kOfDent, is_gone)) continue;
-    std::copy_n(dent, kOfDent, suspects.begin() + static_cast<std::ptrdiff_t>(count));
-    count += kOfDent;
+    if (std::any_of(edge, edge + kOfReflexEdge, is_gone)) continue;
+    std::copy_n(edge, kOfReflexEdge, suspects.begin() + static_cast<std::ptrdiff_t>(count));
+    count += kOfReflexEdge;
   }
   suspects.resize(count);
 }
 
-// Those where one of the facets has changed, or the vertex below it, in the order in which all are looked at.
+// Returns the edges at which a facet, or the vertex below it, has changed, in the order in which all edges are
+// examined.
 std::vector<Certifier::HullEdge> Certifier::changed_edges() const {
   std::vector<Index> facets;
   for (const Index v : changed_) {
@@ -282,9 +288,10 @@ std::vector<Certifier::HullEdge> Certifier::changed_edges() const {
   return edges;
 }
 
-// Once more, where bounds that suffice for each facet are too much for all of them: with own spheres where those of
-// neighbours are far enough to count, with exact signs where a facet takes off more than its share, and only with
-// what one line can meet. What was mended need not have a new point.
+// Examines the diagram once more, after bounds that are small enough for each facet have turned out too large for all
+// of them together. It uses the own spheres of vertices where those of neighbours are too far off, exact signs where a
+// facet takes off more than its share, and counts only what a single line can meet. Repaired vertices do not need a new
+// point for that.
 bool Certifier::look_closer() {
   for (const Index v : found_.lossy)
     if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) workspace_.place_sharply(v);
@@ -314,9 +321,9 @@ void Certifier::find_fattest() {
   });
 }
 
-// All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
-// next to them, carried across the whole set, say nothing.
-// Those that are not innocent, with a vertex of the point that shows it for each.
+// Compares all points with the planes and spheres at edges of the hull that are so short, or facets that are so thin,
+// that bounds from their surroundings say nothing when they are carried across the whole set. Returns those that are
+// contradicted, each with a vertex of the point that contradicts it.
 std::vector<Index> Certifier::guilty_suspects() {
   if (found_.suspects.empty()) return {};
   note_hull_points();
@@ -355,10 +362,10 @@ void Certifier::note_hull_points() {
   sort_unique(hull_points_);
 }
 
-// Ascending.
+// Returns them in ascending order.
 std::vector<Index> Certifier::hull_vertices() {
   if (first_new_ > 0) return all_hull_vertices();
-  // All of the hull has been looked at, and what was new since.
+  // the whole hull has been examined, and everything that is new since then
   if (!mended_) return found_.hull;
   std::vector<Index>& hull = found_.hull;
   std::erase_if(hull, [this](Index v) { return workspace_.is_free(v) || !workspace_.at_infinity(v); });

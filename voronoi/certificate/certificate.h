@@ -6,12 +6,12 @@
 
 namespace orchard::detail {
 
-// What a look at a whole diagram proves of it.
+// What the examination of a whole diagram proves about it.
 struct Certificate {
   bool holds = false;
   // Over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the hull.
   double intrusion = 0;
-  std::size_t suspects = 0;  // vertices that had to be held against all points one by one
+  std::size_t suspects = 0;  // vertices that had to be compared with all points one by one
 };
 
 // Delaunay's lemma, with a margin: if all vertices are oriented positively, the hull is convex, and the sphere of no
@@ -53,7 +53,7 @@ struct Certificate {
 Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Repairer* mender = nullptr,
                     const std::function<void(double)>& report = {});
 
-// How many points form vertices.
+// Returns the number of points that form vertices.
 std::size_t count_forming(const Workspace& workspace);
 
 }  // namespace orchard::detail

@@ -169,13 +169,13 @@ bool Certifier::is_hull_convex(Index v, unsigned i) {
   const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
   if (below == Sign::positive) return true;
   if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
-  return below == Sign::uncertain || (!workspace_.exact() && is_dent_shallow(v, i, p, b, c));
+  return below == Sign::uncertain || (!workspace_.exact() && is_reflex_edge_shallow(v, i, p, b, c));
 }
 
-// For a point p that is above the facet of v, beyond the edge from b to c: the hull has a dent at the edge. Other
-// points of the hull may then be above the facet at the same angle. In the dent, the spheres below the two facets meet
-// in the edge.
-bool Certifier::is_dent_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c) {
+// For a point p that is above the facet of v, beyond the edge from b to c, so that the hull is reflex at this edge.
+// Other points of the hull may then be above the facet at the same angle. Between the two facets, the spheres below
+// them meet in the edge.
+bool Certifier::is_reflex_edge_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c) {
   Vector normal;
   if (!sharp_normal(corner(v, 0), corner(v, 1), corner(v, 2), normal)) return false;
   const Vector along = (c - b).normalized(), from_edge = (p - b) - along.dot(p - b) * along;
@@ -185,7 +185,7 @@ bool Certifier::is_dent_shallow(Index v, unsigned i, const Point& p, const Point
   const Index u = workspace_.vertices[v].neighbors[i];
   const Index below = workspace_.vertices[v].neighbors[3], next = workspace_.vertices[u].neighbors[3];
   if (!add(rise + intrusion_added(below, next, b, away, 16 * kRounding, normal, rise)))
-    found_.suspects.insert(found_.suspects.end(), {v, u, below, next});  // kOfDent
+    found_.suspects.insert(found_.suspects.end(), {v, u, below, next});  // kOfReflexEdge
   return found_.suspects.size() <= kMaxSuspects;
 }
 

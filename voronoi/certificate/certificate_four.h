@@ -36,7 +36,7 @@ unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets);
 // facets. Infinite where a normal needs more digits.
 std::array<double, 4> added_by_four(const FourSteps& steps, double diameter);
 
-// A list of vertices of a batch that is filled without branches.
+// A list of the vertices of a batch to which vertices are added without branches.
 class BatchList {
  public:
   std::span<const Index> items() const { return {items_.data(), count_}; }
@@ -44,7 +44,8 @@ class BatchList {
     items_[count_] = v;
     count_ += condition;
   }
-  // Calls take(place of the first, four vertices). The last four are filled up by repeating the last vertex.
+  // Calls take(i, vertices) for each four vertices of the list, where i is the position of the first. If fewer than
+  // four are left, the last vertex is repeated.
   template <class Take>
   void for_each_four(const Take& take) const {
     for (std::size_t first = 0; first < count_; first += 4) {
@@ -59,13 +60,14 @@ class BatchList {
   std::size_t count_ = 0;
 };
 
-// The same of the vertices of such a list, and their radii.
+// The results of the tests for the vertices of a list, in its order, and their radii.
 struct BatchLooks {
   std::array<double, kCertificateBatch + 4> negative, negative_bound, radius, apart;
 };
 
-// What is seen of four spheres: how far they are from those of their forming points, at most, and what that bounds the
-// error of a power by. And the same of the spheres a step nearer to these.
+// Bounds for the spheres of four vertices: on their distances from the spheres of their forming points, and on the
+// error of a power that follows from these. FourMoved has the same bounds after a step towards the spheres of the
+// forming points, and the centres and radii after that step.
 struct FourSeen {
   std::array<double, 4> apart, power_bound;
 };
@@ -73,7 +75,7 @@ struct FourMoved : FourSeen {
   std::array<double, 4> x, y, z, squared_radius;
 };
 
-// The same as Certifier::from_told_sphere(), for four vertices, and their radii. `far`: the result for vertices that
+// The same as Certifier::from_told_sphere(), for four vertices, and their radii. `far` is the result for vertices that
 // share a sphere.
 void told_of_four(const Workspace& workspace, const std::array<Index, 4>& v, double far, double* radius, double* apart);
 

@@ -7,17 +7,17 @@
 namespace orchard::detail {
 namespace {
 
-// The part of the intrusion that may lie between a vertex's sphere and its own by the bound of its error; where that is
-// more, its own is found.
+// The share of the intrusion by which a vertex's sphere may differ from its own sphere according to the error bound. If
+// the bound is larger, its own sphere is computed.
 constexpr double kTold = 1.0 / 64;
 
-// Where the bound tells more than so many times that, a sphere is mostly off as far as the cheapest look can tell.
+// If the bound is more than this many times larger, the cheapest test usually cannot show that the sphere is right.
 constexpr double kHopelesslyTold = 0x1p11;
 
 }  // namespace
 
-// And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed again, and
-// so is what was given a neighbour's sphere and is too far from it.
+// Also tests whether the sphere of the vertex is nearly its own. If doubles could not place it well, it is placed
+// again, and so is a vertex that has a neighbour's sphere and is too far from it.
 bool Certifier::is_oriented(Index v) { return workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, look(v)); }
 
 bool Certifier::is_hull_facet(Index v) {
@@ -65,8 +65,8 @@ bool Certifier::is_oriented(Index v, const Look& seen) {
   return apart <= kGiven * max_;
 }
 
-// The same of some vertices, where all are new, with the same bits. Each is a long chain of sums with branches as
-// good as random at its ends: so what has to be found is listed first, then found for four at once.
+// The same for several new vertices, with the same bits. Each test is a long chain of sums, with branches at its ends
+// that cannot be predicted. So what has to be computed is listed first, and then computed for four vertices at once.
 bool Certifier::are_all_oriented(Index begin, Index end) {
   BatchList list;
   for (Index v = begin; v < end; ++v) {
@@ -97,7 +97,7 @@ FourTetrahedra Certifier::tetrahedra(const std::array<Index, 4>& four) const {
   return corners;
 }
 
-// As from_seen_sphere(), then from_moved_sphere().
+// Does what from_seen_sphere() and then from_moved_sphere() do.
 void Certifier::see_four_spheres(const BatchList& list, BatchLooks& seen) {
   const double enough = kTold * max_;
   see_far(list, seen, kHopelesslyTold * enough,
@@ -119,8 +119,8 @@ void Certifier::see_four_spheres(const BatchList& list, BatchLooks& seen) {
           });
 }
 
-// see(vertices, their places in the list, their centers) for four of those at once that are too far from their own
-// spheres as far as was seen, but no more than that far.
+// Calls see(vertices, their places in the list, their centers) for four vertices at once, namely those that are farther
+// from their own spheres than allowed, but not by more than this limit.
 template <class See>
 void Certifier::see_far(const BatchList& list, const BatchLooks& seen, double hopeless, const See& see) {
   BatchList far;  // places in the list
@@ -141,7 +141,7 @@ void Certifier::see_far(const BatchList& list, const BatchLooks& seen, double ho
   });
 }
 
-// Whether all are near enough now.
+// Notes the results of four vertices. Returns whether all are near enough now.
 bool Certifier::note_four(const std::array<Index, 4>& v, const std::array<Index, 4>& at, const FourSeen& found,
                           BatchLooks& seen) {
   bool all_near = true;
@@ -188,15 +188,16 @@ bool Certifier::are_listed_oriented(const BatchList& list, const BatchLooks& see
 // Whether three points are not on one line.
 bool Certifier::is_triangle(const Point& a, const Point& b, const Point& c) {
   const Vector ab = b - a, ac = c - a;
-  // Of a component's two products: two roundings in the factors of each, one in the product, one in the difference of
-  // both; and as many for what is of second order.
+  // The number of rounding errors in the two products of a component: two in the factors of each, one in each product,
+  // and one in their difference. It is doubled to cover terms of second order.
   constexpr double kRoundings = 2 * 8 * kRounding;
   const double largest_product = ab.lpNorm<Eigen::Infinity>() * ac.lpNorm<Eigen::Infinity>();
   Vector normal;
   return ab.cross(ac).lpNorm<Eigen::Infinity>() > kRoundings * largest_product || sharp_normal(a, b, c, normal);
 }
 
-// How far the sphere that a vertex was given is from that of its forming points, at most, where points may be.
+// Returns an upper bound on the distance between the sphere that a vertex was given and the sphere of its forming
+// points, over all places where points may be.
 double Certifier::from_own_sphere(Index v) const {
   const double told = from_told_sphere(v);
   if (told <= kTold * max_) return told;
@@ -204,7 +205,8 @@ double Certifier::from_own_sphere(Index v) const {
   return own_center(v, center) ? from_sphere(v, center) : diameter_;
 }
 
-// The same by how far its forming points are off its sphere: often a much better bound, which is noted then.
+// The same bound, computed from the distances of the forming points from the vertex's sphere. It is often much better,
+// and is noted in that case.
 double Certifier::from_seen_sphere(Index v) {
   return note_off(
       v, off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)));
@@ -216,7 +218,8 @@ double Certifier::note_off(Index v, const OffCenter& seen) {
   return apart;
 }
 
-// The same with more digits, and where it is too far, after a step to its own sphere, if that is near enough.
+// The same with more digits. If the sphere is still too far off, the vertex is moved to its own sphere, if that is near
+// enough.
 double Certifier::from_moved_sphere(Index v) {
   const OffCenter seen =
       sharply_off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2));
@@ -231,8 +234,8 @@ double Certifier::from_moved_sphere(Index v) {
   return apart;
 }
 
-// By how far the centre is off, at most: as in from_sphere(), the radius of the own sphere being three quarters of
-// this at least.
+// Returns the bound for a centre that is off by at most `off`, as from_sphere() does. The radius of the own sphere is
+// at least three quarters of `radius`.
 double Certifier::apart_by(double off, double radius) const {
   return off <= radius / 8 ? off * (4 * std::min(2.0, diameter_ / (0.75 * radius))) : diameter_;
 }
@@ -242,7 +245,8 @@ bool Certifier::own_center(Index v, Vector& center) const {
 }
 
 double Certifier::from_sphere(Index v, const Vector& center) const {
-  // Both go through a point: at a distance d from it, powers differ by 2 d times the distance of the centres.
+  // Both spheres pass through a common point. At distance d from it, powers differ by 2 d times the distance of the
+  // centres.
   const double apart = (corner(v, 0) + center - workspace_.vertices[v].center).norm(), radius = center.norm();
   return apart <= radius / 2 ? 4 * apart * std::min(2.0, diameter_ / radius) : diameter_;
 }

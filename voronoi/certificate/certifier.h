@@ -13,22 +13,24 @@
 
 namespace orchard::detail {
 
-// The proof that certify() speaks of: of the vertices' own spheres in certificate_spheres.cpp, of the facets between
-// them and of the hull's edges in certificate_facets.cpp, and of all together, with what is mended, in certificate.cpp.
+// Computes the certificate of certify(). The spheres of vertices are treated in certificate_spheres.cpp, the facets
+// between them and the edges of the hull in certificate_facets.cpp, and the whole diagram, with repairs, in
+// certificate.cpp.
 class Certifier {
  public:
   Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Repairer* mender,
             const std::function<void(double)>& report);
-  // `points`: how many form vertices if none was lost.
+  // `points` is the number of points that form vertices if none has been lost.
   Certificate run(std::size_t points);
 
  private:
-  // The part of the intrusion that a single facet may take up. What takes more is wrong, not rounded.
+  // The share of the intrusion that a single facet may take off. A facet that takes off more is wrong, not just
+  // rounded.
   static constexpr double kFacet = 1.0 / 64;
-  // The part of the intrusion that may lie between the sphere that a vertex was given and its own.
+  // The share of the intrusion by which the sphere that a vertex was given may differ from its own.
   static constexpr double kGiven = 1.0 / 4;
-  // Vertices that are held against all points; where there are more, exact signs are cheaper.
-  static constexpr std::size_t kMaxSuspects = 4096, kOfDent = 4;
+  // the number of vertices that are compared with all points; for more of them, exact signs are cheaper
+  static constexpr std::size_t kMaxSuspects = 4096, kOfReflexEdge = 4;
 
   // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
   struct HullEdge {
@@ -38,22 +40,23 @@ class Certifier {
     friend bool operator<(const HullEdge& a, const HullEdge& b) { return a.v != b.v ? a.v < b.v : a.slot < b.slot; }
   };
 
-  // What is seen of a finite vertex before anything follows from it: its orientation, and how far the sphere that it
-  // was given is from its own, at most, with its own centre, relative to its first point, where that had to be found.
+  // What a test shows about a finite vertex before any conclusion is drawn: its orientation, and an upper bound on the
+  // distance between the sphere that it was given and its own. The centre of its own sphere, relative to its first
+  // point, is set if it had to be computed.
   struct Look {
-    Determinant negative;  // of six times its volume, the other way around
+    Determinant negative;  // of six times the volume, with the opposite sign
     double apart = 0;
     bool has_center = false;
     Vector center;
   };
 
-  // What the facet of three points takes off, where that is more than its share.
+  // The amount that the facet of three points takes off, if it is more than its share.
   struct Loss {
     double intrusion;
     std::array<Index, 3> facet;
   };
 
-  // What is found at some vertices, to be put together in their order, whichever thread looked at which.
+  // What is found at some vertices. Findings are merged in the order of the vertices, whichever thread made them.
   struct Findings {
     bool good = true;
     double intrusion = 0, lost = 0, given = 0, max_volume = 0;
@@ -61,7 +64,7 @@ class Certifier {
     std::vector<Loss> losses;
     std::vector<Index> suspects;
     std::vector<Index> hull;   // vertices at infinity
-    std::vector<Index> lossy;  // that share a sphere farther from their own than a facet's share
+    std::vector<Index> lossy;  // vertices with a shared sphere that is farther from their own than the share of a facet
     std::vector<Doubt> doubts;
 
     void add(const Findings& next) {
@@ -78,7 +81,7 @@ class Certifier {
     }
   };
 
-  // For a part of the vertices of the whole, found by a thread of its own.
+  // The work on a part of the vertices, done by one thread.
   struct Part {};
   Certifier(const Certifier& whole, Part);
 
@@ -92,7 +95,7 @@ class Certifier {
     const auto from = [this](Index point) { return point >= first_new_ && point != kInfinitePoint; };
     return first_new_ == 0 || from(p[0]) || from(p[1]) || from(p[2]) || from(p[3]);
   }
-  // After mending: a lost point would lie in a sphere that no facet tells of.
+  // To be checked after a repair, because no facet shows that a point has been lost.
   bool has_all_points() const { return count_forming(workspace_) == points_; }
   bool has_changed(Index v) const { return std::binary_search(changed_.begin(), changed_.end(), v); }
   Determinant six_volumes(Index v) const {
@@ -106,7 +109,8 @@ class Certifier {
     if (mender_) found_.doubts.push_back({v, u});
     return mender_ != nullptr;
   }
-  // How far the sphere that a vertex was given is from its own, at most, as far as its error bound tells.
+  // Returns the bound that the stored error class gives for the distance between the sphere that the vertex was given
+  // and its own.
   double from_told_sphere(Index v) const { return from_told_sphere(v, std::sqrt(workspace_.vertices[v].radius)); }
   double from_told_sphere(Index v, double radius) const {
     if (workspace_.exact()) return 0;
@@ -181,7 +185,7 @@ class Certifier {
   double intrusion_added(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
                          double height) const;
   bool is_hull_convex(Index v, unsigned i);
-  bool is_dent_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c);
+  bool is_reflex_edge_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c);
 
   Workspace& workspace_;
   FormingPoints& forming_;
@@ -191,7 +195,7 @@ class Certifier {
   Findings found_;
   std::size_t points_ = 0;
   std::vector<Index> hull_points_;
-  std::vector<Index> changed_;  // by mending, since the hull was looked at
+  std::vector<Index> changed_;  // by repairs since the hull was last examined
   Repairer* mender_;
   std::size_t doubtful_ = 0;
   bool looks_at_changed_ = false, mended_ = false;

@@ -10,7 +10,8 @@
 namespace orchard::detail {
 namespace {
 
-// Rays that are tried: one that meets an edge of the hull tells nothing, but its digits are random.
+// The number of rays that are tried. A ray that meets an edge of the hull decides nothing, but with random digits that
+// hardly happens.
 constexpr std::uint64_t kRays = 4, kRayStream = 0x5ca1u;
 constexpr double kAside = 0x1p-10;
 
@@ -25,8 +26,8 @@ std::array<Point, 4> corners_of(const Workspace& workspace, Index v) {
           workspace.points[corner[3]]};
 }
 
-// is_below(a, b, c) tells on which side of a triangle a point at or next to `about` is. The rays go along an axis,
-// nearly, so that most facets are missed by their boxes, and to points with random digits, so that no edge is met.
+// is_below(a, b, c) tells on which side of a triangle a point at or next to `about` is. The rays run nearly along an
+// axis, so that their boxes exclude most facets, and to points with random digits, so that they meet no edge.
 template <class IsBelow>
 bool is_encircled_once(const Workspace& workspace, std::span<const Index> hull, const Point& about, const Box& box,
                        const IsBelow& is_below) {
@@ -61,7 +62,7 @@ bool covers_once(const Workspace& workspace, std::span<const Index> hull, Index 
   const auto is_below = [&](const Point& a, const Point& b, const Point& c) {
     return volume_sign(rounded, a, b, c) == Sign::positive;
   };
-  // Where all tetrahedra are needles, the fattest may be too thin for the rounded middle to be inside it.
+  // If all tetrahedra are needles, the fattest one may be so thin that its rounded middle is not inside it.
   const auto is_middle_below = [&](const Point& a, const Point& b, const Point& c) {
     return volume_sign_of_middle(inner, a, b, c) == Sign::positive;
   };

@@ -137,7 +137,7 @@ bool Repairer::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
   const auto& corner = workspace_.vertices[facet.inside].forming_points;
   const Index beyond = workspace_.vertices[facet.outside].forming_points[facet.back];
   const auto& [a, b, c] = Cavity::kOthers[facet.slot];
-  if (corner[c] == kInfinitePoint) return !is_folded(facet, q);
+  if (corner[c] == kInfinitePoint) return !would_invert_hull(facet, q);
   if (beyond == kInfinitePoint) return true;
   const auto& points = workspace_.points;
   Vector center;
@@ -147,7 +147,7 @@ bool Repairer::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
 
 // At an edge of the convex hull: whether the new point's facet would lie upside down on the facet beyond the edge,
 // which is not deleted. That happens only if the point lies nearly in that facet's plane.
-bool Repairer::is_folded(const Cavity::Facet& facet, const Point& q) const {
+bool Repairer::would_invert_hull(const Cavity::Facet& facet, const Point& q) const {
   const VoronoiVertex& outside = workspace_.vertices[facet.outside];
   const auto& corner = workspace_.vertices[facet.inside].forming_points;
   const auto& [a, b, c] = Cavity::kOthers[facet.slot];

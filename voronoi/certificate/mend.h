@@ -45,7 +45,7 @@ class Repairer {
   bool insert_again(Index v, Index u);
   bool grow(Index point, const Point& q);
   bool is_facet_good(const Cavity::Facet& facet, const Point& q) const;
-  bool is_folded(const Cavity::Facet& facet, const Point& q) const;
+  bool would_invert_hull(const Cavity::Facet& facet, const Point& q) const;
 
   Workspace& workspace_;
   Cavity cavity_;

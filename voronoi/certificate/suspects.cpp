@@ -9,18 +9,19 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // points with a box of their own
+constexpr std::size_t kBlock = 64;  // points that share a box
 
-// The first of two that are as deep.
+// Returns the deeper intruder, and the first of two that are equally deep.
 Intruder deeper(const Intruder& a, const Intruder& b) { return b.depth > a.depth ? b : a; }
 
-// How far a point lies in a sphere around a center, both seen from a point of the sphere, by the square of the
-// distance.
+// Returns the power of a point with respect to a sphere: the squared radius minus the squared distance. Center and
+// point are relative to a point on the sphere.
 double power_of(const Vector& center, const Vector& point) { return 2 * center.dot(point) - point.squaredNorm(); }
 
-// That of any point of a box, at most. Along each axis it is greatest at the place nearest to the center.
+// Returns an upper bound on the power of any point in a box. Along each axis, the power is greatest at the coordinate
+// nearest to the center.
 double max_power(const Vector& center, const Vector& min, const Vector& max) {
-  // Three roundings in a factor or term and two in each sum, on this side and on that of power_of().
+  // There are three rounding errors in each factor or term and two in each sum, here and in power_of().
   constexpr double kRoundings = 2 * 8 * kRounding;
   const Eigen::Array3d at = center.array().max(min.array()).min(max.array()), twice = 2 * center.array();
   return (at * (twice - at)).sum() + kRoundings * (at.abs() * (twice.abs() + at.abs())).sum();

@@ -8,11 +8,12 @@
 namespace orchard {
 namespace {
 
-// Corners nearer to a cutting plane than this, in diagonals of the box, are on it: a thousand roundings.
+// In diagonals of the box: corners nearer to a cutting plane than this, a thousand rounding errors, count as lying on
+// it.
 constexpr double kOnPlane = 1e-13;
 
 struct Plane {
-  Vector normal;  // unit; what lies in its direction is cut off
+  Vector normal;  // unit vector; the side that it points to is cut off
   double offset;
   Index beyond;
 };
@@ -80,7 +81,7 @@ class Cut {
     const auto corners = from_.faces[face];
     std::vector<Index>& items = result_.faces.items;
     const std::size_t begin = items.size();
-    bool inside = false;  // more than an edge in the plane
+    bool inside = false;  // whether more of it than an edge in the plane is left
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Index a = corners[i], b = corners[(i + 1) % corners.size()];
       inside = inside || heights_[a] < 0;
@@ -92,7 +93,7 @@ class Cut {
     result_.neighbors.push_back(from_.neighbors[face]);
   }
 
-  // The new face: all corners in the plane, in the order of their angles.
+  // Adds the new face: all corners in the plane, in the order of their angles.
   void add_cap() {
     if (cap_.size() < 3) return;
     Point middle = Point::Zero();
@@ -126,7 +127,7 @@ CellPolyhedron clipped_cell(const VoronoiDiagram& diagram, const VoronoiCells& c
   const Point& center = diagram.points[point];
   for (const VoronoiFace& face : cells.faces(point))
     neighbors.emplace_back((diagram.points[face.second_point()] - center).squaredNorm(), face.second_point());
-  std::sort(neighbors.begin(), neighbors.end());  // the nearest cut off most
+  std::sort(neighbors.begin(), neighbors.end());  // the nearest neighbours cut off most, so they come first
   CellPolyhedron polyhedron = polyhedron_of(box);
   for (const auto& [squared, other] : neighbors) {
     const Vector normal = (diagram.points[other] - center).normalized();

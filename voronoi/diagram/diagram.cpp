@@ -22,7 +22,7 @@ unsigned edge_between(unsigned i, unsigned j) {
   return i == 0 ? j - 1 : i + j;
 }
 
-// One face of the diagram: the edge of the Delaunay triangulation that it is dual to, and a vertex on it.
+// A face of the diagram, given by the edge of the Delaunay triangulation that it is dual to, and a vertex on it.
 struct Ring {
   Index first_point, second_point, vertex;
 };
@@ -32,8 +32,8 @@ VoronoiFace face_of(const VoronoiDiagram& diagram, const Ring& ring) {
   return {diagram, ring.vertex, slot_of(corner, ring.first_point), slot_of(corner, ring.second_point)};
 }
 
-// Every edge of the Delaunay triangulation once, those to infinity included, in the order of their first vertex.
-// The first point is the lower one, except that kInfinitePoint, being the highest number, always comes second.
+// Returns every edge of the Delaunay triangulation once, those to infinity included, in the order of their first
+// vertex. The first point of an edge is the lower one. kInfinitePoint is the highest number, so it always comes second.
 std::vector<Ring> rings(const VoronoiDiagram& diagram) {
   std::vector<std::uint8_t> seen(diagram.vertices.size(), 0);
   std::vector<Ring> all;
@@ -54,7 +54,7 @@ std::vector<Ring> rings(const VoronoiDiagram& diagram) {
   return all;
 }
 
-// Sorts by first point with a counting sort, then the few rings of each point by the second.
+// Sorts by first point with a counting sort, and then the few rings of each point by second point.
 std::vector<Ring> sorted(const std::vector<Ring>& all, std::size_t point_count) {
   std::vector<Index> start(point_count + 1, 0);
   for (const Ring& ring : all) ++start[ring.first_point + 1];
@@ -89,8 +89,8 @@ void check_neighbors(const VoronoiDiagram& diagram, Index v) {
     const VoronoiVertex& other = diagram.vertices[vertex.neighbors[i]];
     const unsigned back = slot_of(other.neighbors, v);
     if (back == 4) fail("a neighbour does not name it as its own", v);
-    // With the i-th forming point exchanged for the neighbour's own, the four must be an odd permutation of the
-    // neighbour's: the same points, on the other side of the three that they share.
+    // If the i-th forming point is replaced by the neighbour's own point, the four have to be an odd permutation of the
+    // neighbour's points: the same points, seen from the other side of the three that they share.
     std::array<Index, 4> corner = vertex.forming_points;
     if (corner[i] == other.forming_points[back]) fail("it has the forming points of a neighbour", v);
     corner[i] = other.forming_points[back];
@@ -118,8 +118,8 @@ void check_no_vertex_twice(const VoronoiDiagram& diagram) {
     throw Error("inconsistent Voronoi diagram: two vertices have the same forming points");
 }
 
-// The vertices of one cell, the edges between them and its faces must make a sphere: one component, and Euler's formula
-// V - E + F = 2 with E = 3 V / 2 since three edges of a cell meet in each of its vertices.
+// Checks that the vertices of one cell, the edges between them and its faces form a sphere: they have one component,
+// and fulfil Euler's formula V - E + F = 2 with E = 3 V / 2, since three edges of a cell meet in each of its vertices.
 void check_cell(const VoronoiDiagram& diagram, Index point, std::span<const Index> cell, Index faces,
                 std::vector<Index>& stamp, std::vector<Index>& stack) {
   const Index mark = point == kInfinitePoint ? static_cast<Index>(diagram.points.size()) : point;
@@ -180,9 +180,9 @@ void validate(const VoronoiDiagram& diagram) {
   for (Index v = 0; v < vertex_count; ++v) check_neighbors(diagram, v);
   check_no_vertex_twice(diagram);
 
-  // Every neighbour relation is sound now, so walking around an edge ends.
+  // All neighbour relations have been checked, so walking around an edge ends.
   std::vector<Ring> edges = rings(diagram);
-  std::vector<Index> face_count(point_count + 1, 0);  // the last one for the point at infinity
+  std::vector<Index> face_count(point_count + 1, 0);  // the last one is that of the point at infinity
   const auto place = [&](Index point) { return point == kInfinitePoint ? point_count : point; };
   for (const Ring& edge : edges) ++face_count[place(edge.first_point)], ++face_count[place(edge.second_point)];
   const auto cells = static_cast<std::int64_t>(

@@ -21,13 +21,13 @@ VoronoiVertex read_vertex(TextLines& lines, const std::vector<Point>& points, In
     const std::int64_t number = lines.whole();
     if (number == -1) continue;
     if (number < 0 || number >= static_cast<std::int64_t>(points.size()))
-      lines.fail("a forming point beyond the last point (they count from 0; -1 is the one at infinity)");
+      lines.fail("a forming point is beyond the last point (they count from 0; -1 is the one at infinity)");
     point = static_cast<Index>(number);
     sum += (points[point] - vertex.center).norm();
   }
   for (Index& neighbor : vertex.neighbors) {
     neighbor = lines.index();
-    if (neighbor >= vertex_count) lines.fail("a neighbour beyond the last vertex (they count from 0)");
+    if (neighbor >= vertex_count) lines.fail("a neighbour is beyond the last vertex (they count from 0)");
   }
   vertex.radius = vertex.at_infinity() ? std::numeric_limits<double>::infinity() : sum / 4;
   return vertex;
@@ -64,7 +64,7 @@ VoronoiDiagram read_vor(const std::filesystem::path& file) {
   TextLines lines(file);
   lines.expect("voronoi");
   const Index points = lines.index(), vertices = lines.index();
-  VoronoiDiagram diagram;  // grows as the file does, whatever its first line promises
+  VoronoiDiagram diagram;  // it grows with the lines that are read, not with the count in the first line
   for (Index i = 0; i < points; ++i) {
     lines.expect("p");
     diagram.points.push_back(read_point(lines));

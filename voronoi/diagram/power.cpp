@@ -19,7 +19,8 @@ using VertexBase =
 using CellBase = CGAL::Regular_triangulation_cell_base_3<Kernel>;
 using Regular = CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
-// Points that surround all balls stand at so many diagonals: no place within the box is theirs, and all cells end.
+// In diagonals: the distance of extra points that surround all balls. No place in the box belongs to them, and they
+// make all cells finite.
 constexpr double kFar = 16;
 
 class Builder {

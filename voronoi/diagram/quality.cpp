@@ -13,9 +13,9 @@
 namespace orchard {
 namespace {
 
-constexpr double kFarCorner = 10;  // box diagonals
-constexpr Index kBlock = 1024;     // vertices that one sum runs over
-constexpr Index kReports = 64;     // of progress
+constexpr double kFarCorner = 10;  // in diagonals of the box
+constexpr Index kBlock = 1024;     // vertices whose values are added up together
+constexpr Index kReports = 64;     // the number of reports of progress
 
 Index block_count(const VoronoiDiagram& diagram) {
   return (static_cast<Index>(diagram.vertices.size()) + kBlock - 1) / kBlock;
@@ -37,13 +37,13 @@ struct Sum {
   }
 };
 
-// The nearest points to samples next to one corner. None is nearer than those within the ball through the farthest
-// forming point: the balls around the samples, through their cells' points, lie in that one.
+// Finds the nearest points to samples around one corner. No point is nearer than those within the ball through the
+// farthest forming point, because that ball contains the balls around the samples through the points of their cells.
 class Nearby {
  public:
   explicit Nearby(const detail::NearestPoint& all) : all_(all) {}
 
-  // To be called before the others.
+  // Call this before the other functions.
   void look_around(const VoronoiDiagram& diagram, const VoronoiVertex& vertex) {
     double squared = 0, max_coordinate = vertex.center.cwiseAbs().maxCoeff();
     for (const Index p : vertex.forming_points) {
@@ -54,7 +54,7 @@ class Nearby {
     knows_all_ = all_.within(vertex.center, reach * reach, kMany, found_);
   }
 
-  // From q to the nearest point, or the limit if no point is nearer than that.
+  // Returns the squared distance from q to the nearest point, or the limit if no point is nearer than that.
   double squared_distance(const Point& q, double limit) const {
     if (!knows_all_) return all_.squared_distance(q, limit);
     for (const Point& p : found_) limit = std::min(limit, (p - q).squaredNorm());
@@ -62,17 +62,18 @@ class Nearby {
   }
 
  private:
-  // Far more than the positions of samples are rounded by, relative to the ball; its square is, too, relative to the
-  // coordinates.
+  // Much larger than the rounding errors of the samples' positions relative to the ball; its square is much larger than
+  // those of the coordinates.
   static constexpr double kWider = 0x1p-24;
-  static constexpr std::size_t kMany = 32;  // points that are cheaper to look at than the tree of all
+  static constexpr std::size_t kMany = 32;  // up to this number of points, testing them all is cheaper than the tree
 
   const detail::NearestPoint& all_;
   bool knows_all_ = false;
   std::vector<Point> found_;
 };
 
-// How much nearer than the cell's point the nearest point is to a sample on the way from the point to a corner.
+// Returns how much nearer than the cell's point the nearest point is to a sample on the segment from that point to a
+// corner.
 double excess(const Nearby& nearby, const Point& point, const Point& corner, double fraction) {
   const Point sample = point + fraction * (corner - point);
   const double own = (sample - point).squaredNorm();
@@ -80,11 +81,11 @@ double excess(const Nearby& nearby, const Point& point, const Point& corner, dou
   return best < own ? std::sqrt(own) - std::sqrt(best) : 0;
 }
 
-// The samples on the way from one forming point of a vertex to it.
+// Adds the samples on the segment from one forming point of a vertex to the vertex.
 void sample_segment(const VoronoiDiagram& diagram, const Nearby& nearby, const VoronoiVertex& vertex, unsigned slot,
                     Sum& sum) {
   double e = 1;
-  // The balls around the samples through the cell's point lie within each other: if the last is empty, all are.
+  // The balls around the samples through the cell's point are nested, so if the last one is empty, all are.
   for (const double fraction : {0.75, 0.5, 0.25}) {
     if (e > 0) e = excess(nearby, diagram.points[vertex.forming_points[slot]], vertex.center, fraction);
     sum.add_sample(e);
@@ -98,7 +99,7 @@ void sample_corner(const VoronoiDiagram& diagram, const Nearby& nearby, const Vo
   for (const double squared : own) sum.add_sample(std::sqrt(squared) - std::sqrt(std::min(best, squared)));
 }
 
-// Which vertices count as corners.
+// Decides which vertices count as corners.
 class Scope {
  public:
   explicit Scope(const VoronoiDiagram& diagram) {
@@ -114,7 +115,7 @@ class Scope {
   double limit_ = 0;
 };
 
-// visit(vertex index, block, Nearby) for every vertex that counts, in parallel over blocks.
+// Calls visit(vertex index, block, Nearby) for every vertex that counts, in parallel over blocks.
 template <class Visit>
 void for_corners(const VoronoiDiagram& diagram, const Progress& progress, Visit&& visit) {
   const Scope scope(diagram);

@@ -9,15 +9,15 @@
 namespace orchard::detail {
 namespace {
 
-// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache. Where
-// there are no more points or vertices than that, they are there.
+// How many deleted vertices ahead of the current one memory is fetched into the cache. If there are at most so many
+// points or vertices as given here, they are in the cache already.
 constexpr std::size_t kFetchAhead = 3, kPointsInCache = 1u << 13, kVerticesInCache = 1u << 16;
 
-// Deleted vertices after which delete_nearer_in_sight() looks at the boundary for the first time; then after twice as
-// many each time.
+// The number of deleted vertices after which delete_nearer_in_sight() examines the boundary for the first time. It does
+// so again after twice as many, and so on.
 constexpr std::size_t kFirstLook = 16;
 
-// To the end of the search.
+// a limit that is never reached
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -32,8 +32,8 @@ bool Cavity::delete_nearer(Index start) {
   return certain;
 }
 
-// What the search has kept it keeps, so that a facet of the boundary that is not visible will not be. Those that are
-// nearly seen from the side are left to place_vertices().
+// The search never deletes a vertex that it has kept. So a facet of the boundary that is not visible now will not
+// become visible. Facets that are seen almost from the side are left to place_vertices().
 bool Cavity::delete_nearer_in_sight(Index start, bool& certain) {
   delete_vertex(start);
   undoubted_ = certain = true;
@@ -53,7 +53,7 @@ bool Cavity::delete_nearer_in_sight(Index start, bool& certain) {
   return true;
 }
 
-// As side_of_facet() where that is certainly negative, as far as doubles tell.
+// Returns true where side_of_facet() is certainly negative by the error bound of doubles.
 bool Cavity::is_turned_away(Index v, unsigned i) const {
   const auto& [a, b, c] = kOthers[i];
   const auto& corner = workspace_.vertices[v].forming_points;
@@ -71,8 +71,9 @@ bool Cavity::leave_territory(Index blocker) {
   return false;
 }
 
-// Inlined by force: a compiler may take what only fetches for a function without effect, and leave it out.
-// What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
+// Inlining is forced because a compiler may regard a function that only fetches as one without effect, and omit it. It
+// fetches what the search needs when it examines this vertex: the neighbours now, and the forming points in
+// note_facets().
 [[gnu::always_inline]] inline void Cavity::fetch_around(Index v) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   for (const Index u : vertex.neighbors) workspace_.prefetch(u);
@@ -83,7 +84,7 @@ bool Cavity::leave_territory(Index blocker) {
   }
 }
 
-// With room for what becomes of them.
+// Returns the neighbours of a deleted vertex, and reserves memory for the entries that they may need.
 inline std::array<Index, 4> Cavity::neighbors_of_deleted(std::size_t i) {
   deleted_.ensure_room();
   seen_.ensure_room();
@@ -93,7 +94,7 @@ inline std::array<Index, 4> Cavity::neighbors_of_deleted(std::size_t i) {
   return workspace_.vertices[deleted_.items()[i]].neighbors;
 }
 
-// Where neither the stored centre tells, nor that the doubt is in the input.
+// For vertices where the stored centre does not decide, and the doubt is not due to the input.
 bool Cavity::is_nearer_after_all(Index u, bool& certain) {
   const Sign sign = workspace_.doubtful_sign(u, position_, workspace_.power_bound(u));
   const bool nearer = sign == Sign::positive;
@@ -147,9 +148,10 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first, std::size_t end) {
   return certain;
 }
 
-// The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
-// side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
-// And the lists are in variables of their own, for what is in memory has to come back from there each time.
+// Mispredicted branches would take most of the time here, because it cannot be predicted whether a neighbour has been
+// seen, and which sign it has. So every neighbour is tested, and the results of those that have been seen are masked
+// out. The ends of the lists are kept in local variables, because values in memory would have to be loaded again after
+// each store.
 #ifdef ORCHARD_FOUR_LANES
 [[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first, std::size_t end) {
   const FourVectors q{all_four(position_.x()), all_four(position_.y()), all_four(position_.z())};
@@ -177,7 +179,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first, std::size_t end) {
     certain &= (doubtful & input) == 0;
     if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]] {
       nearer |= nearer_after_all(neighbors, after_all, certain);
-      // Only these are marked if they are kept: others are sooner tested again.
+      // Only these are marked if they are kept. Testing the others again is faster than marking them.
       const unsigned seen_now = after_all & ~nearer & owned;
       workspace_.add_marks(neighbors, 0, seen_now);
       seen.push_four(_mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data())), seen_now);
@@ -190,7 +192,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first, std::size_t end) {
     workspace_.add_marks(neighbors, nearer, 0);
     const __m128i items = _mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data()));
     deleted.push_four(items, nearer);
-    // Nothing that is kept now will be deleted by this search.
+    // What is kept now will not be deleted by this search.
     boundary.push_four(_mm_add_epi32(_mm_set1_epi32(static_cast<int>(4 * v)), _mm_set_epi32(3, 2, 1, 0)),
                        marks.kept | kept);
   }

@@ -26,7 +26,7 @@ ORCHARD_FUSED FourDeterminants volumes(const FourVectors& a, const FourVectors& 
                magnitude.z * (absolute(xy) + absolute(yx)))};
 }
 
-// As Twofold.
+// Four numbers of twice the precision, as in Twofold.
 struct FourTwofolds {
   __m256d high, low;
 };
@@ -55,7 +55,7 @@ ORCHARD_FUSED FourTwofolds operator*(const FourTwofolds& a, const FourTwofolds& 
   const FourTwofolds p = exact_products(a.high, b.high);
   return quick_sums(p.high, p.low + (a.high * b.low + a.low * b.high));
 }
-// The double next to the quotient.
+// Returns the doubles nearest to the quotients.
 ORCHARD_FUSED __m256d quotients(const FourTwofolds& a, const FourTwofolds& b) {
   const __m256d first = a.high / b.high;
   const FourTwofolds rest = a - b * FourTwofolds{first, _mm256_setzero_pd()};
@@ -80,12 +80,12 @@ ORCHARD_FUSED FourSharpVectors operator+(const FourSharpVectors& a, const FourSh
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
-// The second where the mask is set.
+// Returns the second vectors where the mask is set, and the first ones elsewhere.
 ORCHARD_FUSED FourVectors choose(const FourVectors& a, const FourVectors& b, __m256d mask) {
   return {_mm256_blendv_pd(a.x, b.x, mask), _mm256_blendv_pd(a.y, b.y, mask), _mm256_blendv_pd(a.z, b.z, mask)};
 }
 
-// As inside_sphere_fast() in predicates.cpp.
+// The minors of inside_sphere_fast() in predicates.cpp.
 struct FourMinors {
   __m256d value, magnitude;
 };
@@ -110,7 +110,7 @@ ORCHARD_FUSED FourDeterminants inside_spheres(const FourVectors& a, const FourVe
   return {(cc * dab - dd * abc) + (aa * bcd - bb * cda), all_four(16 * kRounding) * magnitude};
 }
 
-// As sharp_inside_sphere() there.
+// Does what sharp_inside_sphere() in predicates.cpp does.
 ORCHARD_FUSED __m256d sharp_inside_spheres(const FourSharpVectors& a, const FourSharpVectors& b,
                                            const FourSharpVectors& c, const FourSharpVectors& d) {
   const FourSharpVectors ab = cross(a, b), cd = cross(c, d);
@@ -119,12 +119,12 @@ ORCHARD_FUSED __m256d sharp_inside_spheres(const FourSharpVectors& a, const Four
   return (first + second).high;
 }
 
-// The difference of the powers of two points.
+// Returns the differences of the powers of two points.
 ORCHARD_FUSED __m256d sharp_powers(const FourVectors& center, const FourVectors& p, const FourVectors& q) {
   return dot(differences(p, q), differences(center, q) + differences(center, p)).high;
 }
 
-// As off_circumcenter(), in the same order of operations.
+// Does what off_circumcenter() does, in the same order of operations.
 template <bool kSharp>
 ORCHARD_FUSED FourOffCenters off_centers(const std::array<const Point*, 4>& centers, const FourTetrahedra& tetrahedra) {
   const FourVectors q = load_four(tetrahedra[3]), p1 = load_four(tetrahedra[0]), p2 = load_four(tetrahedra[1]),
@@ -209,7 +209,7 @@ bool can_take_four() { return kFourSharpLanes; }
   return off_centers<true>(centers, tetrahedra);
 }
 
-// As SharpCenter in predicates.cpp, in the same order of operations.
+// Does what SharpCenter in predicates.cpp does, in the same order of operations.
 [[gnu::target("avx2,fma")]] unsigned four_sharp_circumcenters(const FourTetrahedra& tetrahedra,
                                                               std::array<Vector, 4>& centers) {
   const FourVectors q = load_four(tetrahedra[0]), p1 = load_four(tetrahedra[1]), p2 = load_four(tetrahedra[2]),

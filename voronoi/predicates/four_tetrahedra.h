@@ -3,7 +3,7 @@
 
 #include "predicates/predicates.h"
 
-// What predicates.h tells of a tetrahedron, bit for bit, for four tetrahedra at once.
+// The predicates of predicates.h for four tetrahedra at once, with the same bits.
 namespace orchard::detail {
 
 // The corners of each: by corner, then by tetrahedron.
@@ -18,18 +18,19 @@ struct FourVolumes {
 };
 FourVolumes four_volumes(const FourTetrahedra& tetrahedra);
 
-// inside_sphere() of one point: uncertain also where some 104 bits do not tell.
+// Returns inside_sphere() of one point. It is also uncertain where some 104 bits do not decide.
 std::array<Sign, 4> four_inside_spheres(const Point& q, const FourTetrahedra& tetrahedra);
 
-// off_circumcenter() from 3, of 0, 1 and 2, and sharply_off_circumcenter().
+// The results of off_circumcenter() from point 3, of points 0, 1 and 2, and of sharply_off_circumcenter().
 struct FourOffCenters {
-  std::array<double, 4> off, rest, x, y, z;  // and the step's coordinates
+  std::array<double, 4> off, rest, x, y, z;  // the coordinates of the step are x, y and z
 };
 FourOffCenters off_four_circumcenters(const std::array<const Point*, 4>& centers, const FourTetrahedra& tetrahedra);
 FourOffCenters sharply_off_four_circumcenters(const std::array<const Point*, 4>& centers,
                                               const FourTetrahedra& tetrahedra);
 
-// sharp_circumcenter() from 0, of 1, 2 and 3. A bit for each center that it found, which leaves the rest to that.
+// Computes sharp_circumcenter() from point 0, of points 1, 2 and 3. Returns a bit for each center that it found; the
+// others have to be computed by sharp_circumcenter().
 unsigned four_sharp_circumcenters(const FourTetrahedra& tetrahedra, std::array<Vector, 4>& centers);
 
 }  // namespace orchard::detail

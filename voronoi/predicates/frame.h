@@ -5,25 +5,26 @@
 
 namespace orchard::detail {
 
-// The coordinates that diagrams are made in: moved to the middle of the points and scaled by a power of two, so that
-// neither large offsets nor extreme sizes cost a digit, and the input's exact differences are the frame's, times that
-// power. Along an axis on which the points are farther from the origin than three times their extent, the middle is
-// taken off, which doubles do without rounding; along others nothing is.
+// The coordinates in which diagrams are built. Points are moved to the middle of their box and scaled by a power of
+// two, so that neither large offsets nor extreme sizes cost precision. Differences of coordinates are exactly those of
+// the input times that power. The middle is subtracted only along axes on which the points are farther from the origin
+// than three times their extent, where doubles subtract without rounding.
 class Frame {
  public:
-  // For points of this box, which is that of a single point or of sizes within the limits: see checked_box().
+  // The box has to be that of a single point, or to have a size within the limits (see checked_box()).
   explicit Frame(const Box& box);
 
-  // Of a coordinate, and of the longest side of the box. What users do with a diagram has room to spare then.
+  // Limits of a coordinate, and of the longest side of the box. They leave room for the computations that applications
+  // make with a diagram.
   static constexpr double kMax = 1e100, kMin = 1e-100;
 
-  // Coordinates in the frame are below 4, and multiples of 2^-200: of what is smaller than 2^-148, the rest is dropped.
+  // Coordinates in the frame are below 4 and are multiples of 2^-200. Digits below 2^-148 are dropped.
   Point inward(const Point& p) const { return {inward(p, 0), inward(p, 1), inward(p, 2)}; }
   Point outward(const Point& p) const { return p * unit_ + origin_; }
   double inward(double length) const { return length / unit_; }
   double outward(double length) const { return length * unit_; }
 
-  // How far rounding to doubles may have moved an input coordinate, in the frame's units.
+  // Returns how far rounding to doubles may have moved an input coordinate, in units of the frame.
   double rounding() const { return rounding_; }
 
  private:

@@ -8,15 +8,15 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kSide = 64;                 // cells along each axis
-constexpr std::size_t kOnLine = 3 * kSide - 2;    // that a line can pass through
-constexpr std::size_t kMaxCells = kSide * kSide;  // of one place; what is in more may as well be anywhere
+constexpr std::size_t kOnLine = 3 * kSide - 2;    // the number of cells that a line can pass through
+constexpr std::size_t kMaxCells = kSide * kSide;  // of one place; an amount in more cells counts as being everywhere
 
 }  // namespace
 
 LineSum::LineSum(const Box& box) : origin_(box.min()), per_length_(kSide / box.sizes().maxCoeff()) {}
 
-// Which cell a coordinate is in only grows with it, whatever is rounded: the cell of any point of the triangle is
-// between those of its corners.
+// The index of a cell never decreases as a coordinate grows, whatever is rounded. So the cell of any point of the
+// triangle is between those of its corners.
 void LineSum::add(double amount, const Point& a, const Point& b, const Point& c) {
   const Point low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
   Item item{amount, {}, {}};

@@ -7,14 +7,14 @@
 
 namespace orchard::detail {
 
-// The most that a straight line can collect of amounts, each at a place of its own: the cells of a grid that the
-// place's box meets. A line passes through no more cells than it crosses planes of the grid, and one more; so what it
-// collects is no more than what the fullest so many cells hold.
+// An upper bound on the sum of amounts that a straight line can meet, where each amount is at a place of its own: in
+// the cells of a grid that the place's box meets. The number of cells that a line passes through is at most one more
+// than the number of grid planes that it crosses. So its sum is at most that of as many of the fullest cells.
 class LineSum {
  public:
   explicit LineSum(const Box& box);
 
-  // An amount that a line collects at most once, in the triangle a, b, c.
+  // Adds an amount that a line collects at most once, in the triangle a, b, c.
   void add(double amount, const Point& a, const Point& b, const Point& c);
   double max() const;
 

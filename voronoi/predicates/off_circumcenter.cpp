@@ -11,7 +11,7 @@ namespace orchard::detail {
 
 namespace {
 
-// The difference of the powers of two points.
+// Returns the difference of the powers of two points.
 inline double sharp_power(const Point& center, const Point& p, const Point& q) {
   const auto product = [&](int axis) {
     return exact_difference(p[axis], q[axis]) *
@@ -44,7 +44,7 @@ OffCenter off_center(const Point& center, const Point& q, const Point& p1, const
                                          std::max(from_b.squaredNorm(), from_c.squaredNorm()));
   const double ff = first.squaredNorm(), mm = middle.squaredNorm(), ll = last.squaredNorm();
   const Vector sum = power.x() * middle.cross(last) + power.y() * last.cross(first) + power.z() * first.cross(middle);
-  // No less than the products of two lengths.
+  // at least the products of two lengths
   const Vector products(0.5 * (mm + ll), 0.5 * (ll + ff), 0.5 * (ff + mm));
   const double powers_error = (kSharp ? 3 * kSharper : 3) * std::sqrt(ff * mm * ll * squared_radius);
   const Determinant volume6 = volume(first, middle, last);
@@ -56,7 +56,7 @@ OffCenter off_center(const Point& center, const Point& q, const Point& p1, const
           divisor > 0 ? (error + length * of_volume) / divisor : kNone, sum * (0.5 / volume6.value)};
 }
 
-// With the fused operation as one instruction instead of a call.
+// A variant in which the fused operation is an instruction and not a call.
 #ifdef ORCHARD_FOUR_LANES
 [[gnu::target("fma"), gnu::flatten]] OffCenter fused_off_center(const Point& center, const Point& q, const Point& a,
                                                                 const Point& b, const Point& c) {

@@ -6,14 +6,14 @@
 #include "orchard/voronoi/diagram.h"
 #include "predicates/predicates.h"
 
-// Spheres of four points, and how good they are.
+// Spheres of four points, and how precise they are.
 namespace orchard::detail {
 
 struct PlacedQuality {
-  double volume6;    // as in RelativeCenter, and the next likewise
-  double condition;  // round-off is magnified this many times
-  double shake;      // and the input's noise this many times, in terms of the tetrahedron's smallest height
-  double error;      // a bound on the error of  squared radius - squared distance  by this centre
+  double volume6;    // as in RelativeCenter, as is the next one
+  double condition;  // the factor by which rounding errors are magnified
+  double shake;      // the factor for the noise of the input, over the smallest height of the tetrahedron
+  double error;      // a bound on the error of (squared radius - squared distance) with this centre
 
   bool reliable() const { return condition * RelativeCenter::kCenterError < 0.125; }
 };
@@ -24,17 +24,17 @@ struct PlacedSphere {
   PlacedQuality quality;
 };
 
-// Of the new point and three others, given relative to it, whose coordinates may be off by the noise. Meaningless where
-// it is not reliable.
+// Computes the sphere of the new point and three others, which are given relative to it and whose coordinates may be
+// off by the noise. The result is meaningless if it is not reliable.
 inline PlacedSphere placed_sphere(const Point& new_point, double noise, const LengthedVector& a,
                                   const LengthedVector& b, const LengthedVector& c) {
   const RelativeCenter relative = circumcenter(a, b, c);
-  // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
-  // magnified.
+  // The reciprocal of the smallest height of the tetrahedron over the faces at the new point, which is the factor by
+  // which the noise of the input is magnified.
   const double per_height = relative.max_face / std::abs(relative.volume6);
   const double shake = noise * per_height;
   const Point center = new_point + relative.center;
-  // From the rounded centre, so that the new point at least is on the sphere.
+  // The rounded centre is used, so that at least the new point lies on the sphere.
   const double squared_radius = (center - new_point).squaredNorm();
   const double r = std::sqrt(squared_radius);
   // A centre off by e changes the power of a point about as far as the radius by less than 4 r e; e is kCenterError *
@@ -46,20 +46,20 @@ inline PlacedSphere placed_sphere(const Point& new_point, double noise, const Le
   return {center, squared_radius, {relative.volume6, relative.condition, shake, error}};
 }
 
-// What tells whether a sphere is good beyond any question, as nearly all are: how thin its tetrahedron may be, how much
-// it may magnify round-off, and how poor its error bound may be, in terms of the squared radius. Error bounds are
-// rounded up to a power of four times the least one, which is a power of two; the exponent is their class.
+// Limits within which a sphere is certainly good, as nearly all are: how thin its tetrahedron may be, how much it may
+// magnify rounding errors, and how large its error bound may be over the squared radius. Error bounds are rounded up to
+// a power of four times the smallest one, which is a power of two; the exponent is their class.
 struct PlacingLimits {
   double noise, max_shake, max_condition, max_poverty, min_bound;
 };
 
-// The same, bit for bit, for four times three points at once, which becomes the center and radius of as many vertices.
+// The same with the same bits for four times three points at once, which become the centers and radii of four vertices.
 struct FourTriangles {
   std::array<const LengthedVector*, 4> a, b, c;
 };
 struct FourQualities {
-  std::array<double, 4> volume6, condition, shake, error;  // unless all are good
-  std::array<std::int64_t, 4> error_class;                 // where they are good
+  std::array<double, 4> volume6, condition, shake, error;  // set unless all are good
+  std::array<std::int64_t, 4> error_class;                 // set for those that are good
   unsigned good;                                           // a bit for each that is good by the limits
   PlacedQuality operator[](unsigned i) const { return {volume6[i], condition[i], shake[i], error[i]}; }
 };

@@ -16,7 +16,7 @@ namespace {
 
 Sign exact_sign(const ExactInteger& number) { return static_cast<Sign>(number.sign()); }
 
-// A vector of Twofold or exact integer coordinates.
+// A vector whose coordinates are Twofold or exact integers.
 template <class Number>
 struct SharpVector {
   Number x, y, z;
@@ -25,7 +25,8 @@ struct SharpVector {
   Number dot(const SharpVector& o) const { return x * o.x + y * o.y + z * o.z; }
 };
 
-// The vectors from q to the points: exact, the difference of two doubles being two doubles.
+// Returns the vectors from q to the points. They are exact, because the difference of two doubles is the sum of two
+// doubles.
 template <class... Points>
 auto twofold_vectors(const Point& q, const Points&... points) {
   const auto from_q = [&](const Point& p) {
@@ -47,8 +48,8 @@ auto integer_vectors(const Point& q, const Points&... points) {
   return std::array{from_q(points)...};
 }
 
-// Where the differences have few enough digits: 61 bits each, two words for the products and sums of two, three for
-// volumes and five for the lifted determinant.
+// Integers for differences with few digits: 61 bits for each, two words for the products and the sums of two of them,
+// three for volumes and five for the lifted determinant.
 struct ShortVector {
   using Volume = ShortInteger<3>;
   std::int64_t x, y, z;
@@ -65,10 +66,10 @@ struct ShortVector {
   static TwoWords product(std::int64_t a, std::int64_t b) { return TwoWords(a) * b; }
 };
 
-// As integer_vectors(), where all fit; false where they do not.
+// Does what integer_vectors() does if all coordinates fit; returns false otherwise.
 template <std::size_t kCount, class... Points>
 bool short_vectors(std::array<ShortVector, kCount>& vectors, const Point& q, const Points&... points) {
-  constexpr int kShortBits = 60;  // of a coordinate: three products of differences are below 2^124
+  constexpr int kShortBits = 60;  // of a coordinate, so that the sums of three products of differences are below 2^124
   const int unit = common_unit({&q, &points...});
   bool fits = true;
   const auto in_short_units = [&](double x) -> std::int64_t {
@@ -88,14 +89,15 @@ bool short_vectors(std::array<ShortVector, kCount>& vectors, const Point& q, con
   return fits;
 }
 
-// The lifted determinant of four points relative to the query, expanded by the lifts. Positive for a query inside.
+// The lifted determinant of four points relative to the query, expanded along the lifts. It is positive if the query is
+// inside.
 template <class Number>
 Number lifted(const Number& aa, const Number& bb, const Number& cc, const Number& dd, const Number& bcd,
               const Number& cda, const Number& dab, const Number& abc) {
   return (cc * dab - dd * abc) + (aa * bcd - bb * cda);
 }
 
-// In doubles; 16 roundings of the sum of the absolute products bound the error.
+// Computes it in doubles. 16 rounding errors of the sum of the absolute products bound its error.
 Determinant inside_sphere_fast(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
   struct Minor {
     double value, magnitude;
@@ -119,15 +121,15 @@ Determinant inside_sphere_fast(const Vector& a, const Vector& b, const Vector& c
   return {lifted(aa, bb, cc, dd, bcd, cda, dab, abc), 16 * kRounding * magnitude};
 }
 
-// Whether the doubles of a determinant of this degree are exact: all coordinates are multiples of a unit of which no
-// difference is more than 2^bits, so that every product and sum on the way is a whole number of units below 2^53.
-// Nearly all points of a grid are, next to each other: much sooner told than any sharper arithmetic tells that they are
-// on one plane or sphere. `extent` is the largest difference from q.
+// Whether the doubles of a determinant of this degree are exact. They are if all coordinates are multiples of a unit of
+// which no difference is more than 2^bits, so that every intermediate product and sum is a whole number of units below
+// 2^53. Nearly all adjacent points of a grid fulfil this, and the test is much faster than any exact arithmetic that
+// would show them to be on one plane or sphere. `extent` is the largest difference from q.
 template <class... Points>
 bool is_exact_in_doubles(int bits, double extent, const Point& q, const Points&... points) {
   const double below = std::bit_cast<double>(std::bit_cast<std::uint64_t>(extent) & (std::uint64_t{0x7ff} << 52));
-  // Adding it to what is not negative rounds to multiples of the unit, or of more: 2^(1 - bits) times the power of two
-  // below the extent.
+  // Adding this number to one that is not negative rounds it to multiples of the unit, or of a larger one: 2^(1 - bits)
+  // times the power of two below the extent.
   const double rounder = 0x1.8p53 / static_cast<double>(1 << bits) * below;
   const auto is_whole = [rounder](double x) { return (std::abs(x) + rounder) - rounder == std::abs(x); };
   const auto is_multiple = [&is_whole](const Point& p) {
@@ -138,10 +140,10 @@ bool is_exact_in_doubles(int bits, double extent, const Point& q, const Points&.
 constexpr int kVolumeBits = 16;  // 6 products of three differences: below 2^51
 constexpr int kSphereBits = 9;   // 72 products of five: below 2^52
 
-// Whether four points, seen along an axis, are two points at most: then they are in one plane, exactly, however many
-// digits they have. So are many of those in rings or rows along an axis.
+// Whether four points, seen along an axis, are at most two points. Then they are exactly in one plane, however many
+// digits they have. This holds for many points in rings or rows along an axis.
 bool are_two_along_axis(const Point& q, const Point& a, const Point& b, const Point& c) {
-  // A bit for each axis along which the points are one.
+  // Returns a bit for each axis along which the two points coincide.
   const auto one = [](const Point& u, const Point& v) {
     const unsigned x = u.x() == v.x(), y = u.y() == v.y(), z = u.z() == v.z();
     return (y & z) | (x & z) << 1 | (x & y) << 2;
@@ -173,7 +175,8 @@ Number sharp_inside_sphere(const std::array<SharpVector<Number>, 4>& v) {
   return lifted<Number>(a.dot(a), b.dot(b), c.dot(c), d.dot(d), b.dot(cd), a.dot(cd), d.dot(ab), c.dot(ab));
 }
 
-// The circumcentre of q, a, b, c relative to q as four determinants: x, y and z over twice six times the volume.
+// The circumcentre of q, a, b, c relative to q as four determinants: x, y and z have to be divided by twice six times
+// the volume.
 template <class Number>
 struct SharpCenter {
   SharpVector<Number> numerator;
@@ -188,7 +191,7 @@ struct SharpCenter {
   }
 };
 
-// The quotient, and by what it was divided.
+// The quotient and its divisor.
 struct RoundedCenter {
   Vector center;
   double volume6 = 0;
@@ -210,8 +213,8 @@ Sign exact_inside_sphere(const Point& q, const Point& a, const Point& b, const P
                                .sign());
 }
 
-// The same products and sums with the fused operation as one instruction instead of a call: the same results, twice as
-// fast.
+// A variant in which the fused operation is an instruction and not a call. It makes the same products and sums with the
+// same results, twice as fast.
 #ifdef ORCHARD_FOUR_LANES
 [[gnu::target("fma"), gnu::flatten]] double fused_inside_sphere(const Point& q, const Point& a, const Point& b,
                                                                 const Point& c, const Point& d) {
@@ -233,7 +236,8 @@ RoundedCenter fused_center(const Point&, const Point&, const Point&, const Point
 constexpr bool kFused = false;
 #endif
 
-// By twice the digits of doubles. Whether the volume is more than so many times its error.
+// Computes the centre with twice the digits of doubles. Returns whether the volume is more than `times` times its
+// error.
 bool twofold_circumcenter(double times, const Point& q, const Point& a, const Point& b, const Point& c,
                           Vector& center) {
   const RoundedCenter sharp = kFused ? fused_center(q, a, b, c) : rounded_center(q, a, b, c);
@@ -249,7 +253,7 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
   const Sign sign = sign_of(fast.value, fast.bound + indifferent);
   if (sign != Sign::uncertain || std::abs(fast.value) + fast.bound < indifferent) return sign;
   if (indifferent == 0) {
-    // Every product of the determinant has a factor 0, as where all four points share a coordinate.
+    // Every product of the determinant has a factor 0, which is so if all four points share a coordinate.
     if (fast.bound == 0) return Sign::uncertain;
     if (is_exact_in_doubles(kVolumeBits, largest_coordinate(qa, qb, qc), q, a, b, c)) return sign_of(fast.value, 0);
     if (are_two_along_axis(q, a, b, c)) return Sign::uncertain;
@@ -263,7 +267,7 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
 Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, const Point& b, const Point& c) {
   const auto& [p, q, r, s] = points;
   const auto [to_a, to_b, to_c, to_q, to_r, to_s] = integer_vectors(p, a, b, c, q, r, s);
-  // All four times as far from p.
+  // all four are scaled by the same factor
   const SharpVector<ExactInteger> to_middle{to_q.x + to_r.x + to_s.x, to_q.y + to_r.y + to_s.y,
                                             to_q.z + to_r.z + to_s.z};
   const auto from_middle = [&to_middle](const SharpVector<ExactInteger>& v) {
@@ -303,7 +307,7 @@ bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Po
   if (!twofold_circumcenter(kDivisible, q, a, b, c, center)) {
     const auto exact = SharpCenter<ExactInteger>::of(integer_vectors(q, a, b, c));
     if (exact.volume6 == 0) return false;
-    const int unit = common_unit({&q, &a, &b, &c}) - 1;  // twice six times the volume
+    const int unit = common_unit({&q, &a, &b, &c}) - 1;  // the factor is twice six times the volume
     center = Vector(quotient(exact.numerator.x, exact.volume6, unit), quotient(exact.numerator.y, exact.volume6, unit),
                     quotient(exact.numerator.z, exact.volume6, unit));
   }
@@ -314,7 +318,7 @@ bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal
   const auto [qa, qb] = twofold_vectors(q, a, b);
   const auto cross = qa.cross(qb);
   normal = Vector(cross.x.high, cross.y.high, cross.z.high);
-  // Scaled first: the squares of a needle's area may be too small for a double.
+  // The vector is scaled first, because the squares of a needle's area may underflow.
   double scale = normal.cwiseAbs().maxCoeff();
   if (!(scale > kDivisible * kSharper * kRounding * (a - q).norm() * (b - q).norm())) {
     const auto [exact_a, exact_b] = integer_vectors(q, a, b);

@@ -12,13 +12,14 @@ struct Twofold {
   Twofold(double h, double l) : high(h), low(l) {}
 };
 
-// A few dozen operations of 2^-104 relative error each, in terms of the error bound of the same formula in doubles.
+// A formula has a few dozen operations with a relative error of 2^-104 each, in terms of the error bound of the same
+// formula in doubles.
 inline constexpr double kSharper = 0x1p-48;
 
-// How many times the error of a divisor it must be, for the quotient to be right to a few roundings of a double.
+// The divisor has to be this many times its error, so that the quotient is right to a few rounding errors of a double.
 inline constexpr double kDivisible = 0x1p46;
 
-// The exact sum (Knuth), difference and product (Dekker, by the fused operation) of two doubles.
+// The exact sum (Knuth), difference, and product (Dekker, by the fused operation) of two doubles.
 inline Twofold exact_sum(double a, double b) {
   const double sum = a + b, b_part = sum - a;
   return {sum, (a - (sum - b_part)) + (b - b_part)};
@@ -29,14 +30,15 @@ inline Twofold exact_product(double a, double b) {
   return {product, std::fma(a, b, -product)};
 }
 
-// The same sum in half the time where b is the smaller one, or does not matter beyond half of a double's precision.
+// The same sum in half the time. b has to be the smaller number, or too small to matter beyond half of a double's
+// precision.
 inline Twofold quick_sum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-// Errors of sums and differences are a few 2^-106 times the sum of the absolute values, not of the result: enough for
-// determinants that are judged against the sum of their absolute products.
+// The errors of sums and differences are a few 2^-106 times the sum of the absolute values, not of the result. That
+// suffices for determinants, which are compared with the sum of their absolute products.
 inline Twofold operator-(const Twofold& a) { return {-a.high, -a.low}; }
 inline Twofold operator+(const Twofold& a, const Twofold& b) {
   const Twofold high = exact_sum(a.high, b.high);

@@ -8,12 +8,14 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kWide = 1024, kNarrow = 2, kNarrower = 8;  // widths of cells in terms of the distance; their ratio
-constexpr std::size_t kLongRun = 48;                        // slots to look at for one cell before all become narrower
+// Widths of cells over the distance, and the factor between two of them.
+constexpr double kWide = 1024, kNarrow = 2, kNarrower = 8;
+constexpr std::size_t kLongRun = 48;  // slots that are searched for one cell before all cells are made narrower
 
-// Cells much wider than the distance, so that most points need to look into one cell only; linear probing. Points of
-// different cells may share a run of slots: comparing them too is harmless. Where points crowd together, the cells
-// become narrower: those of twice the distance hold few points, for these are a distance apart.
+// A hash grid with linear probing. Its cells are much wider than the distance, so that for most points one cell has to
+// be searched. Points of different cells may share a run of slots; comparing these, too, does no harm. Where points
+// crowd together, the cells are made narrower: a cell of twice the distance holds only a few points, because these are
+// at least the distance apart.
 class Grid {
  public:
   Grid(std::span<const Point> points, double distance)
@@ -21,7 +23,7 @@ class Grid {
     for (Index& slot : slots_) slot = kNone;
   }
 
-  // The lowest point within the distance, or kNone after taking the point in.
+  // Returns the lowest point within the distance, or adds the point and returns kNone.
   Index find_or_add(Index point) {
     const Point& p = points_[point];
     const Vector from_origin = p - points_[0];

@@ -12,7 +12,7 @@ class EdgeTable {
  public:
   static constexpr Index kDense = 64;
 
-  EdgeTable() : dense_(kDense * kDense) {}
+  EdgeTable() : dense_(kCells) {}
 
   // Empties the table. Afterwards numbers below `count` may be used.
   void reset(Index count) {
@@ -23,7 +23,7 @@ class EdgeTable {
     }
     use_dense_ = count <= kDense;
     size_ = 0;
-    if (!use_dense_ && hashed_.empty()) hashed_.resize(kDense * kDense);
+    if (!use_dense_ && hashed_.empty()) hashed_.resize(kCells);
   }
 
   // The value of the pair, or kNone.
@@ -55,6 +55,7 @@ class EdgeTable {
   }
 
  private:
+  static constexpr std::size_t kCells = std::size_t{kDense} * kDense;
   struct Entry {
     std::uint32_t epoch = 0;
     Index value = 0;

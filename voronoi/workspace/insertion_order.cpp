@@ -18,20 +18,21 @@ namespace {
 
 constexpr unsigned kBits = 12;  // of each coordinate: 4096 steps across the box
 constexpr unsigned kCurveBits = 3 * kBits;
-constexpr unsigned kRoundShift = 3;  // each round holds about 7/8 of the points that remain
+constexpr unsigned kRoundShift = 3;  // each round contains about 7/8 of the points that are not in earlier ones
 constexpr unsigned kMaxRound = 15;
 constexpr std::size_t kMinRound = 64;
-constexpr std::size_t kCrowded = 16;      // points of one round in one cell that are ordered by a finer grid
-constexpr std::size_t kBatch = 1u << 13;  // points that a thread looks at at once
-constexpr int kFinest = 4;                // grids within grids: the last one resolves a double
+constexpr std::size_t kCrowded = 16;  // points of one round in one cell above which they are ordered by a finer grid
+constexpr std::size_t kBatch = 1u << 13;  // points of one task of a thread
+constexpr int kFinest = 4;                // the depth of nested grids; the last one distinguishes all doubles
 
-// The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004). Without branches: the
-// bits are as good as random.
+// Returns the position of a cell of the 2^kBits grid on a Hilbert curve, by Skilling's transform (2004). It has no
+// branches, because the bits cannot be predicted.
 std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
   for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1) {
     const std::uint32_t low = bit - 1;
     for (std::uint32_t& coordinate : x) {
-      // Where it is set, the low bits of the first coordinate are turned over; else they are swapped with its own.
+      // If the bit is set, the low bits of the first coordinate are inverted; otherwise they are swapped with those of
+      // this coordinate.
       const std::uint32_t set = 0u - std::uint32_t{(coordinate & bit) != 0};
       const std::uint32_t swap = (x[0] ^ coordinate) & low & ~set;
       x[0] ^= swap | (low & set);
@@ -49,7 +50,7 @@ std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
   return position;
 }
 
-// Of eight cells at once: by coordinate, then by cell.
+// The same for eight cells at once, stored by coordinate, then by cell.
 constexpr std::size_t kEight = 8;
 using EightCells = std::array<std::array<std::uint32_t, kEight>, 3>;
 
@@ -73,7 +74,7 @@ using EightCells = std::array<std::array<std::uint32_t, kEight>, 3>;
   Lanes flip = x[0] ^ x[0];
   for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1)
     flip ^= (bit - 1) & reinterpret_cast<Lanes>((x[2] & bit) != 0);
-  // The upper and the lower half of the bits.
+  // the upper and the lower halves of the bits
   Lanes halves[2] = {flip ^ flip, flip ^ flip};
   for (unsigned bit = kBits; bit-- > 0;)
     for (const Lanes& coordinate : x) {
@@ -110,7 +111,7 @@ struct Item {
   Index point;
 };
 
-// Stable, by the low bits of the key.
+// A stable sort by the low bits of the key.
 void radix_sort(std::vector<Item>& items, unsigned bits) {
   constexpr unsigned kDigit = 10;
   std::vector<Item> other;
@@ -128,7 +129,7 @@ void radix_sort(std::vector<Item>& items, unsigned bits) {
   }
 }
 
-// Where points crowd together: those of one round in one cell follow a curve of their own, in their own box.
+// Orders points that crowd together: those of one round in one cell follow a curve of their own, in their own box.
 void order_crowds(std::span<Item> items, std::span<const Point> points, int finer) {
   for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end) {
     for (end = begin + 1; end < items.size() && items[end].key == items[begin].key; ++end) continue;
@@ -166,7 +167,7 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
         }
         positions = hilberts(cells);
       }
-      // A point stays in the last round but for one time in eight, and so on downwards.
+      // A point is in the last round except for one time in eight, in which it is in an earlier one, by the same rule.
       std::uint64_t bits = Random(0, 0x40b3u, i).bits();
       unsigned round = rounds;
       for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;

@@ -4,13 +4,13 @@
 
 namespace orchard::detail {
 
-// Asks the system to map memory that will be filled by large pages: mapping it page by page takes longer than to fill
-// it. Where it cannot, nothing changes; and where it takes longer than as many small pages would, for a virtual machine
-// has to get what it has not used for a while from its host, small pages stay. To be called before the memory is
-// written to, and for what will be filled only: up to 2 MB at either end may be taken otherwise.
+// Asks the operating system to map memory by large pages, because mapping it page by page takes longer than filling it.
+// If the system cannot do that, nothing changes. If large pages take longer than as many small ones would, which
+// happens when a virtual machine has to get unused memory from its host, small pages stay. Call this before the memory
+// is written to, and only for memory that will be filled: up to 2 MB at either end may be allocated in addition.
 void use_large_pages(void* begin, std::size_t bytes);
 
-// Room for so many items of an empty vector, all of which will be filled.
+// Reserves room for `count` items of an empty vector, all of which will be filled.
 template <class Item>
 void reserve_large(std::vector<Item>& items, std::size_t count) {
   items.reserve(count);

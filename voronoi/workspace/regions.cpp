@@ -8,7 +8,7 @@
 namespace orchard::detail {
 namespace {
 
-// Across the faces, edges and corners of a cube.
+// Normals across the faces, edges and corners of a cube.
 constexpr std::array<std::array<int, 3>, 13> kNormals{{{1, 0, 0},
                                                        {0, 1, 0},
                                                        {0, 0, 1},
@@ -23,21 +23,23 @@ constexpr std::array<std::array<int, 3>, 13> kNormals{{{1, 0, 0},
                                                        {1, -1, 1},
                                                        {-1, 1, 1}}};
 
-// Which part of the points may be on one side.
+// The shares of the points that may be on one side of a cut.
 constexpr std::array<double, 5> kParts{0.44, 0.47, 0.5, 0.53, 0.56};
 
-// How many points wait for one thread in the end, in terms of the part of the vertices that is mixed.
+// The number of points that wait for a single thread at the end, over the share of vertices that are mixed.
 constexpr double kWaitPerMixed = 3;
 
-constexpr std::size_t kPoints = 2048, kVertices = 8192;  // to judge a cut by
+// The numbers of points and vertices that are sampled to judge a cut.
+constexpr std::size_t kPoints = 2048, kVertices = 8192;
 
-// What a cut costs, at what height along a normal.
+// The cost of a cut, and its height along a normal.
 struct Offer {
   double cost = std::numeric_limits<double>::infinity(), offset = 0;
 };
 
-// The heights below which each of kParts of them are. Selecting costs a mispredicted branch for every other one that is
-// looked at, so those beyond all of these parts are left out first, without branches, as far as a sample tells.
+// Returns the heights below which each of kParts of the points are. Selecting costs a mispredicted branch for every
+// second point that is compared. So points beyond all of these parts are first removed, without branches, as far as a
+// sample shows.
 std::array<double, kParts.size()> heights_of_parts(std::vector<double>& heights) {
   constexpr std::size_t kTried = 256, kMargin = kTried / 8;
   const auto rank = [](double part, std::size_t count) {
@@ -81,12 +83,12 @@ std::vector<Index> some_of(std::span<const Index> all, std::size_t count) {
 
 }  // namespace
 
-// Of one part: points that wait, and the forming points of vertices near them.
+// A sample of one part: waiting points, and the forming points of vertices near them.
 struct Regions::Sample {
   std::vector<Point> points;
-  std::vector<std::array<Point, 4>> vertices;  // for the infinite point, the first one again
+  std::vector<std::array<Point, 4>> vertices;  // the first point again in place of the infinite one
 
-  // The cheapest cut across a normal.
+  // Returns the cheapest cut across a normal.
   Offer best_offer(const Vector& normal) const {
     std::vector<double> heights(points.size());
     std::transform(points.begin(), points.end(), heights.begin(), [&](const Point& p) { return normal.dot(p); });
@@ -108,7 +110,7 @@ struct Regions::Sample {
     return best;
   }
 
-  // What is cut already costs nothing more: it goes to neither.
+  // Divides the sample. Vertices that are cut already cost nothing more, so they go to neither half.
   std::array<Sample, 2> halves(const Cut& cut) const {
     std::array<Sample, 2> result;
     for (const Point& p : points) result[cut.is_beyond(p)].points.push_back(p);

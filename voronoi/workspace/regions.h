@@ -8,13 +8,14 @@
 
 namespace orchard::detail {
 
-// Planes that halve the space, its halves and so on into regions that hold about as many of the waiting points each,
-// chosen such that few vertices have forming points in several. A function of the points and vertices alone.
+// Planes that halve the space, then each half and so on, into regions with about the same number of waiting points.
+// They are chosen so that few vertices have forming points in several regions. The result depends only on the points
+// and vertices.
 class Regions {
  public:
   static constexpr unsigned kMaxHalvings = 3;
 
-  // `near`: vertices where the points wait. Up to 2^halvings regions.
+  // `near` has the vertices where the points wait. There are up to 2^halvings regions.
   Regions(const Workspace& workspace, std::span<const Index> waiting, std::span<const Index> near, unsigned halvings);
 
   std::uint8_t count() const { return static_cast<std::uint8_t>(1u << halvings_); }
@@ -35,7 +36,7 @@ class Regions {
   static Cut best_cut(const Sample& sample);
 
   unsigned halvings_;
-  std::array<Cut, 1u << kMaxHalvings> cuts_{};  // of node n: halves 2 n and 2 n + 1, from 1 on
+  std::array<Cut, 1u << kMaxHalvings> cuts_{};  // node n has the halves 2 n and 2 n + 1; the first node is 1
 };
 
 }  // namespace orchard::detail

@@ -63,6 +63,7 @@ void record_detector(Recording& recording, Draws& draws, const std::vector<orcha
   options.time_step = kTimeStep;
   orchard_detector* const world = orchard_detector_new(nullptr, nullptr, &options);
   std::vector<orchard_shape> shapes;
+  shapes.reserve(trees.size());
   for (const orchard_tree* tree : trees) shapes.push_back(orchard_detector_add_tree(world, tree));
   arguments.add_all(kTimeStep, kSteps, kBodies);
   for (std::size_t i = 0; i < kBodies; ++i) {

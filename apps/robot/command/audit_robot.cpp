@@ -112,7 +112,8 @@ ExitCode audit_robot(const AuditCommand& command) {
   SphereFile file = read_sphere_file(command.spheres);
   std::vector<std::string> left_out = robot::place_in_links(robot, file, command.spheres);
   if (file.groups.empty())
-    throw InputError(fmt::format("{}: no sphere is on a link of {}", command.spheres.string(), command.mesh.string()));
+    throw InputError(
+        fmt::format("{}: no sphere belongs to a link of {}", command.spheres.string(), command.mesh.string()));
   std::vector<robot::LinkShape> shapes =
       robot::link_shapes(robot, shape_options(command.reading, command.wrap, command.join), bar.callback());
   choose(command, robot, file, shapes);

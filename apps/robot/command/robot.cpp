@@ -133,7 +133,8 @@ std::vector<SphereGroup> read_groups(const RobotCommand& command, Made& made) {
   for (std::string& note : robot::place_in_links(made.robot, file, command.from)) made.notes.push_back(std::move(note));
   std::erase_if(file.groups, [](const SphereGroup& group) { return group.spheres.empty(); });
   if (file.groups.empty())
-    throw InputError(fmt::format("{}: no sphere is on a link of {}", command.from.string(), command.urdf.string()));
+    throw InputError(
+        fmt::format("{}: no sphere belongs to a link of {}", command.from.string(), command.urdf.string()));
   return std::move(file.groups);
 }
 

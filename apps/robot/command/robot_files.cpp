@@ -64,6 +64,7 @@ std::vector<std::string> robot_file_names(const RobotCommand& command) {
         "-ballpark.json", "-spheres.csv", "-spheres.json", "-liggghts.in", "-yade.py", "-trajectory.pvd"})
     endings.emplace_back(ending);
   std::vector<std::string> names;
+  names.reserve(endings.size());
   for (const std::string& ending : endings) names.push_back(named(command.urdf, ending));
   return names;
 }

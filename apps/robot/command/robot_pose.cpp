@@ -35,6 +35,7 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header, cons
     const auto joint = std::find_if(free.begin(), free.end(), [&](Index j) { return robot.joints[j].name == name; });
     if (joint == free.end() && name != "time") {
       std::vector<std::string> names;
+      names.reserve(free.size());
       for (const Index j : free) names.push_back(robot.joints[j].name);
       throw InputError(fmt::format("{}: \"{}\" is neither time nor a joint that moves by itself: {}", where, name,
                                    fmt::join(names, ", ")));
@@ -90,7 +91,8 @@ Trajectory read_trajectory(const fs::path& file, const robot::Robot& robot) {
       continue;
     }
     if (items->size() != columns.size())
-      throw InputError(fmt::format("{}: has {} values, and the header {}", where, items->size(), columns.size()));
+      throw InputError(
+          fmt::format("{}: the line has {} values, but the header has {}", where, items->size(), columns.size()));
     std::vector<double> free(robot.free_joints().size(), 0);
     double time = static_cast<double>(result.values.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -101,9 +103,10 @@ Trajectory read_trajectory(const fs::path& file, const robot::Robot& robot) {
     result.times.push_back(time);
     result.values.push_back(robot::joint_values(robot, free));
     if (result.values.size() > kMaxPoses)
-      throw InputError(fmt::format("{}: has more than {} poses", file.string(), kMaxPoses));
+      throw InputError(fmt::format("{}: the file has more than {} poses", file.string(), kMaxPoses));
   }
-  if (result.values.empty()) throw InputError(file.string() + ": has no pose; it is to have a header and a line each");
+  if (result.values.empty())
+    throw InputError(file.string() + ": the file has no pose; it needs a header and a line for each pose");
   return result;
 }
 

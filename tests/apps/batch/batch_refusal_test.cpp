@@ -28,7 +28,7 @@ TEST(Batch, RefusesBadInputInOneLineBeforeAnythingIsWritten) {
   here.add("nothing", std::string("# no mesh\n\n"));
   const std::string meshes = path("meshes"), out = path("out");
   for (const Refused& refused : std::vector<Refused>{
-           {{path("empty"), "-o", out, "--", "build"}, "holds no mesh"},
+           {{path("empty"), "-o", out, "--", "build"}, "contains no mesh"},
            {{path("none"), "-o", out, "--", "build"}, "cannot be read"},
            {{path("list"), "-o", out, "--", "build"}, "meshes/lost.ply"},
            {{path("list"), "-o", out, "--", "build"}, "meshes/gone.obj"},
@@ -37,7 +37,7 @@ TEST(Batch, RefusesBadInputInOneLineBeforeAnythingIsWritten) {
            {{meshes, "-o", out, "--shard", "3/2", "--", "build"}, "--shard 3/2"},
            {{meshes, "-o", out, "--shard", "0/2", "--", "build"}, "--shard 0/2"},
            {{meshes, "-o", out, "--shard", "1", "--", "build"}, "--shard 1"},
-           {{meshes, "-o", out}, "behind --"},
+           {{meshes, "-o", out}, "after --"},
            {{meshes, "-o", out, "--", "verify"}, "build, medial or spheres"},
            {{meshes, "-o", out, "--", "build", "--dept", "2"}, "--depth"},
            {{meshes, "-o", out, "--", "build", "-o", "x"}, "-o cannot be among"},

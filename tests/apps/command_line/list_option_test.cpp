@@ -60,7 +60,7 @@ TEST(Values, ListsAreRefusedForAnyItemThatIsMissingOrNone) {
 TEST(Values, ASweepHasEachValueOnce) {
   const Workplace here;
   const std::string ball = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
-  expect_refused(here, {"medial", ball, "-o", out, "--sweep", "samples=200,400, 200"}, "200 is there twice");
+  expect_refused(here, {"medial", ball, "-o", out, "--sweep", "samples=200,400, 200"}, "200 is given twice");
 }
 
 TEST(Values, ListsTakeBlanksAroundItemsAndComeAgain) {

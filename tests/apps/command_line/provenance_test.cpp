@@ -84,7 +84,7 @@ TEST(Provenance, IsInEveryFileOfEveryCommand) {
   for (std::vector<std::string> run : std::vector<std::vector<std::string>>{
            {"build", mesh, "--samples", "150", "--depth", "1", "--export", "json,urdf", "--report", "--picture"},
            {"medial", mesh, "--samples", "150", "--report", "--quality-samples", "200", "--picture", "--vertices", "50",
-            "--curve", "--envelope", out + "/l-envelope.obj", "--envelope-cell", "5"},
+            "--error-curve", "--envelope", out + "/l-envelope.obj", "--envelope-cell", "5"},
            {"medial", mesh, "--sweep", "samples=100", "--quality-samples", "100"},
            {"sample", mesh, "--samples", "200"},
            {"voronoi", mesh, "--samples", "150"}}) {

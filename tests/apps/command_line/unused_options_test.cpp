@@ -69,7 +69,7 @@ TEST(UnusedOptions, ASweepRefusesWhatNoneOfItsRunsHasAUseFor) {
                  {{{"--sweep", "segment-angle=20,40"}, "--segment-angle has no effect with --sweep"},
                   {{"--sweep", "samples=200,400", "--segment-angle", "20"}, "--segment-angle has no effect"},
                   {{"--sweep", "samples=200,400", "--samples", "300"}, "--samples has no effect with --sweep samples="},
-                  {{"--sweep", "prune angle=0,20", "--sweep", "prune angle=40"}, "prune angle is there twice"},
+                  {{"--sweep", "prune angle=0,20", "--sweep", "prune angle=40"}, "prune angle is given twice"},
                   {{"--sweep", "refine=no,yes", "--raw"}, "--raw has no effect with --sweep refine="},
                   {{"--sweep", "max-passes=1,2", "--gaps", "none"}, "--max-passes has no effect with --gaps none"},
                   {{"--sweep", "border-loss=1,2", "--raw"}, "--border-loss has no effect with --refine no"},

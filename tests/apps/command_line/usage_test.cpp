@@ -238,5 +238,27 @@ TEST(Medial, WarnsOfNothingThatCannotHelp) {
   EXPECT_EQ(few.find("--samples"), std::string::npos) << few;
 }
 
+TEST(FormerNames, OfOptionsAndMeasuresAreAcceptedWithAWarning) {
+  const Workplace here;
+  const std::string ball = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
+  // Each is refused for a reason that shows that the present name was read.
+  const struct {
+    std::vector<std::string> arguments;
+    const char *now, *refused;
+  } cases[] = {
+      {{"medial", ball, "-o", out, "--curve", "--sweep", "samples=200,400"}, "--error-curve", "--error-curve has no"},
+      {{"spheres", ball, "-o", out, "--curve=2,4", "--error", "1"}, "--error-curve", "--error-curve has no effect"},
+      {{"medial", ball, "-o", out, "--sort-by", "wires"}, "--sort-by curve_components", "without --sweep"},
+      {{"medial", ball, "-o", out, "--sort-by=sheets"}, "--sort-by face_components", "without --sweep"},
+      {{"medial", ball, "-o", out, "--sort-by=sheets_between_seams"}, "--sort-by sheet_count", "without --sweep"},
+  };
+  for (const auto& [arguments, now, refused] : cases) {
+    const Finished run = here.run(arguments);
+    EXPECT_EQ(run.exit_code, 2) << now;
+    EXPECT_NE(run.err.find(std::string("is called ") + now + " now"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(refused), std::string::npos) << run.err;
+  }
+}
+
 }  // namespace
 }  // namespace orchard

@@ -74,9 +74,9 @@ TEST(CompareAxes, RefusesWhatDoesNotFitBeforeItWorks) {
   const std::string tree = axes.here.add("t.sph", std::string("1 8\n0 0 0 9 0\n")),
                     table = axes.here.add("t.csv", std::string("a,b\n1,2\n"));
   for (const auto& [words, word] :
-       {std::pair{std::vector<std::string>{"compare", axes.mesh, axes.theirs, tree}, "compare them apart"},
+       {std::pair{std::vector<std::string>{"compare", axes.mesh, axes.theirs, tree}, "compare them separately"},
         {{"compare", axes.mesh, tree, "--vertices", "20"}, "--vertices has no effect on sphere-trees"},
-        {{"compare", axes.mesh, axes.theirs, "--csv", table}, "is no table that compare of this version wrote"},
+        {{"compare", axes.mesh, axes.theirs, "--csv", table}, "compare of this version did not write this table"},
         {{"compare", axes.mesh, axes.theirs, "--report"}, "--report"}}) {
     const Finished run = axes.here.run(words);
     EXPECT_EQ(run.exit_code, 2) << word;

@@ -45,7 +45,7 @@ TEST(NoiseOption, GivesTheAxisOfTheSurfaceBelowTheNoise) {
   const json report = medial_report(here, mesh, {"--noise", "auto"});
   const json& noise = report["noise"];
   EXPECT_TRUE(noise["estimated"].get<bool>());
-  EXPECT_NEAR(noise["level_over_diagonal"].get<double>(), 0.003 / std::sqrt(3), 0.0006);
+  EXPECT_NEAR(noise["deviation_over_diagonal"].get<double>(), 0.003 / std::sqrt(3), 0.0006);
   EXPECT_GT(noise["rounds"].get<int>(), 0);
   EXPECT_EQ(report["topology"], report["topology_of_solid"]);
   const auto balls = [](const json& of) { return of["build"]["vertices"].get<int>(); };

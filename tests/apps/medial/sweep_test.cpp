@@ -112,7 +112,7 @@ TEST(MedialSweep, RefusesWhatItCannotVary) {
                                    {"vertices=10,none", "vertices=none"},
                                    {"vertices=10,-1", "vertices=-1"},
                                    {"balls=medial,free", "--balls has no effect without"},
-                                   {"vertices=10,10", "10 is there twice"}}) {
+                                   {"vertices=10,10", "10 is given twice"}}) {
     const Finished run = sweep.run({"--sweep", text});
     EXPECT_EQ(run.exit_code, 2) << text;
     EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;

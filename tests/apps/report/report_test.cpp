@@ -51,7 +51,7 @@ TEST(ReportPage, IsWrittenByEveryCommandThatMeasures) {
         {{"simulate", "pile", "--frames", "5", "--bodies", "3", "--no-views"},
          "pile-simulate-report.html",
          "Times that the motion of a body was asked for"},
-        {{"spheres", model.mesh, "-n", "4", "--effort", "low", "--no-views", "--curve", "2,3"},
+        {{"spheres", model.mesh, "-n", "4", "--effort", "low", "--no-views", "--error-curve", "2,3"},
          "box-spheres-report.html",
          "Largest protrusion"},
         {{"audit", set, model.mesh}, "box-audit-report.html", "cuRobo defines it"},

@@ -225,9 +225,9 @@ TEST(View, RefusesWhatItCannotDraw) {
                {{tree, "-o", (here / "view.jpg").string()}, "pictures are .png"},
                {{tree, "-o", (here / "v.svg").string(), "--color", "radius"}, "a picture of lines"},
                {{tree, "-o", (here / "v.SVG").string()}, "small letters"},
-               {{tree, "-o", (here / "v.pdf").string(), "--clip", "1,0,0,0"}, "cuts no spheres"},
+               {{tree, "-o", (here / "v.pdf").string(), "--clip", "1,0,0,0"}, "cannot cut spheres"},
                {{tree, "-o", (here / "v.pdf").string(), "--window"}, "pictures are .png files"},
-               {{tree, "-o", picture, "--level", "9"}, "the deepest level there is is 2"},
+               {{tree, "-o", picture, "--level", "9"}, "the deepest level is 2"},
                {{mesh, "-o", picture, "--level", "1"}, "there is no tree among the files"},
                {{tree, "-o", picture, "--camera", "30"}, "two angles"},
                {{tree, "-o", picture, "--camera", "30,95"}, "-80 to 80"},
@@ -236,7 +236,7 @@ TEST(View, RefusesWhatItCannotDraw) {
                {{tree, "-o", picture, "--color", "radius", "--range", "3"}, "two numbers"},
                {{tree, "-o", picture, "--color", "radius", "--range", "3,3"}, "below the second"},
                {{tree, "-o", picture, "--look-at", "1,2"}, "three coordinates"},
-               {{tree, "-o", picture, "--clip", "0,0,0,1"}, "no plane"},
+               {{tree, "-o", picture, "--clip", "0,0,0,1"}, "must not all be 0"},
                {{tree, "--window", "--edges"}, "no options of a figure"},
                {{(here / "none.obj").string(), "-o", picture}, "none.obj"}};
   for (const auto& [arguments, named] : cases) {

@@ -73,7 +73,7 @@ TEST_F(VorFile, ThatIsDamagedIsRefusedWithTheFaultAndItsLine) {
   EXPECT_NE(fault("").find("starts with \"voronoi\""), std::string::npos);
   EXPECT_NE(fault("points 3\n").find("line 1: expected"), std::string::npos);
   EXPECT_NE(fault("voronoi 4000000000 4000000000\np 0 0 0\n").find("cut off"), std::string::npos);
-  EXPECT_NE(fault("voronoi 1 0\np 0 nan 0\n").find("line 2: a number that is not finite"), std::string::npos);
+  EXPECT_NE(fault("voronoi 1 0\np 0 nan 0\n").find("line 2: the number is not finite"), std::string::npos);
   EXPECT_NE(fault("voronoi 1 1\np 0 0 0\nv 0 0 0 0 1 2 3 0 0 0 0\n").find("beyond the last point"), std::string::npos);
   EXPECT_NE(fault("voronoi 1 1\np 0 0 0\nv 0 0 0 0 -2 0 0 0 0 0 0\n").find("beyond the last point"), std::string::npos);
   EXPECT_NE(fault("voronoi 1 1\np 0 0 0\nv 0 0 0 0 0 0 0 0 0 0 9\n").find("beyond the last vertex"), std::string::npos);

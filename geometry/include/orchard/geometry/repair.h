@@ -51,7 +51,7 @@ struct MeshRepairReport {
 // Repairs a mesh towards a solid, with those changes alone that keep the surface in place, in these steps:
 // - Vertices at the same place are welded where a seam or a triangle without area requires it.
 // - Corners of open edges that differ by rounding are joined, the nearest first, so that an edge closed in this way is
-//   not joined to a sheet beside it.
+//   not joined to a part of the surface beside it.
 // - Degenerate and duplicate triangles are removed.
 // - Triangles are reoriented to agree with the majority of their component.
 // - Edges and vertices where solids touch are cut apart; each triangle stays with the one across the solid between them
@@ -59,7 +59,7 @@ struct MeshRepairReport {
 // - Small holes are filled (CGAL's triangulate_hole_polyline, after Liepa 2003).
 // - Components are oriented outward, and those wholly inside another one, which are cavities, inward.
 // Only the filling of holes adds surface, and only joining moves vertices, by RepairMeshOptions::join_distance at most.
-// Larger holes, strips with one side and walls inside a solid stay as they are, which the report states. A mesh without
+// Larger holes, strips with one side and faces inside a solid stay as they are, which the report states. A mesh without
 // faults keeps every byte. Throws InputError if validate(mesh) does. O(n log n).
 MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& options = {});
 

@@ -60,8 +60,8 @@ Relaxation choose_relaxation(const Surface& surface, const SamplingOptions& opti
 SurfaceSampling sample_surface(const Surface& surface, const SamplingOptions& options = {},
                                const Progress& progress = {});
 
-// How evenly points are spread, measured by the distance from each point to the nearest other point on the same sheet
-// of the surface.
+// How evenly points are spread, measured by the distance from each point to the nearest other point on the same side
+// of the solid.
 struct Evenness {
   double mean = 0;       // The mean distance; the best possible is near sqrt(2 / sqrt(3) * area / points).
   double min = 0;        // The smallest distance over the mean; 1 is perfect, a random spread has nearly 0.

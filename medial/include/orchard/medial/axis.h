@@ -36,12 +36,12 @@ struct MedialAxis {
   std::vector<std::array<Index, 2>> face_points;
   Rows faces;  // The vertices of each face in order around it.
 
-  // The two points that each wall separates. Walls are the other Voronoi polygons all of whose corners are vertices of
-  // the axis: those between two points that share a triangle or an edge of the surface. A wall points at the surface
-  // but does not reach it. The sheets alone have holes where the walls are; with the walls, the axis has the topology
-  // of the solid (gap_crossing.h).
-  std::vector<std::array<Index, 2>> wall_points;
-  Rows walls;  // The vertices of each wall in order around it.
+  // The two points that each topology face separates. Topology faces are the other Voronoi polygons all of whose
+  // corners are vertices of the axis: those between two points that share a triangle or an edge of the surface. Such a
+  // face points at the surface but does not reach it, and is not drawn. The sheets alone have holes where these faces
+  // are; with them, the axis has the topology of the solid (gap_crossing.h).
+  std::vector<std::array<Index, 2>> topology_face_points;
+  Rows topology_faces;  // The vertices of each of them in order around it.
 
   // Three counts of AxisOptions::keep_topology: vertices that are joined by one edge alone and have no faces, edges
   // that do not exist in the diagram, and interior vertices that were dropped.

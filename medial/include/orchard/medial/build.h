@@ -15,8 +15,8 @@
 #include "orchard/medial/refine.h"
 #include "orchard/voronoi/algorithms.h"
 
-// Builds the medial axis of a solid from its surface: surface points, Voronoi diagram, gap repair, axis, pruning and
-// refinement in one call.
+// Builds the medial axis of a solid from its surface: surface points, Voronoi diagram, gap repair, axis, refinement and
+// pruning in one call.
 namespace orchard {
 
 // The options of build_medial_axis(), one group for each stage.
@@ -26,9 +26,9 @@ struct MedialBuildOptions {
   bool repair_gaps = true;  // Whether gap crossings are repaired, with the options in gap_repair.
   GapRepairOptions gap_repair = {};
   AxisOptions axis{.keep_topology = true};
-  PruneOptions prune = {};  // By default the axis is not pruned.
   // If this has no value, the vertices of the axis stay at the Voronoi vertices. An imported axis is never refined.
   std::optional<RefineOptions> refine = {};
+  PruneOptions prune = {};  // The finished axis is pruned by these; by default it is not.
   // The maximum number of rounds that add surface points, at least 0. A round adds points where the refined axis leaves
   // the surface open by more than border_loss, which happens where the solid is thinner than the spacing of the points,
   // and then rebuilds the diagram and the axis. Each round takes as long as the first build.
@@ -67,8 +67,8 @@ struct MedialBuild {
   InsertionReport voronoi;
   VoronoiDiagram diagram;  // This is empty for an imported axis.
   GapRepairReport gap_repair;
-  Index unpruned_vertices = 0;  // The number of vertices of the axis before pruning.
-  MedialAxis axis;              // The finished axis; it is refined if options.refine has a value.
+  Index unpruned_vertices = 0;  // The number of vertices of the axis before it was pruned.
+  MedialAxis axis;              // The finished axis, refined if options.refine has a value, and pruned.
   RefineReport refinement;      // All counts are 0 if the axis was not refined.
   // The mesh edges that the sheets of a refined axis reach, each as two vertices of the mesh.
   std::vector<std::array<Index, 2>> features;
@@ -80,8 +80,8 @@ struct MedialBuild {
   StageTimes seconds;  // The name and the duration of each stage.
 };
 
-// Builds the medial axis of a solid in these stages: surface points, Voronoi diagram, gap repair, axis, pruning,
-// refinement. `input` may replace the first stages.
+// Builds the medial axis of a solid in these stages: surface points, Voronoi diagram, gap repair, axis, refinement,
+// pruning. `input` may replace the first stages.
 // Returns the results of all stages. Throws InputError unless surface.solid(), if an option is out of range, or if more
 // than one member of `input` has a value. Throws Cancelled if `progress` returns false. Takes about O(n log n) for n
 // surface points in each round.

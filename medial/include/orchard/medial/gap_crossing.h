@@ -32,7 +32,7 @@ struct GapRepairOptions {
   int max_passes = 20;
   // A crossing also counts as harmless if the surface joins the crossed triangle to the triangles of both points inside
   // a ball. The ball is around the middle of the points, and its radius is this many times their distance. 0 repairs
-  // every crossing; 2 leaves small folds.
+  // every crossing; 2 leaves small valleys.
   double joined_radius = 0;
   GapDefinition definition = GapDefinition::connected;
   // Whether cells that contain a whole ring of a part thinner than the spacing of the points are repaired, too. This

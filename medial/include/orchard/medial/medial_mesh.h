@@ -22,9 +22,9 @@ struct MedialMesh {
   Index size() const { return static_cast<Index>(centers.size()); }
 };
 
-// Returns the whole axis as a medial mesh, walls included, so that the result has the topology of the axis. Faces are
-// cut into fans from a corner whose diagonals are not yet edges, or from a new vertex at the middle of the face if
-// there is no such corner.
+// Returns the whole axis as a medial mesh, topology faces included, so that the result has the topology of the axis.
+// Faces are cut into fans from a corner whose diagonals are not yet edges, or from a new vertex at the middle of the
+// face if there is no such corner.
 MedialMesh medial_mesh(const MedialAxis& axis);
 
 // Sorts edges and triangles, removes repeated ones and adds the edges of triangles.

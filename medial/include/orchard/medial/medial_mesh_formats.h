@@ -18,7 +18,7 @@ FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh);
 // z, ball; -1 for none). Numbers have the fewest digits that read back as the same value.
 std::string to_ply(const MedialMesh& mesh, const AxisContacts* contacts = nullptr);
 
-// Returns a Wavefront OBJ file: a group for the triangles of each sheet, and a group `wires` of lines for the edges
+// Returns a Wavefront OBJ file: a group for the triangles of each sheet, and a group `curves` of lines for the edges
 // without triangles. The file does not contain the radii.
 std::string to_obj(const MedialMesh& mesh);
 

@@ -2,32 +2,41 @@
 #include <span>
 #include <vector>
 
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/surface.h"
 #include "orchard/medial/axis.h"
 
-// Removes the spurs of a medial axis that noise on the surface causes.
+// Removes the insignificant parts of a medial axis, such as the spurs that noise on the surface causes.
 namespace orchard {
 
-// The options of prune(). Both rules remove spurs. The defaults remove nothing.
+// The options of prune(): for each measure of importance.h, the value below which places are removed. Several values
+// remove what each of them removes. The defaults remove nothing; larger values remove more.
 struct PruneOptions {
-  // The separation angle in radians, in [0, pi]. Cells whose forming points are seen from the middle of the cell at a
-  // smaller angle are removed (the angle lambda of Foskey, Lin, Manocha 2003; twice the object angle). Larger values
-  // remove more.
-  double angle = 0;
-  // The scale factor, at least 1. Vertices whose ball, enlarged by this factor, lies in another vertex's enlarged ball
-  // are removed (the scale axis of Giesen, Miklos, Pauly, Wormser 2009). Larger values remove more.
-  double scale = 1;
+  double angle = 0;  // In radians, in [0, pi]. Foskey, Lin, Manocha 2003 call it the separation angle.
+  double scale = 1;  // A factor, at least 1.
+  // At least 0, as fractions of the diagonal of the surface's bounding box.
+  double border_loss = 0, lambda = 0, erosion = 0, geodesic = 0;
+
+  bool removes_nothing() const {
+    return angle == 0 && scale == 1 && border_loss == 0 && lambda == 0 && erosion == 0 && geodesic == 0;
+  }
 };
 
-// Removes faces from their free edges and edges from their free ends, the smallest angles first. All removals are
-// elementary collapses, so the result has the topology of `axis` for all options (as in Sud, Foskey, Manocha 2005). A
-// cell that the options select but that has no free side stays. Throws InputError if an option is out of range. O(n log
-// n).
-MedialAxis prune(const MedialAxis& axis, const PruneOptions& options);
+// Removes faces from their free edges and edges from their free ends, the least significant first. All removals are
+// elementary collapses, so the result has the topology of `axis` for all options (as in Sud, Foskey, Manocha 2005).
+// What the options select but what has no free side stays.
+// The triangles of a refined axis are cut along the line on which the measure has the given value, at exact balls; the
+// measure is interpolated linearly in between. The polygons of a Voronoi diagram and the triangles of an imported axis
+// go as a whole: by `angle` and `lambda` if their two points are seen at a smaller angle or are less than 2 lambda
+// apart, and by the other measures if that of a corner is below.
+// Throws InputError if an option is out of range. Deterministic. O(n log n), and the cost of importance().
+MedialAxis prune(const Surface& surface, const MedialAxis& axis, const PruneOptions& options,
+                 const Progress& progress = {});
 
-// Returns the angle in radians at which the two points of a face or wall are seen from its middle, but at most the
-// angle between the surface normals at the points and at most the largest angle of the face's vertices. The limits
+// Returns the angle in radians at which the two points of a face or topology face are seen from its middle, but at most
+// the angle between the surface normals at the points and at most the largest angle of the face's vertices. The limits
 // matter for faces close to the surface, which slivers of the point set cause: without them, such faces would seem to
-// lie between two opposite walls. If the axis has no `turns` and no `angles`, there are no limits.
+// lie between two opposite sides of the solid. If the axis has no `turns` and no `angles`, there are no limits.
 double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points);
 
 // Returns axis.angles. For an axis without them, returns for each vertex the widest angle between two forming points,

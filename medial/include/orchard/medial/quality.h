@@ -25,7 +25,7 @@ struct QualityOptions {
   Index contact_cells = 10'000;  // The maximum number of vertices for which the second contact is searched.
   // The second contact of a ball is the nearest surface point that is seen from its centre at this angle or more from
   // the nearest one; in radians, 30 degrees by default.
-  double contact_angle = 0.5235987755982988;
+  double min_contact_angle = 0.5235987755982988;
   double economy_error = 0.01;  // The error that the greedy cover of `economy` may have, over D.
   // The maximum number of balls that the greedy cover chooses from, and the number of samples that it covers.
   Index economy_candidates = 20'000, economy_samples = 20'000;
@@ -48,9 +48,9 @@ struct Economy {
 
 // The pieces of a medial mesh: parts that are joined to each other at vertices only, or not at all.
 struct MedialPieces {
-  Index sheets = 0;  // Sets of triangles joined across edges.
+  Index face_components = 0;  // Sets of triangles that are joined across edges, seams included.
   // Sets of edges without triangles that are joined at vertices. A ball without edges is such a set, too.
-  Index wires = 0;
+  Index curve_components = 0;
   // The pieces of both kinds with a bounding box whose diagonal is below the largest radius in the piece: flakes and
   // spikes. A mesh that is a single piece has none.
   Index small = 0;
@@ -58,7 +58,7 @@ struct MedialPieces {
 // Counts the pieces of a medial mesh. O(n log n).
 MedialPieces medial_pieces(const MedialMesh& mesh);
 // Returns the total length, in mesh units, of the edges with exactly one triangle. These are the borders of sheets,
-// walls included. O(n log n).
+// topology faces included. O(n log n).
 double border_length(const MedialMesh& mesh);
 
 // The measure that a worst place belongs to.

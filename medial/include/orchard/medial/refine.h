@@ -45,15 +45,15 @@ struct RefineOptions {
 // Counts of what refine_axis() did.
 struct RefineReport {
   Index vertices_before = 0, vertices = 0;
-  Index inexact = 0;           // Vertices that stay in place because no ball with two contacts was found near them.
-  Index folded_triangles = 0;  // Triangles removed because their two points have the same contact.
-  Index border_cuts = 0;       // Edges cut where the loss passes border_loss.
-  Index small_pieces = 0;      // Edges and triangles of spikes and flakes that were removed.
-  Index vertices_moved = 0;    // Moves of vertices by smoothing; a vertex counts each time it is moved.
-  Index notches = 0;           // Triangles added to fill notches of borders and openings along sharp edges.
-  Index edge_vertices = 0;     // Vertices of radius 0 on sharp edges.
-  Index reached_places = 0;    // Places of the surface for which step 4 added triangles.
-  Index divided = 0;           // Edges that were divided.
+  Index inexact = 0;  // Vertices that stay in place because no ball with two contacts was found near them.
+  Index single_contact_triangles = 0;  // Triangles removed because their two points have the same contact.
+  Index border_cuts = 0;               // Edges cut where the loss passes border_loss.
+  Index small_pieces = 0;              // Edges and triangles of spikes and flakes that were removed.
+  Index vertices_moved = 0;            // Moves of vertices by smoothing; a vertex counts each time it is moved.
+  Index filling_triangles = 0;         // Triangles added to fill notches of borders and openings along sharp edges.
+  Index edge_vertices = 0;             // Vertices of radius 0 on sharp edges.
+  Index reached_places = 0;            // Places of the surface for which step 4 added triangles.
+  Index divided = 0;                   // Edges that were divided.
   Index undivided = 0;   // Edges beyond the tolerance that remain because they are too short or max_rounds is used up.
   Index degenerate = 0;  // Vertices merged with others at the same place, and flat triangles removed.
   double border_length = 0;  // The length of the borders of the result, over the diagonal.
@@ -61,9 +61,9 @@ struct RefineReport {
 
 // The result of refine_axis().
 struct RefinedAxis {
-  // The refined axis. Its faces are triangles, and it has no walls. Its points are the contacts of its vertices, one to
-  // four for each vertex. The two points of a face are the two contacts of its corners that are seen farthest apart.
-  // Vertices of radius 0 lie on sharp edges, so validate(axis, surface) does not hold.
+  // The refined axis. Its faces are triangles, and it has no topology faces. Its points are the contacts of its
+  // vertices, one to four for each vertex. The two points of a face are the two contacts of its corners that are seen
+  // farthest apart. Vertices of radius 0 lie on sharp edges, so validate(axis, surface) does not hold.
   MedialAxis axis;
   // The edges of the mesh that sheets reach, each as two vertices of the mesh, in ascending order.
   std::vector<std::array<Index, 2>> features;

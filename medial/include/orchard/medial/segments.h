@@ -20,19 +20,19 @@ struct SegmentOptions {
 
 // The parts of an axis between the places where it branches: sheets of faces that are joined across edges with exactly
 // two faces, and curves of edges without faces. A branch is a segment with a vertex that touches the surface (see
-// SegmentOptions::touching); a trunk is a segment without such a vertex. Spurs and walls do not count as faces of an
-// edge, and faces are not joined across an edge with an end that touches the surface. A sheet has at least one face
-// without a vertex that touches the surface. The remaining faces are added to the sheet that is the fewest faces away.
-// Source: Goldak, Yu, Knight, Dong 1991, as summarised in dissertation 6.2.1.
+// SegmentOptions::touching); a trunk is a segment without such a vertex. Spurs and topology faces do not count as faces
+// of an edge, and faces are not joined across an edge with an end that touches the surface. A sheet has at least one
+// face without a vertex that touches the surface. The remaining faces are added to the sheet that is the fewest faces
+// away. Source: Goldak, Yu, Knight, Dong 1991, as summarised in dissertation 6.2.1.
 struct MedialSegments {
   struct Segment {
-    bool sheet = false;                     // Whether the segment is a sheet; otherwise it is a curve.
-    bool trunk = false;                     // Whether the segment is a trunk; otherwise it is a branch.
-    Index cells = 0;                        // The number of faces and walls of a sheet, or of edges of a curve.
+    bool has_faces = false;  // Whether the segment is a sheet; otherwise it is a curve.
+    bool trunk = false;      // Whether the segment is a trunk; otherwise it is a branch.
+    Index cells = 0;         // The number of faces and topology faces of a sheet, or of edges of a curve.
     double min_radius = 0, max_radius = 0;  // Of its vertices, in mesh units.
   };
   std::vector<Segment> segments;
-  std::vector<Index> of_face, of_wall;  // The segment of each face and wall.
+  std::vector<Index> of_face, of_topology_face;  // The segment of each face and topology face.
   // The segment of each edge, in the order of (vertex, larger neighbour); kNone for edges of faces.
   std::vector<Index> of_edge;
   // The segment of each vertex: the one that has the most cells there, or the first of several such segments. kNone for

@@ -11,7 +11,7 @@ struct ShapeMeasures {
   Index small_sheets = 0;  // Sheets with a bounding box whose diagonal is below their largest radius.
   Index tiny_sheets = 0;   // Sheets of at most three triangles.
   // The total length of the edges with at least three triangles, and of the edges without triangles.
-  double seam_length = 0, wire_length = 0;
+  double seam_length = 0, curve_length = 0;
   // The quality of triangles: the mean, the 5th percentile, and the share of triangles with a quality below 0.1. The
   // quality is 6 / sqrt(3) * area / (half the perimeter * longest edge), which is 1 for an equilateral triangle.
   double quality_mean = 0, quality_5 = 0, quality_below = 0;

@@ -9,7 +9,8 @@
 #include "orchard/medial/quality.h"
 
 // Reduces a medial mesh to few balls whose envelope is as near to the surface as that number of balls allows. The
-// envelope is the union of the balls, cones and slabs of the mesh's vertices, edges and triangles.
+// envelope is the boundary of the reconstruction, which is the union of the balls, cones and slabs of the mesh's
+// vertices, edges and triangles.
 namespace orchard {
 
 // The balls that a simplified axis may have.
@@ -45,11 +46,11 @@ struct SimplifyReport {
   // Measured on the result as medial_quality() defines them, over the diagonal. coverage.max is a bound that is proved
   // for the whole surface, and hausdorff.max is at least as large. Branch and bound searches for protrusions, and for
   // dents of the envelope, where they may exceed that value; the search for dents also starts at the centres of the
-  // balls of the given mesh. How deep places of the surface lie in the envelope is measured at samples. protrusion.max
-  // is the largest value that was found.
+  // balls of the given mesh. How deep places of the surface lie in the reconstruction is measured at samples.
+  // protrusion.max is the largest value that was found.
   Spread hausdorff, coverage, protrusion;
-  // A proved bound, over the diagonal: no place of the surface is farther from the envelope, and no place of the
-  // envelope's boundary is farther from the surface. It is at least hausdorff.max, and exceeds it by at most 2 % or
+  // A proved bound, over the diagonal: no place of the surface is farther from the reconstruction, and no place of the
+  // envelope is farther from the surface. It is at least hausdorff.max, and exceeds it by at most 2 % or
   // 1e-4 unless a search was cut short or a ball closes a crevice. If options.error is in force, values below
   // options.error are not searched for, so this bound is then not much below options.error.
   double upper = 0;

@@ -36,8 +36,8 @@ struct MedialStructure {
   bool on_curve(Index edge) const;  // Returns whether an edge has no face.
 };
 
-// Divides a whole axis. Its walls are numbered as faces after the others. Edges are in the order of (vertex, larger
-// neighbour). O(n log n) for n cells.
+// Divides a whole axis. Its topology faces are numbered as faces after the others. Edges are in the order of (vertex,
+// larger neighbour). O(n log n) for n cells.
 MedialStructure medial_structure(const MedialAxis& axis);
 // Divides a medial mesh, whose faces are its triangles. Precondition: the mesh is complete as validate() requires.
 MedialStructure medial_structure(const MedialMesh& mesh);

@@ -12,18 +12,16 @@
 // Writes medial axes and measures of them for ParaView. The rules of vtk_writer.h hold.
 namespace orchard {
 
-// Writes a medial axis as an unstructured grid (.vtu): a polygon for each face and wall, and a line for each edge that
-// belongs to no face.
-// Point arrays: radius; contact_angle (the largest angle in degrees at which two forming points are seen); component;
-// segment; added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count.
-// Cell arrays: segment; sheet (1 if the segment is a sheet, 0 if it is a curve); trunk (1 if the segment is a trunk, 0
-// if it is a branch); wall (1 for walls); contact_angle (the angle in degrees at which the two points are seen, NaN for
-// lines); point_a, point_b (-1 for lines); added; component.
-// Points and cells have structure (the number of the part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2
-// border, 3 junction, 4 curve).
-// The file also contains the arrays `of_vertices`, and the arrays `of_faces`, which have one value for each face and
-// then one for each wall; lines get NaN. Surface points are numbered as in the contacts of write_medial_axis().
-// Field data: contact_ball, contact_sample, sample_ball and samples, as in write_medial_mesh().
+// Writes a medial axis as an unstructured grid (.vtu): a polygon for each face and topology face, and a line for each
+// edge that belongs to no face. Point arrays: radius; contact_angle (the largest angle in degrees at which two forming
+// points are seen); component; segment; added (1 if gap repair added a forming point); forming_points (four of them, -1
+// for none); forming_count. Cell arrays: segment; has_faces (1 if the segment is a sheet, 0 if it is a curve); trunk (1
+// if the segment is a trunk, 0 if it is a branch); topology_face (1 for these); contact_angle (the angle in degrees at
+// which the two points are seen, NaN for lines); point_a, point_b (-1 for lines); added; component. Points and cells
+// have structure (the number of the part in medial_structure()) and structure_kind (0 sheet, 1 seam, 2 border, 3
+// junction, 4 curve). The file also contains the arrays `of_vertices`, and the arrays `of_faces`, which have one value
+// for each face and then one for each topology face; lines get NaN. Surface points are numbered as in the contacts of
+// write_medial_axis(). Field data: contact_ball, contact_sample, sample_ball and samples, as in write_medial_mesh().
 void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
                        const ViewArrays& of_vertices = {}, const ViewArrays& of_faces = {});
 

@@ -42,7 +42,8 @@ std::filesystem::path with_ending(const std::filesystem::path& prefix, const std
 //   PREFIX-faces.vtp     the faces, with cell arrays `point_a` and `point_b`, the two contacts that a face separates,
 //                        and `contact_angle`, which is separation_angle() in degrees, as in write_medial_grid(). Small
 //                        angles belong to sheets that run into shallow edges and noise; a threshold hides them. The
-//                        arrays `of_faces` have one value for each face and then for each wall; walls are not drawn.
+//                        arrays `of_faces` have one value for each face and then for each topology face, which are not
+//                        drawn.
 //   PREFIX-contacts.vtp  MedialAxis::points, one vertex each, to which `point_a`, `point_b` and the `forming_points` of
 //                        write_medial_grid() refer; point array `origin` as in write_points(). The contacts of a raw
 //                        axis are its surface points, and those of a refined axis the places where its balls touch the

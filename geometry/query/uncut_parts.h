@@ -8,14 +8,14 @@
 
 namespace orchard::detail {
 
-// The sheets of a closed, oriented surface: connected parts that no other part cuts or touches. In front of a sheet,
+// The parts of a closed, oriented surface: connected parts that no other part cuts or touches. In front of a part,
 // the winding number is the same everywhere. So if the triangles that may be nearest to a query agree, they decide
-// whether it is inside. The proof is at the head of sheets.cpp.
-class Sheets {
+// whether it is inside. The proof is at the head of uncut_parts.cpp.
+class UncutParts {
  public:
   // `cuts` is self_intersections(mesh). Keeps references to the arguments. Precondition: the mesh is closed,
   // consistently oriented and without degenerate triangles.
-  Sheets(const TriangleMesh& mesh, const TriangleTree& tree, std::span<const std::array<Index, 2>> cuts);
+  UncutParts(const TriangleMesh& mesh, const TriangleTree& tree, std::span<const std::array<Index, 2>> cuts);
 
   // Returns whether the winding number at the query is above 1/2. `nearest` is the result of closest() for the query.
   // The answer is exact unless the query is on the surface. Many threads may call it at once.
@@ -23,15 +23,15 @@ class Sheets {
 
  private:
   struct Vote {
-    Index sheet;
+    Index part;
     bool in_front;
   };
   std::optional<Vote> vote(const Point& query, const NearestTriangles& nearest) const;
 
   const TriangleMesh& mesh_;
   const TriangleTree& tree_;
-  std::vector<Index> sheet_of_;                     // the sheet of each triangle; kNone if it is cut
-  mutable std::vector<std::atomic<int>> in_front_;  // the winding number in front of each sheet, once it is known
+  std::vector<Index> part_of_;                      // the part of each triangle; kNone if it is cut
+  mutable std::vector<std::atomic<int>> in_front_;  // the winding number in front of each part, once it is known
 };
 
 }  // namespace orchard::detail

@@ -1,4 +1,4 @@
-#include "sheets.h"
+#include "uncut_parts.h"
 
 #include <limits>
 
@@ -18,7 +18,7 @@
 // point of an edge or a face the walk is the same or shorter.
 //
 // Triangles that merely may hold c can be asked besides: they can only disagree. What the walk does not settle, a ray
-// does; and what a ray has settled tells the winding number in front of the sheet that the triangles belong to.
+// does; and what a ray has settled tells the winding number in front of the part that the triangles belong to.
 
 namespace orchard::detail {
 namespace {
@@ -27,9 +27,9 @@ constexpr int kUnknown = std::numeric_limits<int>::min();
 
 }  // namespace
 
-Sheets::Sheets(const TriangleMesh& mesh, const TriangleTree& tree, std::span<const std::array<Index, 2>> cuts)
+UncutParts::UncutParts(const TriangleMesh& mesh, const TriangleTree& tree, std::span<const std::array<Index, 2>> cuts)
     : mesh_(mesh), tree_(tree) {
-  // Vertices at the same place are one here: a surface may touch itself along edges and in triangles.
+  // Vertices at the same place count as one here, because a surface may touch itself along edges and in triangles.
   const std::vector<Index> first = first_at_place(mesh);
   TriangleMesh welded{{}, mesh.triangles};
   for (auto& corners : welded.triangles)
@@ -42,41 +42,41 @@ Sheets::Sheets(const TriangleMesh& mesh, const TriangleTree& tree, std::span<con
   welded.vertices.resize(mesh.vertices.size());
   const auto neighbors = triangle_neighbors(welded);
 
-  DisjointSets sheets(mesh.triangles.size());
+  DisjointSets parts(mesh.triangles.size());
   for (Index t = 0; t < mesh.triangles.size(); ++t)
     for (const Index other : neighbors[t])
-      if (other != kNone && !cut[t] && !cut[other]) sheets.unite(t, other);
-  sheet_of_.assign(mesh.triangles.size(), kNone);
+      if (other != kNone && !cut[t] && !cut[other]) parts.unite(t, other);
+  part_of_.assign(mesh.triangles.size(), kNone);
   Index count = 0;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     if (cut[t]) continue;
-    const Index root = sheets.root(t);
-    if (root == t) sheet_of_[t] = count++;
-    sheet_of_[t] = sheet_of_[root];
+    const Index root = parts.root(t);
+    if (root == t) part_of_[t] = count++;
+    part_of_[t] = part_of_[root];
   }
   in_front_ = std::vector<std::atomic<int>>(count);
   for (auto& winding : in_front_) winding = kUnknown;
 }
 
-std::optional<Sheets::Vote> Sheets::vote(const Point& query, const NearestTriangles& nearest) const {
+std::optional<UncutParts::Vote> UncutParts::vote(const Point& query, const NearestTriangles& nearest) const {
   if (!nearest.complete) return std::nullopt;
   std::optional<Vote> vote;
   for (std::size_t i = 0; i < nearest.count; ++i) {
     const auto& [a, b, c] = mesh_.triangles[nearest.triangles[i]];
-    const Index sheet = sheet_of_[nearest.triangles[i]];
-    if (sheet == kNone || (vote && sheet != vote->sheet)) return std::nullopt;
+    const Index part = part_of_[nearest.triangles[i]];
+    if (part == kNone || (vote && part != vote->part)) return std::nullopt;
     const int side = plane_side({mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]}, query);
     if (side == 0 || (vote && (side > 0) != vote->in_front)) return std::nullopt;
-    vote = {sheet, side > 0};
+    vote = {part, side > 0};
   }
   return vote;
 }
 
-bool Sheets::inside(const Point& query, const NearestTriangles& nearest) const {
+bool UncutParts::inside(const Point& query, const NearestTriangles& nearest) const {
   const std::optional<Vote> agreed = vote(query, nearest);
   if (!agreed) return tree_.winding_number(query) > 0;
   const int behind = agreed->in_front ? 0 : 1;
-  std::atomic<int>& in_front = in_front_[agreed->sheet];
+  std::atomic<int>& in_front = in_front_[agreed->part];
   int known = in_front.load(std::memory_order_relaxed);
   if (known == kUnknown) {
     known = tree_.winding_number(query) - behind;

@@ -1,4 +1,4 @@
-#include "sheet.h"
+#include "canvas.h"
 
 #include <vtkImageShrink3D.h>
 #include <vtkPNGWriter.h>
@@ -16,7 +16,7 @@
 namespace orchard::detail {
 namespace {
 
-// A line of text around (x, y).
+// Adds a line of text around (x, y).
 void add_text(vtkRenderer* renderer, const std::string& text, double x, double y, double pixels, bool bold,
               bool on_scene = false) {
   vtkNew<vtkTextActor> actor;
@@ -36,7 +36,7 @@ void add_text(vtkRenderer* renderer, const std::string& text, double x, double y
   renderer->AddViewProp(actor);
 }
 
-// What one renderer shows on a ground of one brightness, averaged down to width x height.
+// Renders the scene of one renderer on a ground of one brightness, averaged down to width x height.
 vtkSmartPointer<vtkImageData> draw_on(double ground, vtkRenderWindow* window, vtkRenderer* renderer, int width,
                                       int height) {
   renderer->SetBackground(ground, ground, ground);
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkImageData> draw_on(double ground, vtkRenderWindow* window, vt
   return shrink->GetOutput();
 }
 
-// How much of the ground is seen through each pixel is what a white ground adds to a black one; without it remains the
+// How much of the ground is seen through a pixel is the difference between a white and a black ground. The rest is the
 // pixel's own colour.
 vtkSmartPointer<vtkImageData> without_ground(vtkImageData* on_white, vtkImageData* on_black) {
   const int* size = on_white->GetDimensions();
@@ -94,7 +94,7 @@ void paste(vtkImageData* picture, vtkImageData* part, int left, int bottom) {
 
 }  // namespace
 
-Sheet::Sheet(const Request& request, const Layout& layout) : request_(request), layout_(layout) {
+Canvas::Canvas(const Request& request, const Layout& layout) : request_(request), layout_(layout) {
   const int components = request.transparent ? 4 : 3;
   picture_->SetDimensions(layout.width, layout.height, 1);
   picture_->AllocateScalars(VTK_UNSIGNED_CHAR, components);
@@ -105,7 +105,7 @@ Sheet::Sheet(const Request& request, const Layout& layout) : request_(request), 
   window_->SetMultiSamples(0);
 }
 
-void Sheet::add_title() {
+void Canvas::add_title() {
   if (layout_.title_height == 0) return;
   vtkNew<vtkRenderer> renderer;
   const double line = layout_.title_height * kOversampling, span = layout_.width * kOversampling;
@@ -113,16 +113,16 @@ void Sheet::add_title() {
   put(renderer, layout_.width, layout_.title_height, 0, layout_.height - layout_.title_height);
 }
 
-void Sheet::add_captions(const Panel& panel, double caption_print, double detail_print) const {
+void Canvas::add_captions(const Panel& panel, double caption_print, double detail_print) const {
   if (!request_.captions) return;
   const double line = layout_.caption_height * kOversampling, span = layout_.panel_width * kOversampling;
-  const bool on_scene = request_.look_at.has_value();  // which goes on behind them
+  const bool on_scene = request_.look_at.has_value();  // the scene continues behind the captions
   add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true, on_scene);
   add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false, on_scene);
 }
 
-void Sheet::add_panels(const std::vector<Panel>& panels, const Views& views) {
-  constexpr double kLabelPrint = 0.2;  // of numbers of places, of the height of captions
+void Canvas::add_panels(const std::vector<Panel>& panels, const Views& views) {
+  constexpr double kLabelPrint = 0.2;  // the size of numbers of places, over the height of captions
   const double line = layout_.caption_height * kOversampling, span = layout_.panel_width * kOversampling;
   double caption_print = 0.30 * line, detail_print = 0.24 * line;
   for (const Panel& panel : panels) {
@@ -145,22 +145,23 @@ void Sheet::add_panels(const std::vector<Panel>& panels, const Views& views) {
   }
 }
 
-void Sheet::add_bar(const Panels& content) {
+void Canvas::add_bar(const Panels& content) {
   if (layout_.bar_width == 0) return;
   const int room = layout_.height - layout_.title_height;
   put(content.color_bar(layout_.bar_width * kOversampling, room * kOversampling), layout_.bar_width, room,
       layout_.width - layout_.bar_width, 0);
 }
 
-void Sheet::save() {
+void Canvas::save() {
   vtkNew<vtkPNGWriter> writer;
   writer->SetFileName(request_.png.c_str());
   writer->SetInputData(picture_);
   writer->Write();
-  if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + request_.png);
+  if (writer->GetErrorCode() != 0)
+    throw std::runtime_error(request_.png + ": cannot be written; check that its folder exists and is writable");
 }
 
-void Sheet::put(vtkRenderer* renderer, int width, int height, int left, int bottom) {
+void Canvas::put(vtkRenderer* renderer, int width, int height, int left, int bottom) {
   paste(picture_, draw(window_, renderer, width, height, request_.transparent), left, bottom);
 }
 

@@ -11,11 +11,11 @@ namespace orchard::detail {
 
 inline constexpr int kOversampling = 2;  // pixels drawn per pixel kept, along each axis
 
-// A picture, into which its parts are drawn one after the other. Needs an X display.
-class Sheet {
+// A picture into which parts are drawn one after another. It needs an X display.
+class Canvas {
  public:
-  // Keeps references to both.
-  Sheet(const Request& request, const Layout& layout);
+  // Keeps references to both arguments.
+  Canvas(const Request& request, const Layout& layout);
 
   void add_title();
   void add_panels(const std::vector<Panel>& panels, const Views& views);

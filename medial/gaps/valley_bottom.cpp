@@ -1,11 +1,11 @@
-#include "fold_bottom.h"
+#include "valley_bottom.h"
 
 #include <algorithm>
 
 namespace orchard::detail {
 
-std::optional<ClosestPoint> bottom_of_fold(const Surface& surface, const SurfaceSampling& sampling, Index cell,
-                                           Index triangle, double reach) {
+std::optional<ClosestPoint> bottom_of_valley(const Surface& surface, const SurfaceSampling& sampling, Index cell,
+                                             Index triangle, double reach) {
   const auto& cluster_of = surface.clusters().of_triangle;
   std::vector<Index> own;
   surface.triangles_at(sampling.triangles[cell], sampling.features[cell], own);

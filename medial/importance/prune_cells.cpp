@@ -1,28 +1,28 @@
-#include "orchard/medial/prune.h"
+#include "prune_cells.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <iterator>
-#include <numbers>
+#include <limits>
 #include <queue>
 #include <utility>
 
-#include "axis_complex.h"
-#include "contact_angles.h"
-#include "incidence.h"
-#include "orchard/geometry/error.h"
-#include "scale_axis.h"
+#include "../axis/axis_complex.h"
+#include "../axis/contact_angles.h"
+#include "../axis/incidence.h"
 
-namespace orchard {
+namespace orchard::detail {
 namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 class Pruner {
  public:
-  Pruner(const MedialAxis& axis, const PruneOptions& options)
+  Pruner(const MedialAxis& axis, const CellLimits& limits, const std::vector<double>& over_limit)
       : axis_(axis),
-        options_(options),
+        limits_(limits),
         complex_(axis),
-        covered_(detail::covered_when_scaled(axis.centers, axis.radii, options.scale)),
+        over_limit_(over_limit),
         vertex_alive_(axis.size(), 1),
         edge_alive_(complex_.edges().size(), 1),
         face_alive_(complex_.face_count(), 1) {}
@@ -53,7 +53,7 @@ class Pruner {
 
   Index free_side(Index face) const {
     for (const Index edge : complex_.sides(face)) {
-      if (edge_alive_[edge] && detail::only(complex_.faces_at(edge), face_alive_) == face) return edge;
+      if (edge_alive_[edge] && only(complex_.faces_at(edge), face_alive_) == face) return edge;
     }
     return kNone;
   }
@@ -62,39 +62,47 @@ class Pruner {
       if (face_alive_[face]) return kNone;
     }
     for (const Index vertex : complex_.edges()[edge]) {
-      if (detail::only(complex_.edges_at(vertex), edge_alive_) == edge) return vertex;
+      if (only(complex_.edges_at(vertex), edge_alive_) == edge) return vertex;
     }
     return kNone;
   }
 
+  // What an angle or half a distance of two points is beside its limit.
+  double angle_over(double angle) const { return limits_.angle > 0 ? angle / limits_.angle : kNoLimit; }
+  double lambda_over(double half) const { return limits_.lambda > 0 ? half / limits_.lambda : kNoLimit; }
+
   void offer_face(Index face) {
     if (!face_alive_[face] || free_side(face) == kNone) return;
-    const double angle = separation_angle(axis_, complex_.corners(face), complex_.points(face));
     const auto corners = complex_.corners(face);
-    const bool covered = std::any_of(corners.begin(), corners.end(), [&](Index v) { return covered_[v] != 0; });
-    if (angle < options_.angle || covered) queue_.emplace(-angle, Cell{true, face});
+    const auto& [p, q] = complex_.points(face);
+    double value = lambda_over(0.5 * (axis_.points[p] - axis_.points[q]).norm());
+    if (limits_.angle > 0) value = std::min(value, angle_over(separation_angle(axis_, corners, {p, q})));
+    for (const Index corner : corners) value = std::min(value, over_limit_[corner]);
+    if (value < 1) queue_.emplace(-value, Cell{true, face});
   }
   void offer_edge(Index edge) {
     if (!edge_alive_[edge]) return;
     const Index end = free_end(edge);
     if (end == kNone) return;
-    const double angle = edge_angle(edge);
-    if (angle < options_.angle || covered_[end]) queue_.emplace(-angle, Cell{false, edge});
+    const double value = std::min(over_limit_[end], edge_over(edge));
+    if (value < 1) queue_.emplace(-value, Cell{false, edge});
   }
-  // The widest angle at which two of the points that form the edge are seen from its middle.
-  double edge_angle(Index edge) const {
+  // By the two points that form the edge and are seen farthest apart from its middle.
+  double edge_over(Index edge) const {
     const auto [a, b] = complex_.edges()[edge];
     std::vector<Index> common;
     const auto at_a = axis_.forming_points[a], at_b = axis_.forming_points[b];
     std::set_intersection(at_a.begin(), at_a.end(), at_b.begin(), at_b.end(), std::back_inserter(common));
     const Point middle = 0.5 * (axis_.centers[a] + axis_.centers[b]);
-    double widest = 0;
+    double angle = 0, half = 0;
     for (std::size_t i = 0; i < common.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        widest = std::max(widest, detail::seen_angle(axis_, middle, common[i], common[k]));
+        angle = std::max(angle, seen_angle(axis_, middle, common[i], common[k]));
+        half = std::max(half, 0.5 * (axis_.points[common[i]] - axis_.points[common[k]]).norm());
       }
     }
-    return axis_.angles.empty() ? widest : std::min(widest, std::max(axis_.angles[a], axis_.angles[b]));
+    if (!axis_.angles.empty()) angle = std::min(angle, std::max(axis_.angles[a], axis_.angles[b]));
+    return std::min(angle_over(angle), lambda_over(half));
   }
 
   void collapse_face(Index face) {
@@ -145,11 +153,11 @@ class Pruner {
     }
     for (Index face = 0; face < complex_.face_count(); ++face) {
       if (!face_alive_[face]) continue;
-      const bool wall = face >= axis_.faces.size();
-      Rows& rows = wall ? result.walls : result.faces;
+      const bool for_topology = face >= axis_.faces.size();
+      Rows& rows = for_topology ? result.topology_faces : result.faces;
       for (const Index corner : complex_.corners(face)) rows.items.push_back(renumbered[corner]);
       rows.close_row();
-      (wall ? result.wall_points : result.face_points).push_back(complex_.points(face));
+      (for_topology ? result.topology_face_points : result.face_points).push_back(complex_.points(face));
     }
     return result;
   }
@@ -159,20 +167,17 @@ class Pruner {
   }
 
   const MedialAxis& axis_;
-  const PruneOptions& options_;
-  detail::AxisComplex complex_;
-  std::vector<std::uint8_t> covered_;
+  const CellLimits limits_;
+  const AxisComplex complex_;
+  const std::vector<double>& over_limit_;
   std::vector<std::uint8_t> vertex_alive_, edge_alive_, face_alive_;
   std::priority_queue<std::pair<double, Cell>> queue_;
 };
 
 }  // namespace
 
-MedialAxis prune(const MedialAxis& axis, const PruneOptions& options) {
-  if (!(options.angle >= 0 && options.angle <= std::numbers::pi)) throw InputError("prune angle: between 0 and pi");
-  if (!(options.scale >= 1 && std::isfinite(options.scale))) throw InputError("prune scale: at least 1");
-  if (options.angle == 0 && options.scale == 1) return axis;
-  return Pruner(axis, options).run();
+MedialAxis prune_cells(const MedialAxis& axis, const CellLimits& limits, const std::vector<double>& over_limit) {
+  return Pruner(axis, limits, over_limit).run();
 }
 
-}  // namespace orchard
+}  // namespace orchard::detail

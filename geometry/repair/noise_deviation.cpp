@@ -14,19 +14,20 @@ namespace orchard {
 namespace {
 
 constexpr Index kCubicTerms = 10, kQuadricTerms = 6;
-constexpr Index kFewestSpare = 4;  // vertices of a fit beyond its terms: with fewer, the residual says little
+// Vertices of a fit in addition to its terms; with fewer, the residual is not meaningful.
+constexpr Index kFewestSpare = 4;
 
 using Fit = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 64, kCubicTerms>;
 using Heights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1>;
 
-constexpr double kDesigned = 0.1;  // of the edges that are flat: with so many, the mesh is no scan with noise
+constexpr double kDesigned = 0.1;  // share of flat edges above which the mesh is a designed part and no scan
 
 Vector normal_of(const TriangleMesh& mesh, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
 }
 
-// Whether so many edges lie between coplanar triangles.
+// Whether the mesh has so many edges between coplanar triangles that it is a designed part.
 bool is_designed(const TriangleMesh& mesh) {
   const std::vector<std::array<Index, 3>> neighbors = triangle_neighbors(mesh);
   std::size_t flat = 0, edges = 0;
@@ -49,8 +50,8 @@ Vector area_normal(const TriangleMesh& mesh, const VertexRings& rings, std::span
   return normal;
 }
 
-// The standard deviation of the heights of a ring over the best cubic, or over the best quadric of few vertices. NaN
-// without enough vertices, or if they do not lie like a graph over a plane.
+// Returns the standard deviation of the heights of a ring over the best cubic, or over the best quadric if there are
+// few vertices. It is NaN if there are not enough vertices, or if they are not a graph over a plane.
 double deviation(const TriangleMesh& mesh, const VertexRings& rings, Index vertex) {
   constexpr double kUnknownDeviation = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Index> around = rings.two_rings(vertex, 64);
@@ -78,7 +79,7 @@ double deviation(const TriangleMesh& mesh, const VertexRings& rings, Index verte
 
 }  // namespace
 
-double noise_level(const TriangleMesh& mesh) {
+double noise_deviation(const TriangleMesh& mesh) {
   if (is_designed(mesh)) return 0;
   const VertexRings rings(mesh);
   const std::size_t count = mesh.vertices.size();
