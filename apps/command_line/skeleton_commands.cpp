@@ -47,7 +47,7 @@ void add_axis_options(CLI::App& command, MedialCommand& axis, Request& request, 
   command.remove_option(command.get_option("--segment-angle"));
   command.add_option("--axis", axis.axis,
                      "Use this axis of the mesh instead of building one, as orchard medial has written it (.ma, .obj, "
-                     ".ply; docs/reference/formats.md). Options that build an axis then have no effect");
+                     ".ply; docs/reference/formats.md). Options that build an axis cannot be given beside it");
   add_report(command, axis.report);
   add_threads(command, request);
   command.add_flag("!--no-views", axis.views, "Do not write files for ParaView");
