@@ -23,11 +23,11 @@ PictureStatus draw_medial_errors(const fs::path& png, const MedialErrorsPicture&
     write_mesh(add("mesh", "-mesh.vtp"), *errors.surface);
     for (std::size_t i = 0; i < errors.axes.size(); ++i) {
       const MedialErrorsOfAxis& axis = errors.axes[i];
-      const std::string number = i == 0 ? "" : " " + std::to_string(i + 1), name = i == 0 ? "" : ": " + axis.name;
-      const std::string ending = std::to_string(i + 1) + ".vtp";
+      const std::string count = std::to_string(i + 1), number = i == 0 ? "" : " " + count;
+      const std::string name = i == 0 ? "" : ": " + axis.name, ending = count + ".vtp";
       write_points(add("surface points" + number, "-points-" + ending), *errors.sampling,
                    {{"coverage", axis.coverage}});
-      write_medial_mesh(add("medial mesh" + number + name, "-medial-" + ending), *axis.mesh,
+      write_medial_mesh(add(std::string("medial mesh").append(number).append(name), "-medial-" + ending), *axis.mesh,
                         {{"protrusion", axis.protrusion}});
       write_worst_places(add("worst places" + number, "-worst-" + ending), axis.worst);
     }

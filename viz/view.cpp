@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <regex>
 #include <set>
 
@@ -147,6 +148,7 @@ std::vector<std::string> color_arrays(const Scene& scene) {
 
 std::vector<std::string> color_map_names() {
   std::vector<std::string> names;
+  names.reserve(std::size(detail::kColorMaps));
   for (const detail::ColorMap& map : detail::kColorMaps) names.emplace_back(map.name);
   return names;
 }

@@ -13,7 +13,7 @@ namespace {
 
 // A measure with the numbers from `low` to `high` as values.
 PruneMeasure number_measure(const char* name, const char* help, const char* standard, double low, double high,
-                            std::function<void(double)> set) {
+                            const std::function<void(double)>& set) {
   const auto fault = [low, high](const std::string& text) -> std::string {
     const std::optional<double> x = finite_number(text);
     if (x && *x >= low && *x <= high) return {};

@@ -79,10 +79,10 @@ Index contacts(const Surface& surface, const Point& center, double diagonal) {
     return std::make_tuple(a.first, a.second.x(), a.second.y()) < std::make_tuple(b.first, b.second.x(), b.second.y());
   });
   std::vector<Vector> apart;
-  for (const auto& [distance, way] : feet) {
-    const bool known =
-        std::any_of(apart.begin(), apart.end(), [&](const Vector& other) { return way.dot(other) > kSameContact; });
-    if (!known) apart.push_back(way);
+  for (const auto& foot : feet) {
+    const bool known = std::any_of(apart.begin(), apart.end(),
+                                   [&](const Vector& other) { return foot.second.dot(other) > kSameContact; });
+    if (!known) apart.push_back(foot.second);
   }
   return static_cast<Index>(apart.size());
 }

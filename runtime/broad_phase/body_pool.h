@@ -153,9 +153,7 @@ inline bool successive(std::span<const BodyIndex> bodies) noexcept {
 // Which bodies there are, and where to ask for their motions.
 class BodyPool {
  public:
-  // Motions come from the source, or from arrays unless these are null.
-  BodyPool(MotionSource source, const MotionArrays* arrays, const Clock& steps)
-      : clock(steps), source_(std::move(source)), arrays_(arrays) {}
+  BodyPool(MotionSource source, const Clock& steps) : clock(steps), source_(std::move(source)) {}
 
   const Clock clock;
 
@@ -199,16 +197,14 @@ class BodyPool {
 
   // motions[i] is that of bodies[i] at the step.
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
-  // The same, as one of some threads that ask at once, each with memory of its own, and neither counted nor checked.
+  // The same, as one of some threads that ask at once, each with memory of its own, and not counted. One thread at a
+  // time if motion bounds are checked.
   struct Answers {
     std::vector<BodyIndex> moving;
     std::vector<Motion> motions;
+    std::size_t memory_bytes() const noexcept;
   };
-  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
-  // Starts loading what ask() will need soon, where it is known to be too much for the cache.
-  ORCHARD_INLINE void load_ahead(std::span<const BodyIndex> bodies) const noexcept {
-    if (arrays_ != nullptr && slots() > kMaxInCache) load(bodies);
-  }
+  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers);
   void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
   bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
   void check_motion_bounds(MotionBoundViolationListener listener, double position_slack) {
@@ -222,20 +218,16 @@ class BodyPool {
   // Bodies whose motions were not valid when they were asked for, in the course of a call of advance().
   void refuse(BodyIndex body) { refused_.push_back(body); }
   std::vector<BodyIndex>& refused() noexcept { return refused_; }
-  bool has_source() const noexcept { return source_ || arrays_ != nullptr; }
+  bool has_source() const noexcept { return static_cast<bool>(source_); }
   std::uint64_t asked() const noexcept { return asked_; }
   std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
-  static constexpr std::size_t kMaxInCache = 16384;  // bodies, of 44 bytes each
 
-  void ask_moving(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) const;
-  void read(std::span<const BodyIndex> bodies, std::span<Motion> motions) const noexcept;
-  void load(std::span<const BodyIndex> bodies) const noexcept;
+  void ask_some(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
 
   MotionSource source_;
-  const MotionArrays* arrays_;
   std::unique_ptr<MotionBoundCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
@@ -290,14 +282,6 @@ ORCHARD_INLINE void prefetch(const void* where) noexcept {
 #endif
 }
 
-ORCHARD_INLINE void prefetch_to_read(const void* where) noexcept {
-#ifdef __GNUC__
-  __builtin_prefetch(where, 0);
-#else
-  (void)where;
-#endif
-}
-
 // All lines of an object.
 template <typename T>
 ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
@@ -306,9 +290,11 @@ ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
   for (std::size_t at = 0; at < sizeof(T); at += kLine) prefetch(begin + at);
 }
 
-template <typename T, typename Allocator>
-std::size_t bytes_of(const std::vector<T, Allocator>& v) noexcept {
-  return v.capacity() * sizeof(T);
+template <typename... Vectors>
+std::size_t bytes_of(const Vectors&... vectors) noexcept {
+  return ((vectors.capacity() * sizeof(typename Vectors::value_type)) + ...);
 }
+
+inline std::size_t BodyPool::Answers::memory_bytes() const noexcept { return bytes_of(moving, motions); }
 
 }  // namespace orchard::runtime::detail

@@ -5,14 +5,6 @@ namespace {
 
 static_assert((kMaxCellsPerAxis & (kMaxCellsPerAxis - 1)) == 0);
 
-bool cells_fit(const QuantizedAabb& box) noexcept {
-  bool fit = true;
-  for (std::size_t d = 0; d < 3; ++d) {
-    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMaxCellsPerAxis;
-  }
-  return fit;
-}
-
 template <typename All>
 void forget_oversized(All& all, BodyIndex body) noexcept {
   std::erase_if(all, [body](const auto& large) { return large.body == body; });
@@ -20,28 +12,12 @@ void forget_oversized(All& all, BodyIndex body) noexcept {
 
 }  // namespace
 
-void BoxIndex::make_room_for_boxes(std::size_t slots) {
-  if (few_) {
-    list_.grow(slots);
-  } else {
-    grow(boxes_, slots);
-  }
-}
-
 void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
-  noted_.clear();
-  any_oversized_ = false;
   extent_ = kNothing;
   in_order_ = true;
-  few_ = lines > 0 && slots <= BoxList::kMaxBodies;
-  if (few_) {
-    list_.reset(slots);
-  } else {
-    list_.release();
-  }
-  if (few_ || lines == 0) {
+  if (lines == 0) {
     grid_.release();
     give_back(boxes_);
   } else {
@@ -69,24 +45,9 @@ QuantizedGrid BoxIndex::quantized_grid_at(Step now) const noexcept {
   return quantized_grid;
 }
 
-void BoxIndex::take_away(BodyIndex body) noexcept {
-  if (places_[body] == Place::inside && few_) list_.remove(body);
-  if (places_[body] == Place::inside && !few_) {
-    SweptGrid::Removals removals;
-    grid_.prepare_removal(body, boxes_[body].whole(), removals);
-    grid_.remove(removals);
-  }
-  if (places_[body] == Place::oversized) forget_oversized(oversized_, body);
-  places_[body] = Place::nowhere;
-}
-
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   constexpr std::size_t kAtOnce = SweptGrid::Removals::kBodies;
-  if (few_) {
-    for (const BodyIndex body : bodies) take_away(body);
-    return;
-  }
   std::array<SweptGrid::Removals, 2> removals;  // of those at hand, and of the next ones
   const auto load = [&](std::size_t begin) {
     const std::size_t end = std::min(bodies.size(), begin + kAtOnce);
@@ -106,83 +67,57 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   }
 }
 
-bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) {
-  for (const BodyIndex body : bodies) places_[body] = Place::inside;
-  if (few_) return true;
-  boxes.store(bodies, boxes_);
-  if (all_fit(boxes)) {
-    extent_.include(boxes.around);
-    return true;
-  }
+bool BoxIndex::fits(const QuantizedAabb& box) noexcept {
   bool fit = true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) fit = note_again(bodies[i], boxes.get(i)) && fit;
+  for (std::size_t d = 0; d < 3; ++d) {
+    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMaxCellsPerAxis;
+  }
   return fit;
 }
 
-bool BoxIndex::note_again(BodyIndex body, const QuantizedAabb& box) {
-  const bool fits = cells_fit(box);
-  const auto is_it = [body](const Oversized& large) { return large.body == body; };
-  const auto noted = std::find_if(noted_.begin(), noted_.end(), is_it);
-  if (fits) {
-    if (noted != noted_.end()) noted_.erase(noted);
-  } else if (noted != noted_.end()) {
-    noted->box = box;
-  } else {
-    noted_.push_back({body, box});
-  }
-  boxes_[body] = PackedAabb(box);
-  places_[body] = fits ? Place::inside : Place::oversized;
-  any_oversized_ = any_oversized_ || !fits;
-  if (fits) extent_.include(box);
-  return fits;
-}
-
-bool BoxIndex::all_fit(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }
-
-bool BoxIndex::fits(const QuantizedAabb& box) noexcept { return cells_fit(box); }
-
-void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept {
+void BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept {
   boxes.store(bodies, boxes_);
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
   extent.include(boxes.around);
 }
 
-void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {
-  if (few_) return list_.insert(bodies, boxes, pairs);
-  if (!any_oversized_) return grid_.insert(queue, bodies, boxes, boxes_, pairs);
-  const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
-  std::array<BodyIndex, kBlock> in_grid;
-  std::size_t count = 0;
-  for (const BodyIndex body : bodies) {
-    if (oversized(body)) continue;
-    boxes.set(count, boxes_[body].whole());
-    in_grid[count++] = body;
-  }
-  grid_.insert(queue, std::span(in_grid).first(count), boxes, boxes_, pairs);
-  meet_oversized(bodies, pairs);
+namespace {
+
+void compare(BodyIndex body, const QuantizedAabb& box, BodyIndex other, const QuantizedAabb& with,
+             std::vector<BodyPair>& pairs) {
+  if (with.meets(box)) pairs.push_back({std::min(body, other), std::max(body, other)});
 }
 
-void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) {
-  if (!few_) grid_.finish(queue, boxes_, pairs);
-}
+}  // namespace
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
-void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) {
-  const auto compare = [&](BodyIndex body, const QuantizedAabb& box, BodyIndex other, const QuantizedAabb& with) {
-    if (with.meets(box)) pairs.push_back({std::min(body, other), std::max(body, other)});
-  };
+void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) const {
+  if (oversized_.empty()) return;
   for (const BodyIndex body : bodies) {
-    if (places_[body] != Place::inside) continue;
-    for (const Oversized& large : oversized_) compare(body, boxes_[body].whole(), large.body, large.box);
+    for (const Oversized& large : oversized_) compare(body, boxes_[body].whole(), large.body, large.box, pairs);
   }
-  for (const Oversized& noted : noted_) {
-    for (BodyIndex other = 0; other < places_.size(); ++other) {
-      if (places_[other] == Place::inside) compare(noted.body, noted.box, other, boxes_[other].whole());
-    }
-    for (const Oversized& large : oversized_) compare(noted.body, noted.box, large.body, large.box);
-    oversized_.push_back(noted);
+}
+
+void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs) {
+  if (fits(box)) {
+    boxes_[body] = PackedAabb(box);
+    places_[body] = Place::inside;
+    extent_.include(box);
+    BoxBlock block;
+    block.set(0, box);
+    Batch batch;
+    GridCounts counts{.bodies = 1};
+    encode(batch, {&body, 1}, block, 0);
+    insert(batch, pairs, counts);
+    count(counts);
+    return meet_oversized({&body, 1}, pairs);
   }
-  noted_.clear();
+  for (BodyIndex other = 0; other < places_.size(); ++other) {
+    if (places_[other] == Place::inside) compare(body, box, other, boxes_[other].whole(), pairs);
+  }
+  for (const Oversized& large : oversized_) compare(body, box, large.body, large.box, pairs);
+  places_[body] = Place::oversized;
+  oversized_.push_back({body, box});
 }
 
 }  // namespace orchard::runtime::detail

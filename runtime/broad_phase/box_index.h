@@ -1,22 +1,15 @@
 #pragma once
-#include "broad_phase/box_list.h"
 #include "broad_phase/broad_phase_algorithm.h"
 #include "broad_phase/swept_grid.h"
 
 namespace orchard::runtime::detail {
 
-// The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: a
-// list of few bodies, or the grid of many.
+// The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: in
+// the grid, or by themselves where they are larger than several cells.
 class BoxIndex {
  public:
-  // Boxes on their way into the grid: finish() before anything else happens to it.
-  using Queue = SweptGrid::Queue;
-
   void make_room(std::size_t slots) { grow(places_, slots); }
-  void make_room_for_boxes(std::size_t slots);
-  bool few() const noexcept { return few_; }
-  std::size_t at_once() const noexcept { return few_ ? BoxList::kAtOnce : kBlock; }  // bodies that insert() takes
-  bool outgrown(std::size_t slots) const noexcept { return few_ && slots > BoxList::kMaxBodies; }
+  void make_room_for_boxes(std::size_t slots) { grow(boxes_, slots); }
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
   // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is rebuilt.
@@ -30,36 +23,38 @@ class BoxIndex {
   const Vec3& velocity() const noexcept { return quantized_grid_.velocity(); }
   bool moves() const noexcept { return quantized_grid_.moves(); }
 
-  void take_away(BodyIndex body) noexcept;
+  void take_away(BodyIndex body) noexcept { take_away({&body, 1}); }
   void take_away(std::span<const BodyIndex> bodies) noexcept;
-  // Takes note of bodies' boxes, which insert() puts where they belong; false if some do not fit into the grid.
-  bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes);
-  bool fits(BodyIndex body) const noexcept { return few_ || places_[body] == Place::inside; }
-  bool note_again(BodyIndex body, const QuantizedAabb& box);  // of one that does not fit: another box for it
-  // `boxes` are those that were noted, or noted again. Appends the pairs whose boxes meet, of each and all before.
-  void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
-  void finish(Queue& queue, std::vector<BodyPair>& pairs);
-
-  // The same for many, in jobs that may run at once. They go into the grid, and none but the first of these is to be
-  // used meanwhile:
-  // Only while none is oversized: of these the grid knows nothing.
-  bool shares() const noexcept { return !few_ && oversized_.empty(); }
-  static bool all_fit(const BoxBlock& boxes) noexcept;
+  // Whether all of these, or one, take few enough cells for the grid.
+  static bool all_fit(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }
   static bool fits(const QuantizedAabb& box) noexcept;
-  // takes note of boxes that fit, and has `extent` include them;
-  void note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept;
+  // Bodies' boxes, which fit, in three steps: takes note of them, and has `extent` include them; encodes which visits
+  // they make to lines of the grid; and makes these, which finds the pairs whose boxes meet, of each and all before.
+  // For many bodies each step may be taken by several threads, the last one by one for each part of the lines.
+  using Batch = SweptGrid::Batch;
+  static constexpr std::size_t kBatch = SweptGrid::kBatch;
+  void note(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept;
+  void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& boxes,
+              std::size_t first) const noexcept {
+    grid_.encode(batch, bodies, boxes, first);
+    grid_.load(batch);
+  }
   void scatter(std::span<const BodyIndex> bodies, const BoxBlock& boxes, SweptGrid::VisitsByPart& visits) const {
     grid_.scatter(bodies, boxes, boxes_, visits);
   }
+  template <typename Visits>  // a Batch, or those of a part
+  void insert(const Visits& visits, std::vector<BodyPair>& pairs, GridCounts& counts) {
+    grid_.insert(visits, boxes_, pairs, counts);
+  }
+  // The same for one body, whether or not it fits, and what one thread has to do for the others: their pairs with those
+  // that do not.
+  void insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs);
+  void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) const;
+  void include(const QuantizedAabb& extent) noexcept { extent_.include(extent); }
+  void count(const GridCounts& counts) noexcept { grid_.count(counts); }
   bool in_order() const noexcept { return in_order_; }
   void empty_part(std::size_t part) noexcept { grid_.empty_part(part); }
   void all_parts_emptied() noexcept { in_order_ = true; }
-  void insert_part(std::span<const SweptGrid::Visit> visits, std::vector<BodyPair>& pairs, GridCounts& counts) {
-    grid_.insert_part(visits, boxes_, pairs, counts);
-  }
-  // and at the end of all jobs.
-  void include(const QuantizedAabb& extent) noexcept { extent_.include(extent); }
-  void count(const GridCounts& counts) noexcept { grid_.count(counts); }
   static constexpr QuantizedAabb nothing() noexcept { return kNothing; }
 
   const GridCounts& counts() const noexcept { return grid_.counts(); }
@@ -70,16 +65,12 @@ class BoxIndex {
   Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const;
-  std::size_t memory_bytes() const noexcept {
-    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + bytes_of(noted_) + list_.memory_bytes() +
-           grid_.memory_bytes();
-  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(places_, boxes_, oversized_) + grid_.memory_bytes(); }
 
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };
   static constexpr QuantizedAabb kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
 
-  void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs);
   struct GridRay;
   void append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const;
   bool walk_slabs(const QuantizedGrid& quantized_grid, const GridRay& ray, std::vector<BodyIndex>& portion,
@@ -92,10 +83,8 @@ class BoxIndex {
     BodyIndex body;
     QuantizedAabb box;
   };
-  std::vector<Oversized> oversized_, noted_;  // the latter are to be inserted
-  bool any_oversized_ = false;                // since it was rebuilt
-  bool few_ = true, in_order_ = true;
-  BoxList list_;
+  std::vector<Oversized> oversized_;
+  bool in_order_ = true;
   SweptGrid grid_;
   QuantizedAabb extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was rebuilt
   QuantizedGrid quantized_grid_;

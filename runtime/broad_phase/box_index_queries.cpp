@@ -14,8 +14,6 @@ constexpr std::size_t kPortion = 16;    // bodies, about, that are visited toget
 constexpr std::size_t kFewCells = 64;   // that are read even if there are fewer bodies
 constexpr double kCellsPerSlab = 2.25;  // of a ray, on average at most
 
-constexpr QuantizedAabb kEverything = {{0, 0, 0}, {kLastQuantum, kLastQuantum, kLastQuantum}};
-
 std::uint32_t quantum_below(double q) noexcept {
   const double down = std::floor(q - kSpare);
   return !(down > 0) ? 0 : down >= kLastQuantum ? kLastQuantum : static_cast<std::uint32_t>(down);
@@ -98,10 +96,6 @@ Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vec
     box.lower[d] = quantum_below(quantized_grid.quantum(lower[d], d));
     box.upper[d] = quantum_above(quantized_grid.quantum(upper[d], d));
   }
-  if (few_) {
-    list_.append_meeting(box, bodies);
-    return box.lower == kEverything.lower && box.upper == kEverything.upper ? Near::all : Near::some;
-  }
   const QuantizedAabb inside = common(box, extent_);
   const double cells = cells_in(inside);
   if (cells > static_cast<double>(fewest_cells())) {
@@ -153,7 +147,6 @@ bool BoxIndex::walk_slabs(const QuantizedGrid& quantized_grid, const GridRay& ra
 
 bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
                      PortionVisitor& visitor) const {
-  if (few_) return false;
   const QuantizedGrid quantized_grid = quantized_grid_at(now);
   GridRay ray{{}, way, 0, quantized_grid.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {

@@ -29,16 +29,11 @@ bool is_valid(const BroadPhaseOptions& options) noexcept {
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
     : BroadPhase(std::move(source), options, detail::make_kinetic_broad_phase) {}
 
-BroadPhase BroadPhase::reading(const MotionArrays& arrays, const BroadPhaseOptions& options) {
-  return {nullptr, options, detail::make_kinetic_broad_phase, &arrays};
-}
-
-BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make,
-                       const MotionArrays* arrays) {
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make) {
   const bool valid = is_valid(wanted);
   const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
   state_ = std::make_unique<State>(
-      State{detail::BodyPool(std::move(source), arrays, detail::Clock{options.start, options.time_step}), nullptr});
+      State{detail::BodyPool(std::move(source), detail::Clock{options.start, options.time_step}), nullptr});
   max_time_ = valid ? kMaxSteps * options.time_step : -1;
   state_->method = make(state_->pool, options);
   if (options.validate) state_->pool.check_motion_bounds(options.broken, options.position_slack);

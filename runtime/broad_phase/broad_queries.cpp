@@ -17,6 +17,10 @@ constexpr double kQueryRounding = 1e-12;  // of the coordinates: more than the t
 bool fits(double x) noexcept { return std::fabs(x) <= kMaxNumber; }  // not NaN
 bool fits(const Vec3& v) noexcept { return fits(v[0]) && fits(v[1]) && fits(v[2]); }
 double max_coordinate(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+bool is_line(const Ray& ray) noexcept {
+  const Vec3 direction = ray.direction;
+  return fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0;
+}
 bool admits(const QueryFilter& query, const BodyFilter& body) noexcept {
   return (query.mask & body.category) != 0 && (query.category & body.mask) != 0;
 }
@@ -58,35 +62,24 @@ struct BodyQueries::Line {
   double along(double at) const noexcept { return unit > 0 ? at / unit : 0; }
 };
 
-struct BodyQueries::FirstHit final : detail::PortionVisitor {
-  FirstHit(BodyQueries& with, const Line& on, const QueryFilter& which) : queries(with), line(on), filter(which) {}
+// Of all bodies on the line, or of those that may be the first one.
+struct BodyQueries::Hits final : detail::PortionVisitor {
+  Hits(BodyQueries& with, const Line& on, const QueryFilter& which, bool only_first)
+      : queries(with), line(on), filter(which), first(only_first) {}
   BodyQueries& queries;
   const Line& line;
   const QueryFilter& filter;
-  BodyHit best{kNoIndex, std::numeric_limits<double>::infinity()};
+  bool first;
+  double best = std::numeric_limits<double>::infinity();
 
   bool visit(std::span<const BodyIndex> bodies, double until) override {
     queries.use_motions(bodies, filter, [this](BodyIndex body, const Motion& motion) {
       const double at = line.enters(motion.position, motion.radius);
-      if (at < best.along || (at == best.along && body < best.body)) best = {body, at};
+      if (at > best || at == std::numeric_limits<double>::infinity()) return;
+      if (first) best = at;
+      queries.hits_.push_back({body, first ? at : line.along(at)});
     });
-    return !(best.along < until);
-  }
-  bool found() const noexcept { return best.along < std::numeric_limits<double>::infinity(); }
-};
-
-struct BodyQueries::AllHits final : detail::PortionVisitor {
-  AllHits(BodyQueries& with, const Line& on, const QueryFilter& which) : queries(with), line(on), filter(which) {}
-  BodyQueries& queries;
-  const Line& line;
-  const QueryFilter& filter;
-
-  bool visit(std::span<const BodyIndex> bodies, double) override {
-    queries.use_motions(bodies, filter, [this](BodyIndex body, const Motion& motion) {
-      const double at = line.enters(motion.position, motion.radius);
-      if (at < std::numeric_limits<double>::infinity()) queries.hits_.push_back({body, line.along(at)});
-    });
-    return true;
+    return !(best < until);
   }
 };
 
@@ -146,17 +139,26 @@ std::span<const BodyIndex> BodyQueries::all_bodies() {
   return candidates_;
 }
 
-template <typename Hits>
-void BodyQueries::walk(const Line& line, Hits& hits) {
+std::span<const BodyHit> BodyQueries::along(const Line& line, const QueryFilter& filter, bool first) {
+  Hits hits(*this, line, filter, first);
   const detail::BroadPhaseAlgorithm& method = *world_->state_->method;
   if (!method.along(step(), line.origin, line.way, line.length, candidates_, hits))
     hits.visit(all_bodies(), line.length);
+  std::sort(hits_.begin(), hits_.end(), [](const BodyHit& a, const BodyHit& b) {
+    return a.along != b.along ? a.along < b.along : a.body < b.body;
+  });
+  return hits_;
+}
+
+std::optional<BodyHit> BodyQueries::first_along(const Line& line, const QueryFilter& filter) {
+  const std::span<const BodyHit> hits = along(line, filter, true);
+  if (hits.empty()) return {};
+  return BodyHit{hits[0].body, line.along(hits[0].along)};
 }
 
 std::optional<BodyHit> BodyQueries::first_hit(const Ray& ray, const QueryFilter& filter) {
-  const Vec3 direction = ray.direction;
-  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0)) return {};
-  return first_along({ray.origin, direction, ray.longest}, filter);
+  if (!begin(is_line(ray))) return {};
+  return first_along({ray.origin, ray.direction, ray.longest}, filter);
 }
 
 std::optional<BodyHit> BodyQueries::first_on_segment(const Vec3& p, const Vec3& q, const QueryFilter& filter) {
@@ -164,31 +166,14 @@ std::optional<BodyHit> BodyQueries::first_on_segment(const Vec3& p, const Vec3& 
   return first_along({p, q - p, 1}, filter);
 }
 
-std::optional<BodyHit> BodyQueries::first_along(const Line& line, const QueryFilter& filter) {
-  FirstHit hits(*this, line, filter);
-  walk(line, hits);
-  if (!hits.found()) return {};
-  return BodyHit{hits.best.body, line.along(hits.best.along)};
-}
-
 std::span<const BodyHit> BodyQueries::all_hits(const Ray& ray, const QueryFilter& filter) {
-  const Vec3 direction = ray.direction;
-  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0)) return {};
-  return all_along({ray.origin, direction, ray.longest}, filter);
+  if (!begin(is_line(ray))) return {};
+  return along({ray.origin, ray.direction, ray.longest}, filter, false);
 }
 
 std::span<const BodyHit> BodyQueries::all_on_segment(const Vec3& p, const Vec3& q, const QueryFilter& filter) {
   if (!begin(fits(p) && fits(q))) return {};
-  return all_along({p, q - p, 1}, filter);
-}
-
-std::span<const BodyHit> BodyQueries::all_along(const Line& line, const QueryFilter& filter) {
-  AllHits hits(*this, line, filter);
-  walk(line, hits);
-  std::sort(hits_.begin(), hits_.end(), [](const BodyHit& a, const BodyHit& b) {
-    return a.along != b.along ? a.along < b.along : a.body < b.body;
-  });
-  return hits_;
+  return along({p, q - p, 1}, filter, false);
 }
 
 // touches(motion) decides about those whose spheres may meet the box.
@@ -253,8 +238,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
 }
 
 std::size_t BodyQueries::memory_bytes() const noexcept {
-  const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
-  return bytes(seen_, candidates_, asked_, found_, motions_, hits_, near_);
+  return detail::bytes_of(seen_, candidates_, asked_, found_, motions_, hits_, near_);
 }
 
 }  // namespace orchard::runtime

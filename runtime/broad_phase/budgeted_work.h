@@ -31,7 +31,7 @@ class BudgetedWork {
   bool nothing_left() const noexcept { return backlog_.empty(); }
   std::size_t left_over() const noexcept { return std::max<std::size_t>(1, backlog_.size()); }
   void append_bodies(std::vector<BodyIndex>& bodies) const { backlog_.append_bodies(bodies); }
-  std::size_t memory_bytes() const noexcept { return backlog_.memory_bytes() + bytes_of(tests_) + bytes_of(unsure_); }
+  std::size_t memory_bytes() const noexcept { return backlog_.memory_bytes() + bytes_of(tests_, unsure_); }
 
  private:
   void sort_pairs_again();

@@ -44,7 +44,7 @@ class Changes {
     changed_.clear();
     if (changed_.capacity() > kKept) changed_.shrink_to_fit();
   }
-  std::size_t memory_bytes() const noexcept { return bytes_of(pending_) + bytes_of(changed_); }
+  std::size_t memory_bytes() const noexcept { return bytes_of(pending_, changed_); }
 
  private:
   static constexpr std::size_t kKept = 1024;  // room for as many stays allocated, not what adding all bodies took

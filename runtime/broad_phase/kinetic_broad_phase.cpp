@@ -177,7 +177,7 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
   }
   bool rebuild_all = completing;
   if (!completing) {
-    rebuild_all = sorting_ || boxes_.outgrown(pool_.slots()) || worth_a_rebuild(due_.size());
+    rebuild_all = sorting_ || worth_a_rebuild(due_.size());
     if (rebuild_all) {
       BudgetTracker unlimited;
       replan(now, unlimited);
@@ -208,7 +208,7 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
 // speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
 unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
-  const bool has_to = sorting_ || boxes_.outgrown(pool_.slots()) || windows_.rounds_run_out();
+  const bool has_to = sorting_ || windows_.rounds_run_out();
   const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
   budgeted_.join(due_, waiting_);
   due_.clear();
@@ -226,7 +226,7 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
 
 // Static bodies have windows without end, which are worth keeping if there are many.
 bool KineticBroadPhase::worth_sorting(Step now) const noexcept {
-  return planner_.plan().window == 1 && pool_.slots() > BoxList::kMaxBodies && now >= sorts_from_ &&
+  return planner_.plan().window == 1 && pool_.slots() > kFewBodies && now >= sorts_from_ &&
          2 * pool_.statics() <= pool_.size();
 }
 
@@ -319,7 +319,7 @@ StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
   }
   pairs_.begin_step(tracker.limited());
   begin(now);
-  const bool completing = prepared_ && !boxes_.outgrown(pool_.slots());
+  const bool completing = prepared_;
   prepared_ = false;
   if (!tracker.limited()) {
     step_in_full(now, completing);
@@ -385,7 +385,7 @@ std::size_t KineticBroadPhase::memory_bytes() const noexcept {
   return sizeof(*this) + changes_.memory_bytes() + bytes_of(gone_) + windows_.memory_bytes() + boxes_.memory_bytes() +
          wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
          pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
-         bytes_of(due_) + bytes_of(entries_) + bytes_of(waiting_);
+         bytes_of(due_, entries_, waiting_);
 }
 
 std::unique_ptr<BroadPhaseAlgorithm> make_kinetic_broad_phase(BodyPool& pool, const BroadPhaseOptions& options) {

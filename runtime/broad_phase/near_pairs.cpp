@@ -21,30 +21,6 @@ void InvalidBodies::refuse(BodyIndex body) {
   changes_.note(body);
 }
 
-// Where what is settled goes: at once,
-struct NearPairs::Sink {
-  NearPairs& of;
-  bool may_pair(const BodyPair& pair) const { return of.pool_.may_pair(pair); }
-  void touches(const BodyPair& pair) const { of.overlaps_.add(pair); }
-  void parts(const BodyPair& pair) const { of.overlaps_.drop(pair); }
-  void ahead(const BodyPair& pair) const { of.note_ahead(pair); }
-  void doubtful(const PairEvent& event) const { of.doubtful_.push_back(event); }
-  void later(const PairEvent& event, Step step) const { of.wheel_.add(event, step); }
-  void refuses(BodyIndex body) const { of.refusals_.refuse(body); }
-};
-
-// or when all jobs are done: of new pairs, without a budget.
-struct NearPairs::KeptSink {
-  Outcome& outcome;
-  static bool may_pair(const BodyPair&) { return true; }
-  void touches(const BodyPair& pair) const { outcome.touching.push_back(pair); }
-  static void parts(const BodyPair&) {}
-  void ahead(const BodyPair& pair) const { outcome.ahead.push_back(pair); }
-  static void doubtful(const PairEvent&) {}
-  void later(const PairEvent& event, Step step) const { outcome.later.push_back({event, step}); }
-  void refuses(BodyIndex body) const { outcome.refused.push_back(body); }
-};
-
 void NearPairs::begin_step(bool within_budget) {
   within_budget_ = within_budget;
   for (const PairEvent& event : doubtful_) overlaps_.drop(event.pair);
@@ -53,8 +29,7 @@ void NearPairs::begin_step(bool within_budget) {
 
 // A pair that both have just been updated: true if nothing is to be done but what this does. It is found again at the
 // end of the earlier window, and until then the spheres surely overlap, or surely do not.
-template <typename To>
-bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, To to) const {
+bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, Outcome& outcome) const {
   constexpr double kRounding = 0x1p-21;  // of the largest number, of two spheres: a float's last place eight times
   const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
   double squared = 0, largest = double{a.radius} + b.radius;
@@ -72,28 +47,22 @@ bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, To to) const {
   const bool over = std::min(windows_[pair.a].end, windows_[pair.b].end) <= now + 1;
   if (!touching) return over || !below(radii + reach + off);
   if (!over && !below(radii - reach - off)) return false;
-  if (!to.may_pair(pair)) return true;
-  if (ahead_) {
-    to.ahead(pair);
-  } else {
-    to.touches(pair);
-  }
+  (ahead_ ? outcome.ahead : outcome.touching).push_back(pair);
   return true;
 }
 
 // What has been updated ahead is of the next step: this one has been reported already.
-template <typename To>
-void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const {
+void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure, Outcome& outcome) const {
   const PairEvent next{event.pair, windows_.round(), !ahead_ || sure > 0};
   if (ahead_) {
-    if (next.parting) to.ahead(event.pair);
+    if (next.parting) outcome.ahead.push_back(event.pair);
   } else if (!event.parting) {
-    to.touches(event.pair);
-    if (within_budget_) to.doubtful(next);
+    outcome.touching.push_back(event.pair);
+    if (within_budget_) outcome.doubtful.push_back(next);
   }
   // A pair with a body that waits is tested at the next step in any case.
   const bool waits = windows_[event.pair.a].end == kUpdateDue || windows_[event.pair.b].end == kUpdateDue;
-  if (sure + 1 < left && !waits) to.later(next, now + sure + 1);
+  if (sure + 1 < left && !waits) outcome.later.push_back({next, now + sure + 1});
 }
 
 // For how many whole steps both motions hold, until the next update of one of them, or until a bound expires. Written
@@ -112,30 +81,28 @@ inline void NearPairs::find_horizon(Step now, const BodyPair& pair, const Motion
 }
 
 // They overlap, surely for a while, or they cannot for a while.
-template <typename To>
 void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching,
-                       double seconds, To to) const {
+                       double seconds, Outcome& outcome) const {
   const Clock& clock = pool_.clock;
   if (touching) {
     const Step sure = seconds < limit ? clock.steps_within(seconds, now) : horizon.whole;
-    return settle_touching(now, event, horizon.left, sure, to);
+    return settle_touching(now, event, horizon.left, sure, outcome);
   }
-  if (event.parting) to.parts(event.pair);
+  if (event.parting) outcome.parted.push_back(event.pair);
   if (horizon.left <= 1) return;
   Step ahead = seconds <= limit ? std::max<Step>(1, clock.steps_before(seconds, now)) : kNeverStep;
   if (horizon.safe < horizon.left) ahead = std::min(ahead, std::max<Step>(0, horizon.safe) + 1);
-  if (ahead < horizon.left) to.later({event.pair, windows_.round()}, now + ahead);
+  if (ahead < horizon.left) outcome.later.push_back({{event.pair, windows_.round()}, now + ahead});
 }
 
 // Those with a motion that is not valid leave; returns how many stay, at the front.
-template <typename To>
-std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, To to) {
+std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, Outcome& outcome) {
   std::size_t front = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Motion a = motions[2 * i], b = motions[2 * i + 1];
     const bool valid_a = is_valid(a), valid_b = is_valid(b);
-    if (!valid_a) to.refuses(events[i].pair.a);
-    if (!valid_b) to.refuses(events[i].pair.b);
+    if (!valid_a) outcome.refused.push_back(events[i].pair.a);
+    if (!valid_b) outcome.refused.push_back(events[i].pair.b);
     if (!valid_a || !valid_b) continue;
     events[front] = events[i];
     motions[2 * front] = a, motions[2 * front + 1] = b;
@@ -145,8 +112,8 @@ std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Mot
 }
 
 // Pair i, of at most kTestsAtOnce, has the motions 2 i and 2 i + 1 at this step.
-template <typename To>
-void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Motion> motions, To to) const {
+void NearPairs::settle_all(Step now, std::span<PairEvent> events, Outcome& outcome) const {
+  const std::span<Motion> motions = outcome.motions;
   const double slack = 4 * options_.position_slack;  // of two bodies, now and later
   const double resolution = kEventResolution * options_.time_step;
   std::array<Horizon, kTestsAtOnce> horizons;
@@ -161,33 +128,37 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   find_horizons();
   if (!find_pair_times_at_once(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution,
                                slack, times)) {
-    events = events.first(refuse_invalid(events, motions, to));
+    events = events.first(refuse_invalid(events, motions, outcome));
     find_horizons();
     find_pair_times(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution, slack, times);
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (!to.may_pair(events[i].pair)) continue;  // what waited for its test while that changed
-    settle(now, events[i], horizons[i], limits[i], times.touching[i], times.seconds[i], to);
+    settle(now, events[i], horizons[i], limits[i], times.touching[i], times.seconds[i], outcome);
+  }
+}
+
+void NearPairs::test(Step now, std::span<PairEvent> events, Outcome& outcome) const {
+  outcome.motions.resize(2 * kTestsAtOnce);
+  std::array<BodyIndex, 2 * kTestsAtOnce> bodies;
+  while (!events.empty()) {
+    const auto some = events.first(std::min(kTestsAtOnce, events.size()));
+    const std::size_t count = 2 * some.size();
+    for (std::size_t i = 0; i < some.size(); ++i) bodies[2 * i] = some[i].pair.a, bodies[2 * i + 1] = some[i].pair.b;
+    pool_.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count), outcome.answers);
+    outcome.asked += count;
+    settle_all(now, some, outcome);
+    events = events.subspan(some.size());
   }
 }
 
 void NearPairs::test(Step now, std::span<PairEvent> events) {
-  motions_.resize(2 * kTestsAtOnce);
-  std::array<BodyIndex, 2 * kTestsAtOnce> bodies;
-  while (!events.empty()) {
-    const std::size_t count = std::min(kTestsAtOnce, events.size());
-    for (std::size_t i = 0; i < count; ++i) {
-      bodies[2 * i] = events[i].pair.a;
-      bodies[2 * i + 1] = events[i].pair.b;
-    }
-    for (const PairEvent& event : events.subspan(count, std::min(kTestsAtOnce, events.size() - count))) {
-      const std::array<BodyIndex, 2> next = {event.pair.a, event.pair.b};
-      pool_.load_ahead(next);
-    }
-    pool_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
-    settle_all(now, events.first(count), motions_, Sink{*this});
-    events = events.subspan(count);
+  if (pool_.filters_pairs()) {  // which may have changed while the pairs waited for their test
+    const auto excluded = [this](const PairEvent& event) { return !pool_.may_pair(event.pair); };
+    const auto end = std::remove_if(events.begin(), events.end(), excluded);
+    events = events.first(static_cast<std::size_t>(end - events.begin()));
   }
+  test(now, events, own_);
+  take(own_);
 }
 
 void NearPairs::note_spheres(bool wanted, std::size_t slots) {
@@ -225,59 +196,41 @@ void NearPairs::note_sphere(BodyIndex body, const Motion& m, const QuantizedGrid
   sphere.reach = static_cast<float>(reach * kOutward + kMinFloat);
 }
 
-void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
-  tests_.clear();
-  const Round round = windows_.round();
-  std::uint64_t compared = 0;
-  for (const BodyPair& pair : pairs) {
-    const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
-    compared += known;
-    if (!known || !settle_by_spheres(now, pair, Sink{*this})) tests_.emplace_back(pair, round);
-  }
-  compared_ += compared;
-  settled_ += pairs.size() - tests_.size();
-  test(now, tests_);
-}
-
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const {
-  const KeptSink to{outcome};
   const Round round = windows_.round();
+  outcome.tests.clear();
   std::uint64_t compared = 0;
-  std::vector<PairEvent>& tests = outcome.tests;
-  tests.clear();
   for (const BodyPair& pair : pairs) {
     const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
     compared += known;
-    if (!known || !settle_by_spheres(now, pair, to)) tests.emplace_back(pair, round);
+    if (!known || !settle_by_spheres(now, pair, outcome)) outcome.tests.emplace_back(pair, round);
   }
   outcome.compared += compared;
-  outcome.settled += pairs.size() - tests.size();
-  outcome.motions.resize(2 * kTestsAtOnce);
-  std::array<BodyIndex, 2 * kTestsAtOnce> bodies;
-  for (std::size_t done = 0; done < tests.size();) {
-    const auto some = std::span(tests).subspan(done, std::min(kTestsAtOnce, tests.size() - done));
-    done += some.size();
-    for (std::size_t i = 0; i < some.size(); ++i) bodies[2 * i] = some[i].pair.a, bodies[2 * i + 1] = some[i].pair.b;
-    const std::size_t count = 2 * some.size();
-    for (std::size_t i = done; i < std::min(tests.size(), done + kTestsAtOnce); ++i) {
-      const std::array<BodyIndex, 2> next = {tests[i].pair.a, tests[i].pair.b};
-      pool_.load_ahead(next);
-    }
-    pool_.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count), outcome.answers);
-    outcome.asked += count;
-    settle_all(now, some, outcome.motions, to);
+  outcome.settled += pairs.size() - outcome.tests.size();
+  test(now, outcome.tests, outcome);
+}
+
+void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
+  constexpr std::size_t kAtOnce = 1024;  // so that what is known of them is still in the cache when it is taken over
+  for (; !pairs.empty(); pairs = pairs.subspan(std::min(kAtOnce, pairs.size()))) {
+    test_near(now, pairs.first(std::min(kAtOnce, pairs.size())), own_);
+    take(own_);
   }
 }
 
 void NearPairs::take(Outcome& outcome) {
   for (const BodyPair& pair : outcome.touching) overlaps_.add(pair);
+  for (const BodyPair& pair : outcome.parted) overlaps_.drop(pair);
   for (const Outcome::Later& later : outcome.later) wheel_.add(later.event, later.step);
-  for (const BodyPair& pair : outcome.ahead) note_ahead(pair);
+  if (!outcome.ahead.empty()) ahead_round_ = windows_.round();
+  for (const BodyPair& pair : outcome.ahead) append(overlaps_ahead_, pair);
+  doubtful_.insert(doubtful_.end(), outcome.doubtful.begin(), outcome.doubtful.end());
   for (const BodyIndex body : outcome.refused) refusals_.refuse(body);
   pool_.count_asked(outcome.asked);
   compared_ += outcome.compared;
   settled_ += outcome.settled;
-  outcome.touching.clear(), outcome.later.clear(), outcome.ahead.clear(), outcome.refused.clear();
+  outcome.touching.clear(), outcome.parted.clear(), outcome.later.clear(), outcome.ahead.clear();
+  outcome.doubtful.clear(), outcome.refused.clear();
   outcome.asked = outcome.compared = outcome.settled = 0;
 }
 
@@ -311,8 +264,7 @@ void NearPairs::forget_all() noexcept {
 }
 
 std::size_t NearPairs::memory_bytes() const noexcept {
-  return bytes_of(spheres_) + bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + bytes_of(tests_) + bytes_of(motions_) +
-         bytes_of(sure_);
+  return bytes_of(spheres_, overlaps_ahead_, doubtful_) + own_.memory_bytes() + bytes_of(sure_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -36,26 +36,25 @@ class NearPairs {
   void begin_step(bool within_budget);
   void work_ahead(bool ahead) noexcept { ahead_ = ahead; }
   void test(Step now, std::span<PairEvent> events);  // which may change their order
-  // Pairs that window updates of this round have found.
+  // Pairs that window updates of this round have found, and the filters have let pass.
   void test_near(Step now, std::span<const BodyPair> pairs);
-  // The same as one of some jobs that run at once: what becomes of the pairs, which the filters have let pass, is kept
-  // until all are done, and taken over then.
+  // What becomes of pairs that are tested. It counts once it has been taken over, so that jobs that run at once may
+  // have one each.
   struct Outcome {
     struct Later {
       PairEvent event;
       Step step;
     };
-    std::vector<BodyPair> touching;
-    std::vector<BodyPair> ahead;
+    std::vector<BodyPair> touching, parted, ahead;
     std::vector<Later> later;
+    std::vector<PairEvent> doubtful;
     std::vector<BodyIndex> refused;
     std::uint64_t asked = 0, compared = 0, settled = 0;
-    std::vector<PairEvent> tests;  // and what the job works with
+    std::vector<PairEvent> tests;  // and what the tests work with
     std::vector<Motion> motions;
     BodyPool::Answers answers;
     std::size_t memory_bytes() const noexcept {
-      return bytes_of(touching) + bytes_of(ahead) + bytes_of(later) + bytes_of(refused) + bytes_of(tests) +
-             bytes_of(motions) + bytes_of(answers.moving) + bytes_of(answers.motions);
+      return bytes_of(touching, parted, ahead, later, doubtful, refused, tests, motions) + answers.memory_bytes();
     }
   };
   void test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const;
@@ -83,28 +82,18 @@ class NearPairs {
     std::array<float, 3> center;  // from the quantized grid's origin
     float radius, reach;          // reach: as far as the centre may get until the body's window ends, and all slack
   };
-  void note_ahead(const BodyPair& pair) {
-    ahead_round_ = windows_.round();
-    append(overlaps_ahead_, pair);
-  }
-  struct Sink;
-  struct KeptSink;
-  template <typename To>
-  bool settle_by_spheres(Step now, const BodyPair& pair, To to) const;
+  bool settle_by_spheres(Step now, const BodyPair& pair, Outcome& outcome) const;
   struct Horizon {
     Step left, safe;  // steps until the next update of one of the bodies, and for which both bounds hold
     Step whole;       // up to which both are known
   };
   void find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b, Horizon& horizon) const noexcept;
-  template <typename To>
-  static std::size_t refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, To to);
-  template <typename To>
-  void settle_all(Step now, std::span<PairEvent> events, std::span<Motion> motions, To to) const;
-  template <typename To>
+  static std::size_t refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, Outcome& outcome);
+  void test(Step now, std::span<PairEvent> events, Outcome& outcome) const;
+  void settle_all(Step now, std::span<PairEvent> events, Outcome& outcome) const;
   void settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching, double seconds,
-              To to) const;
-  template <typename To>
-  void settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const;
+              Outcome& outcome) const;
+  void settle_touching(Step now, const PairEvent& event, Step left, Step sure, Outcome& outcome) const;
 
   BodyPool& pool_;
   const BroadPhaseOptions& options_;
@@ -119,8 +108,7 @@ class NearPairs {
   std::vector<BodyPair> overlaps_ahead_;      // of pairs tested ahead for the next step, at which they surely touch,
   Round ahead_round_ = 0;                     // in this round
   std::vector<PairEvent> doubtful_;  // reported within a budget, before another update that may not have found them yet
-  std::vector<PairEvent> tests_;     // of the call under way; kept for its memory, as the next one
-  std::vector<Motion> motions_;
+  Outcome own_;                      // of what no job tests; kept for its memory
   std::vector<BodyPair> sure_;
 };
 

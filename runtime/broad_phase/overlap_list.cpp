@@ -6,43 +6,27 @@ namespace {
 constexpr std::size_t kFewPairs = 64;
 constexpr std::size_t kPairsWithRoom = 16;  // for each body
 
-// In the same order.
-std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
-
-// Looks pairs up that come in ascending order, in steps that double from where the last one was, and then without
-// branches: how far it is cannot be predicted. Where it cannot be far the steps stay as they are, so that memory sees
-// where they lead.
+// Looks pairs up that come in ascending order.
 class Finder {
  public:
-  Finder(const std::vector<BodyPair>& sorted, std::size_t lookups)
-      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()), near_(sorted.size() < kNear * lookups) {}
+  explicit Finder(const std::vector<BodyPair>& sorted)
+      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()) {}
   bool has(const BodyPair& pair) {
-    constexpr std::ptrdiff_t kCounted = 8;
-    const std::uint64_t key = key_of(pair);
-    const BodyPair* first = next_;
-    std::ptrdiff_t range = kCounted;  // it, or what follows its place, is among so many, or the next one
-    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range = near_ ? range : 2 * range;
-    range = std::min(range, end_ - first);
-    for (; range > kCounted; range -= range / 2) first += key_of(first[range / 2 - 1]) < key ? range / 2 : 0;
-    std::ptrdiff_t less = 0;
-    for (std::ptrdiff_t i = 0; i < range; ++i) less += key_of(first[i]) < key;
-    next_ = first + less;
+    next_ = std::lower_bound(next_, end_, pair);
     return next_ != end_ && *next_ == pair;
   }
   std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
 
  private:
-  static constexpr std::size_t kNear = 256;  // pairs from one to the next, in the mean
   const BodyPair *begin_, *next_, *end_;
-  bool near_;
 };
 
 }  // namespace
 
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
-  if (pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
-  if (2 * pairs.size() < slots) return sort_by_digits(pairs);
-  if (pairs.size() > kPairsWithRoom * slots) return sort_in_place(pairs, slots);
+  // For very many, room for as many more would be too much.
+  const bool few = 2 * pairs.size() < slots || pairs.size()<kFewPairs, many = pairs.size()> kPairsWithRoom * slots;
+  if (few || many) return std::sort(pairs.begin(), pairs.end());
   room.resize(pairs.size());
   sort_by_body(pairs, room, slots, &BodyPair::b);
   sort_by_body(room, pairs, slots, &BodyPair::a);
@@ -57,48 +41,12 @@ void OverlapList::sort_by_body(std::span<const BodyPair> from, std::span<BodyPai
   for (const BodyPair& pair : from) to[begins_[pair.*body + 1]++] = pair;
 }
 
-// Where room for as many more would be too much: by the first body into buckets, within the vector, in each by the
-// second one.
-void OverlapList::sort_in_place(std::vector<BodyPair>& pairs, std::size_t slots) {
-  begins_.assign(slots + 1, 0);
-  for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
-  for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
-  ends_.assign(begins_.begin(), begins_.end() - 1);  // of what is in its bucket
-  for (std::size_t body = 0; body < slots; ++body) {
-    for (std::uint32_t& end = ends_[body]; end < begins_[body + 1];) {
-      BodyPair pair = pairs[end];
-      while (pair.a != body) std::swap(pair, pairs[ends_[pair.a]++]);
-      pairs[end++] = pair;
-    }
-    const auto begin = pairs.begin() + begins_[body], last = pairs.begin() + begins_[body + 1];
-    if (last - begin > 1) std::sort(begin, last);
-  }
-}
-
-// From the lowest digit on; those that all have in common are left out.
-void OverlapList::sort_by_digits(std::vector<BodyPair>& pairs) {
-  constexpr unsigned kDigitBits = 8, kDigits = 64 / kDigitBits;
-  constexpr std::uint64_t kLast = (1u << kDigitBits) - 1;
-  std::uint64_t differ = 0;
-  for (const BodyPair& pair : pairs) differ |= key_of(pair) ^ key_of(pairs.front());
-  for (unsigned digit = 0; digit < kDigits; ++digit) {
-    const unsigned at = digit * kDigitBits;
-    if ((differ >> at & kLast) == 0) continue;
-    std::array<std::uint32_t, kLast + 2> begins{};
-    for (const BodyPair& pair : pairs) ++begins[(key_of(pair) >> at & kLast) + 1];
-    for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
-    by_digit_.resize(pairs.size());
-    for (const BodyPair& pair : pairs) by_digit_[begins[key_of(pair) >> at & kLast]++] = pair;
-    std::swap(pairs, by_digit_);
-  }
-}
-
 void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
   clear();
   pairs_.resize(pairs.size());
   if (pairs.size() > kPairsWithRoom * slots) {
     std::copy(pairs.begin(), pairs.end(), pairs_.begin());
-    return sort_in_place(pairs_, slots);
+    return std::sort(pairs_.begin(), pairs_.end());
   }
   added_.resize(pairs.size());
   sort_by_body(pairs, added_, slots, &BodyPair::b);
@@ -131,7 +79,7 @@ void OverlapList::start_over() noexcept {
 
 // Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
 void OverlapList::keep_changes() {
-  Finder touching(added_, dropped_.size()), in_list(pairs_, dropped_.size()), in_list_too(pairs_, added_.size());
+  Finder touching(added_), in_list(pairs_), in_list_too(pairs_);
   const auto keep = [](std::vector<BodyPair>& pairs, std::vector<std::uint32_t>& places, const Finder& finder,
                        const auto& counts) {
     places.clear();
@@ -185,9 +133,9 @@ void OverlapList::update(std::size_t slots) {
     sort(pairs_, slots, added_);  // where nothing is
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   } else if (!added_.empty() || !dropped_.empty()) {
-    sort(added_, slots, by_digit_);
+    sort(added_, slots, room_);
     added_.erase(std::unique(added_.begin(), added_.end()), added_.end());
-    sort(dropped_, slots, by_digit_);
+    sort(dropped_, slots, room_);
     dropped_.erase(std::unique(dropped_.begin(), dropped_.end()), dropped_.end());
     keep_changes();
     if (!dropped_.empty()) remove_dropped();
@@ -207,8 +155,7 @@ void OverlapList::clear() noexcept {
 }
 
 std::size_t OverlapList::memory_bytes() const noexcept {
-  return bytes_of(pairs_) + bytes_of(added_) + bytes_of(dropped_) + bytes_of(marks_) + bytes_of(begins_) +
-         bytes_of(ends_) + bytes_of(by_digit_) + bytes_of(added_places_) + bytes_of(dropped_places_);
+  return bytes_of(pairs_, added_, dropped_, marks_, begins_, room_, added_places_, dropped_places_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -56,8 +56,6 @@ class OverlapList {
   void sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room);
   void sort_by_body(std::span<const BodyPair> from, std::span<BodyPair> to, std::size_t slots,
                     BodyIndex BodyPair::*body);
-  void sort_in_place(std::vector<BodyPair>& pairs, std::size_t slots);
-  void sort_by_digits(std::vector<BodyPair>& pairs);
   void forget_marked();
   void clear_marks() noexcept;
   void keep_changes();
@@ -69,8 +67,8 @@ class OverlapList {
   std::vector<std::uint8_t> marks_;                           // by body
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool from_scratch_ = false, refuses_ = false;
-  std::vector<std::uint32_t> begins_, ends_;  // by body, while many pairs are sorted
-  std::vector<BodyPair> by_digit_;            // while some are; changes
+  std::vector<std::uint32_t> begins_;  // by body, while many pairs are sorted
+  std::vector<BodyPair> room_;         // while some are; changes
 };
 
 }  // namespace orchard::runtime::detail

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "broad_phase/box_list.h"
-
 namespace orchard::runtime::detail {
 namespace {
 
@@ -36,7 +34,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   }
   const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
   const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
-  const bool tells = steps >= kStepsToTell || (share > kNearlyAll && n > BoxList::kMaxBodies);
+  const bool tells = steps >= kStepsToTell || (share > kNearlyAll && n > kFewBodies);
   const double cancelled = tells ? share : cancelled_;
   if (too_crowded) {
     crowding_ *= 2;  // bodies in clusters: what counts is how dense these are

@@ -3,6 +3,9 @@
 
 namespace orchard::runtime::detail {
 
+// So few bodies say little of how often bounds are cancelled: a step or two in which all were may be all there is.
+inline constexpr std::size_t kFewBodies = 192;
+
 // Decides, at updates of all windows, how long windows and how large cells are from then on: by the bodies' density and
 // motion, corrected by the pairs that were seen, and by how often bounds are cancelled.
 class Planner {

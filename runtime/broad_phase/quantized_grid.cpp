@@ -87,118 +87,9 @@ struct VectorMotions : VectorDoubles {
   }
 };
 
-#if defined(ORCHARD_VECTORS) && defined(ORCHARD_AVX512_NAMES)
-// Eight bodies, whose comparisons are bits.
-struct EightMotions {
-  static constexpr std::size_t kLanes = 8;
-  static constexpr bool kClips = false;
-  using Numbers __attribute__((vector_size(64))) = double;
-  using Columns = MotionColumns<Numbers>;
-  using Mask = std::uint8_t;
-  ORCHARD_INLINE static Numbers min(const Numbers& a, const Numbers& b) noexcept {  // a of two that do not compare
-    return __builtin_ia32_minpd512_mask(b, a, a, kAll, kRounding);
-  }
-  ORCHARD_INLINE static Numbers max(const Numbers& a, const Numbers& b) noexcept {
-    return __builtin_ia32_maxpd512_mask(b, a, a, kAll, kRounding);
-  }
-  ORCHARD_INLINE static Mask within(const Numbers& first, const Numbers& a, const Numbers& b,
-                                    const Numbers& last) noexcept {
-    return at_most(b, last, at_most(first, a, kAll));
-  }
-  ORCHARD_INLINE static bool all(Mask mask) noexcept { return mask == kAll; }
-  template <typename Row>
-  ORCHARD_INLINE static Columns columns(const Row& row) noexcept {
-    static_assert(kVelocityAndRadius + 4 == kLanes);
-    std::array<Numbers, kLanes> rows, pairs;  // the latter of even and odd columns, of two rows
-    for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(&rows[i], row(i), sizeof rows[i]);
-    for (std::size_t i = 0; i < kLanes; i += 2) {
-      pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-      pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-    }
-    const auto columns_of = [&](std::size_t odd) ORCHARD_INLINE_LAMBDA {
-      const auto outer = [](const Numbers& a, const Numbers& b)
-                             ORCHARD_INLINE_LAMBDA { return __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13); };
-      const auto inner = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA {
-        return __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15);
-      };
-      const Numbers a = outer(pairs[odd], pairs[2 + odd]), b = outer(pairs[4 + odd], pairs[6 + odd]),
-                    c = inner(pairs[odd], pairs[2 + odd]), d = inner(pairs[4 + odd], pairs[6 + odd]);
-      return std::array<Numbers, 4>{outer(a, b), outer(c, d), inner(a, b), inner(c, d)};
-    };
-    const std::array<Numbers, 4> even = columns_of(0), odd = columns_of(1);
-    using Four __attribute__((vector_size(32))) = double;
-    const auto two = [&](std::size_t i) ORCHARD_INLINE_LAMBDA {  // drifts and half-spaces
-      const auto at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
-        Four four;
-        std::memcpy(&four, &row(k)->drift, sizeof four);
-        return four;
-      };
-      return __builtin_shufflevector(at(i), at(i + 1), 0, 1, 2, 3, 4, 5, 6, 7);
-    };
-    const Numbers r01 = two(0), r23 = two(2), r45 = two(4), r67 = two(6);
-    const Numbers drifts = __builtin_shufflevector(__builtin_shufflevector(r01, r23, 0, 4, 8, 12, 0, 4, 8, 12),
-                                                   __builtin_shufflevector(r45, r67, 0, 4, 8, 12, 0, 4, 8, 12), 0, 1, 2,
-                                                   3, 12, 13, 14, 15);
-    return {{even[0], odd[0], even[1]},
-            {odd[1], even[2], odd[2]},
-            even[3],
-            odd[3],
-            drifts,
-            (r01 * r01 + r23 * r23) + (r45 * r45 + r67 * r67)};
-  }
-  ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
-    using Integers __attribute__((vector_size(4 * kLanes))) = std::int32_t;
-    const Integers integers = __builtin_convertvector(a, Integers);
-    std::memcpy(to, &integers, sizeof integers);
-  }
-
- private:
-  static constexpr Mask kAll = 0xff;
-  static constexpr int kRounding = 4;  // as ever
-  ORCHARD_INLINE static Mask at_most(const Numbers& a, const Numbers& b, Mask of) noexcept {
-    constexpr int kLessOrEqual = 18;  // false for NaN, which raises nothing
-    return static_cast<Mask>(__builtin_ia32_cmppd512_mask(a, b, kLessOrEqual, of, kRounding));
-  }
-};
-#endif
 #endif
 
 }  // namespace
-
-void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantizedAabb> to) const noexcept {
-  std::size_t i = 0;
-#ifdef ORCHARD_VECTORS
-  using Four __attribute__((vector_size(16))) = std::uint32_t;
-  using Two __attribute__((vector_size(16))) = std::uint64_t;
-  const auto at = [&](const std::array<std::uint32_t, kBlock>& from) {
-    Four result;
-    std::memcpy(&result, &from[i], sizeof result);
-    return result;
-  };
-  const auto low_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
-  const auto high_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
-  const auto put = [&](std::size_t k, const Two& first, std::uint64_t last) {
-    static_assert(sizeof(QuantizedAabb) == sizeof first + sizeof last);
-    auto* const box = reinterpret_cast<unsigned char*>(&to[places[i + k]]);
-    std::memcpy(box, &first, sizeof first);
-    std::memcpy(box + sizeof first, &last, sizeof last);
-  };
-  for (; i + 4 <= places.size(); i += 4) {
-    const Four x = at(lower[0]), y = at(lower[1]), z = at(lower[2]), end_x = at(upper[0]), end_y = at(upper[1]),
-               end_z = at(upper[2]);
-    const Two begins = reinterpret_cast<Two>(low_halves(x, y)), more_begins = reinterpret_cast<Two>(high_halves(x, y)),
-              rest = reinterpret_cast<Two>(low_halves(z, end_x)),
-              more_rest = reinterpret_cast<Two>(high_halves(z, end_x)),
-              ends = reinterpret_cast<Two>(low_halves(end_y, end_z)),
-              more_ends = reinterpret_cast<Two>(high_halves(end_y, end_z));
-    put(0, __builtin_shufflevector(begins, rest, 0, 2), ends[0]);
-    put(1, __builtin_shufflevector(begins, rest, 1, 3), ends[1]);
-    put(2, __builtin_shufflevector(more_begins, more_rest, 0, 2), more_ends[0]);
-    put(3, __builtin_shufflevector(more_begins, more_rest, 1, 3), more_ends[1]);
-  }
-#endif
-  for (; i < places.size(); ++i) to[places[i]] = get(i);
-}
 
 void BoxBlock::store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept {
   std::size_t i = 0;
@@ -321,7 +212,7 @@ ORCHARD_INLINE void QuantizedGrid::make_some(const Row& row, const double* durat
 // The last ones with copies of the very last one, or with some before it once more.
 template <typename Kind>
 ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std::span<const double> durations,
-                                            BoxBlock& boxes, bool extent) const noexcept {
+                                            BoxBlock& boxes) const noexcept {
   constexpr std::size_t kLanes = Kind::kLanes;
   Validity<Kind> valid;
   const std::size_t count = std::min(motions.size(), kBlock);
@@ -340,35 +231,22 @@ ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std
     make_some<Kind>(row, some.data(), boxes, 0, valid);
   }
   if constexpr (!Kind::kClips) {
-    if (!Kind::all(valid.inside)) return make_all<PlainMotions>(motions, durations, boxes, extent);  // which clips
+    if (!Kind::all(valid.inside)) return make_all<PlainMotions>(motions, durations, boxes);  // which clips
   }
-  if (extent) count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
+  count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
   return valid.all();
 }
 
-bool QuantizedGrid::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
-                          bool extent) const noexcept {
-  const Machine chosen = machine();
-  if (chosen == Machine::portable) return make_all<PlainMotions>(motions, durations, boxes, extent);
-  bool good = false;
-  const auto make = [&]<typename Kind>()
-                        ORCHARD_INLINE_LAMBDA { good = make_all<Kind>(motions, durations, boxes, extent); };
-#if defined(ORCHARD_VECTORS) && defined(ORCHARD_MACHINES)
-#ifdef ORCHARD_AVX512_NAMES
-  if (chosen == Machine::avx512) {
-    work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { make.template operator()<EightMotions>(); });
+bool QuantizedGrid::boxes(std::span<const Motion> motions, std::span<const double> durations,
+                          BoxBlock& boxes) const noexcept {
+#ifdef ORCHARD_VECTORS
+  if (machine() != Machine::portable) {
+    bool good = false;
+    per_machine([&]() ORCHARD_INLINE_LAMBDA { good = make_all<VectorMotions>(motions, durations, boxes); });
     return good;
   }
 #endif
-  per_machine([&]() ORCHARD_INLINE_LAMBDA { make.template operator()<VectorMotions>(); });
-#elif defined(ORCHARD_VECTORS) && defined(ORCHARD_AVX512_NAMES)
-  make.template operator()<EightMotions>();
-#elif defined(ORCHARD_VECTORS)
-  make.template operator()<VectorMotions>();
-#else
-  make.template operator()<PlainMotions>();
-#endif
-  return good;
+  return make_all<PlainMotions>(motions, durations, boxes);
 }
 
 }  // namespace orchard::runtime::detail

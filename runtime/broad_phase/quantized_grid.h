@@ -49,7 +49,7 @@ inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & 
 // By coordinate, so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
-  // Of all boxes that were made together, if it is wanted:
+  // Of all boxes that were made together:
   QuantizedAabb around;      // what includes them
   std::uint32_t more_cells;  // bits of how many cells they take along an axis beyond one
 
@@ -57,7 +57,6 @@ struct BoxBlock {
     return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
   }
   // Box i to places[i].
-  void store(std::span<const std::uint32_t> places, std::span<QuantizedAabb> to) const noexcept;
   void store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept;
   void set(std::size_t i, const QuantizedAabb& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
@@ -84,9 +83,7 @@ class QuantizedGrid {
   double quanta(double length) const noexcept { return length * per_length_; }
   // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a
   // motion may not be valid, which costs next to nothing to tell here; its expiry is not looked at.
-  // extent: what is told of all boxes together is wanted.
-  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
-             bool extent) const noexcept;
+  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
 
  private:
   template <typename Kind>
@@ -95,8 +92,7 @@ class QuantizedGrid {
   void make_some(const Row& row, const double* durations, BoxBlock& boxes, std::size_t first,
                  Validity<Kind>& valid) const noexcept;
   template <typename Kind>
-  bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
-                bool extent) const noexcept;
+  bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
 
   Vec3 first_{}, origin_{};  // where it was made, and where it is
   Vec3 velocity_{};

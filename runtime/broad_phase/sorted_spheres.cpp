@@ -17,7 +17,7 @@ constexpr double kCellsPerSpacing = 2;      // smaller cells do not have fewer b
 constexpr std::size_t kLargeShare = 256;    // one in so many bodies may be larger than a cell
 constexpr std::size_t kMaxTests = 64;       // for each body and pair: with more of them boxes are the better choice
 constexpr std::uint32_t kSampled = 16;      // of the bodies, every so many are looked at for the number of near ones
-constexpr std::size_t kLanes = 8;           // that may be read beyond the last sphere
+constexpr std::size_t kLanes = 4;           // that may be read beyond the last sphere
 constexpr std::uint32_t kLarge = ~0u;       // in no line
 
 }  // namespace
@@ -54,23 +54,6 @@ struct SortedSpheres::Four {
   }
 };
 
-struct SortedSpheres::Eight {
-  static constexpr std::uint32_t kWidth = 8;
-  using Numbers __attribute__((vector_size(64))) = double;
-  using Bytes __attribute__((vector_size(8))) = std::uint8_t;
-  ORCHARD_INLINE static Numbers at(const double* from) noexcept {
-    Numbers result;
-    std::memcpy(&result, from, sizeof result);
-    return result;
-  }
-  ORCHARD_INLINE static std::uint32_t touching(const SortedSpheres& s, std::uint32_t first, std::uint32_t i) noexcept {
-    const Numbers dx = at(&s.x_[first]) - s.x_[i], dy = at(&s.y_[first]) - s.y_[i], dz = at(&s.z_[first]) - s.z_[i];
-    const Numbers reach = at(&s.radius_[first]) + s.radius_[i];
-    const auto met = dx * dx + dy * dy + dz * dz <= reach * reach;
-    const auto bytes = std::bit_cast<std::uint64_t>(__builtin_convertvector(met & 1, Bytes));
-    return static_cast<std::uint32_t>((bytes * 0x0102040810204080u) >> 56);
-  }
-};
 #endif
 
 void SortedSpheres::begin(std::size_t bodies, const Vec3& origin, double spacing) {
@@ -227,15 +210,7 @@ std::span<const BodyPair> SortedSpheres::find() {
   sort();
   const Machine chosen = machine();
 #if defined(ORCHARD_MACHINES)
-  if (chosen == Machine::avx512) {
-    work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { find_all<Eight>(); });
-  } else if (chosen == Machine::avx2) {
-    work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { find_all<Four>(); });
-  } else {
-    find_all<Plain>();
-  }
-#elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
-  chosen != Machine::portable ? find_all<Eight>() : find_all<Plain>();
+  chosen >= Machine::avx2 ? work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { find_all<Four>(); }) : find_all<Plain>();
 #elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
   chosen != Machine::portable ? find_all<Four>() : find_all<Plain>();
 #else
@@ -272,8 +247,7 @@ bool SortedSpheres::append_near(const Vec3& lower, const Vec3& upper, std::vecto
 void SortedSpheres::release() { *this = {}; }
 
 std::size_t SortedSpheres::memory_bytes() const noexcept {
-  return bytes_of(spheres_) + bytes_of(begins_) + bytes_of(x_) + bytes_of(y_) + bytes_of(z_) + bytes_of(radius_) +
-         bytes_of(body_) + bytes_of(large_) + bytes_of(pairs_);
+  return bytes_of(spheres_, begins_, x_, y_, z_, radius_, body_, large_, pairs_);
 }
 
 }  // namespace orchard::runtime::detail

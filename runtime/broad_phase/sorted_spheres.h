@@ -45,7 +45,6 @@ class SortedSpheres {
   };
   struct Plain;
   struct Four;
-  struct Eight;
 
   std::uint32_t coordinate(double x, std::size_t axis) const noexcept;
   std::uint32_t line_of(const Vec3& center) const noexcept;

@@ -183,7 +183,7 @@ ORCHARD_INLINE void SweptGrid::put_all(PutOff& put_off, std::size_t count, const
 
 // Entries stay where they are meanwhile.
 template <typename Of>
-void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, std::size_t count, const Of& visit_at) {
+void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, const Of& visit_at) {
   for (std::size_t i = 0; i < put_off.meetings; ++i) {
     const Visit visit = visit_at(put_off.meeting[i] & ((1u << PutOff::kHitsAt) - 1));
     report(insertion, lines_[visit.line], put_off.meeting[i] >> PutOff::kHitsAt,
@@ -194,12 +194,14 @@ void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, std::
       for (std::size_t i = 0; i < put_off.fulls; ++i) insert_beyond<Kind>(insertion, visit_at(put_off.full[i]));
     });
   }
-  insertion.counts.entries += count;
-  insertion.counts.lines_read += count;
 }
 
-void SweptGrid::insert_batch(Insertion& insertion, const Batch& batch) {
+void SweptGrid::insert(const Batch& batch, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
+                       GridCounts& counts) {
+  Insertion insertion(boxes, pairs, counts);
   PutOff put_off;
+  counts.entries += batch.end;
+  counts.lines_read += batch.end;
   with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
     const std::uint32_t* const lines = batch.lines.data();
     const std::uint64_t *const entries = batch.entries.data(), *const queries = batch.queries.data();
@@ -208,49 +210,14 @@ void SweptGrid::insert_batch(Insertion& insertion, const Batch& batch) {
     const auto query_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return queries[k]; };
     put_all<Kind>(put_off, batch.end, line_at, entry_at, query_at);
   });
-  finish_visits(insertion, put_off, batch.end, [&](std::size_t k) {
+  finish_visits(insertion, put_off, [&](std::size_t k) {
     return Visit{batch.entries[k], batch.lines[k], batch.steps[k]};
   });
-  insertion.counts.bodies += batch.count;
-  if (batch.larges > 0) insert_large(insertion, batch);
-}
-
-// In all cells but the first one.
-void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
-  std::array<Visit, kMaxVisits> visits;
+  std::array<Visit, kMaxVisits> rest;  // of what takes many cells, all but the first one
   for (std::size_t i = 0; i < batch.larges; ++i) {
-    const BodyIndex body = batch.large[i];
-    const Visit* const end = many_visits_of(body, insertion.boxes[body].whole(), visits.data());
-    for (const Visit* visit = visits.data(); visit != end; ++visit) prefetch(&lines_[visit->line]);
-    insert_visits(insertion, std::span<const Visit>(visits.data(), end));
+    const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]].whole(), rest.data());
+    insert_visits(insertion, std::span<const Visit>(rest.data(), end));
   }
-}
-
-template <typename Use>
-void SweptGrid::for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use) {
-  for (std::size_t first = 0; first < bodies.size(); first += kBatch) {
-    use(Some{bodies.subspan(first, std::min(kBatch, bodies.size() - first)), block, first});
-  }
-}
-
-void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
-                       std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs) {
-  Insertion insertion(boxes, pairs, counts_);
-  for_each_part(bodies, block, [&](const Some& some) {
-    Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
-    encode(next, some);
-    for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
-    insert_batch(insertion, waiting);
-    queue.current_ = 1 - queue.current_;
-  });
-  insertion.hand_over();
-}
-
-void SweptGrid::finish(Queue& queue, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs) {
-  Insertion insertion(boxes, pairs, counts_);
-  Batch& waiting = queue.batches_[queue.current_];
-  insert_batch(insertion, waiting);
-  waiting.count = waiting.end = waiting.larges = 0;
   insertion.hand_over();
 }
 
@@ -258,8 +225,8 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
                         VisitsByPart& visits) const {
   Batch batch;
   std::array<Visit, kMaxVisits> rest;
-  for_each_part(bodies, block, [&](const Some& some) {
-    encode(batch, some);
+  for (std::size_t first = 0; first < bodies.size(); first += kBatch) {
+    encode(batch, bodies.subspan(first, std::min(kBatch, bodies.size() - first)), block, first);
     std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
     for (std::size_t i = 0; i < kParts; ++i) {
       visits[i].make_room(batch.end);
@@ -276,12 +243,14 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
       for (Visits& part : visits) part.make_room(kMaxVisits);
       for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
     }
-  });
+  }
 }
 
 void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
   constexpr std::size_t kAhead = 32;
   PutOff put_off;
+  insertion.counts.entries += visits.size();
+  insertion.counts.lines_read += visits.size();
   for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), Batch::kMaxVisits))) {
     const std::size_t count = std::min(visits.size(), Batch::kMaxVisits);
     with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
@@ -295,12 +264,12 @@ void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visit
       const auto query_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return query_from(all[k].entry); };
       put_all<Kind>(put_off, count, line_at, entry_at, query_at);
     });
-    finish_visits(insertion, put_off, count, [&](std::size_t k) { return visits[k]; });
+    finish_visits(insertion, put_off, [&](std::size_t k) { return visits[k]; });
   }
 }
 
-void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const PackedAabb> boxes,
-                            std::vector<BodyPair>& pairs, GridCounts& counts) {
+void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
+                       GridCounts& counts) {
   Insertion insertion(boxes, pairs, counts);
   insert_visits(insertion, visits);
   insertion.hand_over();

@@ -37,9 +37,6 @@ struct GridCounts {
 // holds the lower corner of what they have in common.)
 class SweptGrid {
  public:
-  // Bodies on their way into the grid: their lines are being loaded while others are inserted. Lives for some
-  // insertions, and is finished before anything else happens to the grid.
-  class Queue;
   // The lines are in this many parts, each with what overflows of its own: boxes can be put in by several threads.
   static constexpr std::size_t kParts = 8;
   using Steps = std::uint8_t;  // from a body's first cell, along each axis: two bits each, from the lowest ones on
@@ -67,27 +64,28 @@ class SweptGrid {
   };
   using VisitsByPart = std::array<Visits, kParts>;
 
-  // Empties the grid. At least `lines` lines, rounded up to a power of two.
-  void reset(std::size_t lines, const Executor& executor);
-  // The same in two steps: the lines are there, but in memory as it is, until each part has been emptied. Nothing else
-  // happens to the part before that.
+  // Makes room for at least `lines` lines, rounded up to a power of two. The lines are in memory as it is, until each
+  // part has been emptied; nothing else happens to the part before that.
   void begin_reset(std::size_t lines);
   void empty_part(std::size_t part) noexcept;
   void empty_parts(const Executor& executor);
   void release();  // its memory, too
 
-  // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
-  // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMaxCellsPerAxis
-  // cells along an axis. Only finish() makes sure that all pairs have been found.
-  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const PackedAabb> boxes,
-              std::vector<BodyPair>& pairs);
-  void finish(Queue& queue, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs);
-  // The same in two steps, for many bodies: the visits that block's bodies make, at any number of threads, appended;
+  // Boxes are added in two steps: it is encoded which visits bodies[i] with block's box first + i make, at most kBatch
+  // bodies, whose lines begin to be loaded; then these are made, and the pairs whose boxes meet are appended, of each
+  // body in the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than
+  // kMaxCellsPerAxis cells along an axis.
+  static constexpr std::size_t kBatch = 64;
+  struct Batch;
+  void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block, std::size_t first) const noexcept;
+  void load(const Batch& batch) const noexcept;
+  void insert(const Batch& batch, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs, GridCounts& counts);
+  // The same for many bodies: the visits that block's bodies make, appended, at any number of threads; and visits to
+  // one part, in the order in which they are to be made, at one thread for each part at most.
   void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const PackedAabb> boxes,
                VisitsByPart& visits) const;
-  // and visits to one part, in the order in which they are to be made, at one thread for each part at most.
-  void insert_part(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
-                   GridCounts& counts);
+  void insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
+              GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
   class Removals;                                 // of a few bodies at a time
   void prepare_removal(BodyIndex body, const QuantizedAabb& box, Removals& removals) const noexcept;  // starts loading
@@ -104,7 +102,6 @@ class SweptGrid {
     }
   }
 
-  std::size_t lines() const noexcept { return lines_.size(); }
   const GridCounts& counts() const noexcept { return counts_; }  // of insertions, since they were taken
   void discount_pairs(std::uint64_t pairs) noexcept { counts_.pairs -= std::min(pairs, counts_.pairs); }
   GridCounts take_counts() noexcept { return std::exchange(counts_, {}); }
@@ -114,9 +111,7 @@ class SweptGrid {
   static constexpr std::size_t kMaxVisits = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
-  static constexpr std::size_t kBatch = 64;  // bodies
   using Numbers = std::array<std::uint32_t, kBatch>;
-  struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] * factors_[0] + cell[1] * factors_[1] + cell[2] * factors_[2]) & mask_;
   }
@@ -125,18 +120,14 @@ class SweptGrid {
     const BoxBlock& block;
     std::size_t first;
   };
-  template <typename Use>
-  static void for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use);
-  void encode(Batch& batch, const Some& some) const noexcept;
   void encode_all(Batch& batch, const Some& some) const noexcept;
   struct PutOff;
   template <typename Kind, typename Line, typename Entry, typename Query>
   void put_all(PutOff& put_off, std::size_t count, const Line& line_at, const Entry& entry_at,
                const Query& query_at) noexcept;
   template <typename Of>
-  void finish_visits(Insertion& insertion, const PutOff& put_off, std::size_t count, const Of& visit_at);
-  void insert_batch(Insertion& insertion, const Batch& batch);
-  void insert_large(Insertion& insertion, const Batch& batch);
+  void finish_visits(Insertion& insertion, const PutOff& put_off, const Of& visit_at);
+  void insert_visits(Insertion& insertion, std::span<const Visit> visits);
   struct Coded;
   struct AxisBits {  // of a block's bodies, a bit each: which take two cells along an axis, and which more along some
     std::uint64_t x, y, z, many;
@@ -148,7 +139,6 @@ class SweptGrid {
   template <typename Kind>
   void insert_beyond(Insertion& insertion, const Visit& visit);
   void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
-  void insert_visits(Insertion& insertion, std::span<const Visit> visits);
   struct Overflow {
     std::vector<CellLine> lines;
     std::uint32_t free = 0;  // 1 + index
@@ -194,12 +184,6 @@ class SweptGrid::Removals {
   friend class SweptGrid;
   std::array<Removal, kBodies*(kMaxVisits + 1) + 1> all_;  // what does not count is written, too
   std::size_t count_ = 0;
-};
-
-class SweptGrid::Queue {
-  friend class SweptGrid;
-  std::array<Batch, 2> batches_;
-  std::size_t current_ = 0;  // the batch that waits
 };
 
 }  // namespace orchard::runtime::detail

@@ -37,30 +37,6 @@ constexpr std::array<std::array<std::uint32_t, 2>, kMaxLineBits - kMinLineBits +
     {47377195u, 86274897u},
 }};
 
-// No two cells of a box share a line.
-constexpr bool sets_apart(unsigned bits, const std::array<std::uint32_t, 2>& factors) {
-  constexpr auto kMaxOffset = static_cast<int>(kMaxCellsPerAxis) - 1;
-  const std::uint32_t mask = (1u << bits) - 1;
-  for (int z = 0; z <= kMaxOffset; ++z) {
-    for (int y = -kMaxOffset; y <= kMaxOffset; ++y) {
-      for (int x = -kMaxOffset; x <= kMaxOffset; ++x) {
-        const std::uint32_t line = static_cast<std::uint32_t>(x) + static_cast<std::uint32_t>(y) * factors[0] +
-                                   static_cast<std::uint32_t>(z) * factors[1];
-        if ((x != 0 || y != 0 || z != 0) && (line & mask) == 0) return false;
-      }
-    }
-  }
-  return true;
-}
-
-constexpr bool all_set_apart() {
-  for (unsigned i = 0; i < kLineFactors.size(); ++i) {
-    if (!sets_apart(kMinLineBits + i, kLineFactors[i])) return false;
-  }
-  return true;
-}
-static_assert(all_set_apart());
-
 }  // namespace
 
 std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
@@ -93,11 +69,6 @@ void SweptGrid::empty_parts(const Executor& executor) {
   if (lines_.size() < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
   auto empty = [&](std::size_t part) { empty_part(part); };
   run_jobs(executor, kParts, empty);
-}
-
-void SweptGrid::reset(std::size_t lines, const Executor& executor) {
-  begin_reset(lines);
-  empty_parts(executor);
 }
 
 void SweptGrid::release() {

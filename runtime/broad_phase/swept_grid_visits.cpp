@@ -137,8 +137,14 @@ ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Coded& coded, con
   batch.end = end;
 }
 
-void SweptGrid::encode(Batch& batch, const Some& some) const noexcept {
+void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block,
+                       std::size_t first) const noexcept {
+  const Some some{bodies, block, first};
   per_machine([&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, some); });
+}
+
+void SweptGrid::load(const Batch& batch) const noexcept {
+  for (std::size_t i = 0; i < batch.end; ++i) prefetch(&lines_[batch.lines[i]]);
 }
 
 SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantizedAabb& box, Visit* visits) const noexcept {

@@ -30,6 +30,7 @@ static_assert(sizeof(PairEvent) == 12);
 class TimingWheel {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
+  void set_due(BodyIndex body, Step step);
   void clear_bodies() noexcept;
   void clear_events() noexcept;
   void clear() noexcept;  // of everything, its memory, too
@@ -51,15 +52,41 @@ class TimingWheel {
   static constexpr BodyIndex kRun = kNoIndex - 1;  // bodies with successive indices, as in updates of all windows
   struct Bodies {                                  // a part of a list: short, as a step may have one body only
     std::uint32_t next;
-    std::array<BodyIndex, 3>
-        ids;  // kNoIndex from the first one that is missing; or a run: its first one, kRun, how many
+    // kNoIndex from the first one that is missing; or a run: its first one, kRun, how many.
+    std::array<BodyIndex, 3> ids;
   };
   static constexpr std::uint32_t kEventsInPart = 5;
-  struct alignas(64) KineticBroadPhase {  // a part of a list, one cache line; all parts but a list's first one are full
+  struct alignas(64) Events {  // a part of a list, one cache line; all parts but a list's first one are full
     std::array<PairEvent, kEventsInPart> events;
     std::uint32_t next;
   };
-  static_assert(sizeof(KineticBroadPhase) == 64);
+  static_assert(sizeof(Events) == 64);
+  // Parts of lists. What a list gives back is used again.
+  template <typename Part>
+  struct Pool {
+    std::vector<Part> parts;
+    std::uint32_t free = kNone;
+
+    Part& operator[](std::uint32_t part) noexcept { return parts[part]; }
+    Part& put_before(std::uint32_t& head) {  // of a list, a part that is written now
+      std::uint32_t part = free;
+      if (part == kNone) {
+        part = static_cast<std::uint32_t>(parts.size());
+        grow(parts, parts.size() + 1);
+      } else {
+        free = parts[part].next;
+      }
+      parts[part].next = head;
+      head = part;
+      return parts[part];
+    }
+    std::uint32_t give_back(std::uint32_t part) noexcept {  // returns the next one
+      const std::uint32_t next = std::exchange(parts[part].next, free);
+      free = part;
+      return next;
+    }
+    void clear() noexcept { parts.clear(), free = kNone; }
+  };
   struct Bucket {
     std::uint32_t bodies = kNone, events = kNone;
     std::uint32_t in_first : 4 = kEventsInPart;  // events in the first part; as if full where there is none
@@ -68,16 +95,13 @@ class TimingWheel {
 
   template <typename Use>
   void for_each_busy(const Use& use) noexcept;  // bucket
-  void add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids);
-  void add_part(Bucket& bucket);
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
   std::array<Bucket, kWheelSteps> buckets_{};
   std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
-  std::vector<Bodies> lines_;
-  std::vector<KineticBroadPhase> parts_;
-  std::uint32_t free_line_ = kNone, free_part_ = kNone;
+  Pool<Bodies> bodies_;
+  Pool<Events> events_;
 };
 
 }  // namespace orchard::runtime::detail

@@ -1,6 +1,6 @@
-#include "broad_phase/window_updates.h"
-
 #include <bit>
+
+#include "broad_phase/window_updates.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -17,6 +17,59 @@ bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept
 }
 
 }  // namespace
+
+std::span<Motion> WindowUpdates::ask(Step now, std::span<const BodyIndex> bodies) {
+  if (motions_.size() < bodies.size()) motions_.resize(bodies.size());
+  const auto motions = std::span(motions_).first(bodies.size());
+  parts_.pool.ask(now, bodies, motions);
+  return motions;
+}
+
+// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
+std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept {
+  std::size_t front = 0;
+  double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double expiry = motions[i].expiry;
+    if (expiry != known && !parts_.pool.is_static(bodies[i])) {
+      if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
+      known = expiry;
+    }
+    if (front < i) {
+      std::swap(bodies[front], bodies[i]);
+      motions[front] = motions[i];
+    }
+    ++front;
+  }
+  return front;
+}
+
+bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
+  return 2 * known_at(from, bodies, ask(now, bodies)) >= bodies.size();
+}
+
+std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>& bodies) {
+  const std::span<Motion> motions = ask(now, bodies);
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_valid(motions[i])) {
+      parts_.refusals.refuse(bodies[i]);
+      continue;
+    }
+    if (front < i) bodies[front] = bodies[i], motions[front] = motions[i];
+    ++front;
+  }
+  bodies = bodies.first(front);
+  return motions.first(front);
+}
+
+WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept {
+  Block block;
+  block.now = now;
+  block.from = from;
+  block.quantized_grid = parts_.boxes.quantized_grid_at(now);
+  return block;
+}
 
 // True if all windows end at the same step.
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
@@ -63,162 +116,167 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bo
   const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
   bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
   const auto durations = std::span(block.durations).first(motions.size());
-  valid = block.quantized_grid.boxes(motions, durations, block.boxes, !parts_.boxes.few()) && valid;
+  valid = block.quantized_grid.boxes(motions, durations, block.boxes) && valid;
   const auto is_one = [](const Motion& motion) { return is_valid(motion); };
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
 
-// Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
-// not valid.
-bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
-  const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
-  bool same = set_ends(block, bodies, motions);
-  if (!make_boxes(block, motions, same)) return false;
-
-  if (same && block.ends[0] != kNeverStep) {
+// Those of a block that can be placed now; the others are left.
+void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const {
+  std::size_t count = bodies.size();
+  const auto leave_unless = [&](const auto& good) {
+    std::size_t front = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!good(i)) {
+        chunk.left.push_back({bodies[i], motions[i]});
+        continue;
+      }
+      bodies[front] = bodies[i];
+      motions[front++] = motions[i];
+    }
+    count = front;
+  };
+  bool same = true;
+  for (bool fit = false; !fit && count > 0;) {
+    same = set_ends(block, bodies.first(count), motions.first(count));
+    const bool valid = make_boxes(block, motions.first(count), same);
+    fit = valid && BoxIndex::all_fit(block.boxes);
+    if (!valid) {
+      leave_unless([&](std::size_t i) { return is_valid(motions[i]); });
+    } else if (!fit) {
+      leave_unless([&](std::size_t i) { return BoxIndex::fits(block.boxes.get(i)); });
+    }
+  }
+  if (count == 0) return;
+  bodies = bodies.first(count);
+  parts_.boxes.note(bodies, block.boxes, chunk.extent);
+  for (std::size_t i = 0, first = 0; block.batches != nullptr && first < count; ++i, first += BoxIndex::kBatch) {
+    const std::size_t some = std::min(BoxIndex::kBatch, count - first);
+    parts_.boxes.encode((*block.batches)[i], bodies.subspan(first, some), block.boxes, first);
+  }
+  if (block.batches == nullptr) parts_.boxes.scatter(bodies, block.boxes, chunk.visits);
+  const bool alike = same && block.ends[0] != kNeverStep;
+  if (alike) {
     parts_.windows.set_alike(bodies, block.from, block.ends[0]);
   } else {
-    parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
+    parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
   }
-  parts_.overlaps.mark_updated(bodies);
-  const bool notes_spheres = parts_.pairs.notes_spheres();
-  for (std::size_t i = 0; notes_spheres && i < bodies.size(); ++i) {
+  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
     parts_.pairs.note_sphere(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
   }
-  parts_.planner.note(motions);
-  same = note_boxes(block, bodies) && same;
-  if (same) {
-    if (block.ends[0] != kNeverStep) parts_.wheel.set_due(bodies, block.ends[0]);
-    parts_.windows.vote(block.ends[0], bodies.size());
-    return true;
+  for (std::size_t i = 0; i < count;) {
+    const std::size_t more = alike ? count : 1;
+    chunk.note_run(block.ends[i], more);
+    i += more;
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Step end = parts_.windows[bodies[i]].end;
-    if (end != kNeverStep) parts_.wheel.set_due(bodies.subspan(i, 1), end);
-    parts_.windows.vote(end, 1);
-  }
-  return true;
+  const std::size_t stride = block.batches != nullptr ? MotionMeans::kStride : kBlock;  // of so many more few will do
+  for (std::size_t i = 0; i < count; i += stride) chunk.sampled.push_back(motions[i]);
+  chunk.placed.insert(chunk.placed.end(), bodies.begin(), bodies.end());
 }
 
-// False if a window had to be cut short.
-bool WindowUpdates::note_boxes(Block& block, std::span<const BodyIndex> bodies) {
-  if (parts_.boxes.note(bodies, block.boxes)) return true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!parts_.boxes.fits(bodies[i])) shrink(block, bodies[i], i);
+void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const BodyIndex> bodies) const {
+  chunk.clear();
+  std::array<BodyIndex, kBlock> ids;
+  const std::size_t at_once = std::min(kBlock, bodies.size());
+  if (chunk.motions.size() < at_once) chunk.motions.resize(at_once);
+  for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
+    const auto some = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
+    auto known = std::span(ids).first(some.size());
+    const auto motions = std::span(chunk.motions).first(some.size());
+    std::copy(some.begin(), some.end(), known.begin());
+    parts_.pool.ask(block.now, known, motions, chunk.answers);
+    chunk.asked += some.size();
+    if (block.from > block.now) {
+      const std::size_t front = known_at(block.from, known, motions);
+      chunk.unknown.insert(chunk.unknown.end(), known.begin() + static_cast<std::ptrdiff_t>(front), known.end());
+      known = known.first(front);
+    }
+    place(chunk, block, known, motions.first(known.size()));
   }
-  return false;
 }
 
-// Faster than the others: update it again sooner, until its box takes few enough cells. One that is too large for that
-// is not updated sooner than its motion is worth.
-void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
-  Window& window = parts_.windows[body];
+// What one thread has to do for all.
+void WindowUpdates::fold(Chunk& chunk) {
+  std::span<const BodyIndex> placed = chunk.placed;
+  parts_.overlaps.mark_updated(placed);
+  parts_.boxes.meet_oversized(placed, near_);
+  for (const Chunk::Run& run : chunk.runs) {
+    if (run.end != kNeverStep && run.bodies == 1) parts_.wheel.set_due(placed[0], run.end);
+    if (run.end != kNeverStep && run.bodies > 1) parts_.wheel.set_due(placed.first(run.bodies), run.end);
+    parts_.windows.vote(run.end, run.bodies);
+    placed = placed.subspan(run.bodies);
+  }
+  for (const BodyIndex body : chunk.unknown) parts_.changes.note(body);
+  parts_.planner.note_sample(chunk.sampled);
+  parts_.boxes.include(chunk.extent);
+  parts_.boxes.count({.bodies = chunk.placed.size()});
+  parts_.pool.count_asked(chunk.asked);
+}
+
+// What is faster than the others is updated again sooner, so that its box takes few enough cells. One that is too large
+// for that is not updated sooner than its motion is worth.
+QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& motion) const noexcept {
   Step steps = window.end == kNeverStep ? 1 : window.end - block.from;
-  if (steps <= 1) return;
+  QuantizedAabb box = block.boxes.get(0);
+  if (steps <= 1) return box;
   const auto box_for = [&](Step wanted) {
     const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
-    BoxBlock box;
-    block.quantized_grid.boxes({&motions_[i], 1}, {&duration, 1}, box, false);
-    return box.get(0);
+    BoxBlock made;
+    block.quantized_grid.boxes({&motion, 1}, {&duration, 1}, made);
+    return made.get(0);
   };
   const QuantizedAabb least = box_for(1);
   const bool large = !BoxIndex::fits(least);
-  QuantizedAabb box = block.boxes.get(i);
   while (steps > 1 && !(large ? hardly_longer(box, least) : BoxIndex::fits(box))) {
     steps = (steps + 1) / 2;
     box = box_for(steps);
   }
   window.end = block.from + steps;
   window.length = static_cast<std::uint8_t>(steps);
-  parts_.boxes.note_again(body, box);
-  block.boxes.set(i, box);
+  return box;
 }
 
-// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
-std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept {
-  std::size_t front = 0;
-  double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double expiry = motions[i].expiry;
-    if (expiry != known && !parts_.pool.is_static(bodies[i])) {
-      if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
-      known = expiry;
-    }
-    if (front < i) {
-      std::swap(bodies[front], bodies[i]);
-      motions[front] = motions[i];
-    }
-    ++front;
-  }
-  return front;
-}
-
-bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
-  make_room_for_motions(bodies.size());
-  parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
-  return 2 * known_at(from, bodies, motions_) >= bodies.size();
-}
-
-// Moves those whose motions are valid, with these, to the front; returns how many.
-std::size_t WindowUpdates::refuse_invalid(std::span<BodyIndex> bodies) {
-  std::size_t front = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!is_valid(motions_[i])) {
-      parts_.refusals.refuse(bodies[i]);
+// One by one what a chunk has left, once what it has placed is in the grid.
+void WindowUpdates::place_left(Chunk& chunk, Block& block) {
+  for (const Chunk::Left& left : chunk.left) {
+    const std::span<const BodyIndex> body(&left.body, 1);
+    if (!is_valid(left.motion)) {
+      parts_.refusals.refuse(left.body);
       continue;
     }
-    if (front < i) {
-      bodies[front] = bodies[i];
-      motions_[front] = motions_[i];
+    const bool same = set_ends(block, body, {&left.motion, 1});
+    make_boxes(block, {&left.motion, 1}, same);
+    parts_.windows.set(left.body, block.from, block.ends[0]);
+    parts_.overlaps.mark_updated(body);
+    if (parts_.pairs.notes_spheres()) {
+      parts_.pairs.note_sphere(left.body, left.motion, block.quantized_grid, block.durations[0]);
     }
-    ++front;
+    parts_.planner.note_sample({&left.motion, 1});
+    const QuantizedAabb box = shrink(block, parts_.windows[left.body], left.motion);
+    parts_.boxes.insert_one(left.body, box, near_);
+    const Step end = parts_.windows[left.body].end;
+    if (end != kNeverStep) parts_.wheel.set_due(left.body, end);
+    parts_.windows.vote(end, 1);
   }
-  return front;
-}
-
-std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>& bodies) {
-  make_room_for_motions(bodies.size());
-  parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
-  bodies = bodies.first(refuse_invalid(bodies));
-  return std::span(motions_).first(bodies.size());
 }
 
 void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
-  const std::size_t at_once = std::min(parts_.boxes.at_once(), bodies.size());
-  make_room_for_motions(at_once);
   near_.clear();
-  Block update;
-  update.now = now;
-  update.from = from;
-  update.quantized_grid = parts_.boxes.quantized_grid_at(now);
-  BoxIndex::Queue queue;
-  std::array<BodyIndex, kBlock> known;
-  for (std::size_t done = 0; done < bodies.size();) {
-    auto block = bodies.subspan(done, std::min(at_once, bodies.size() - done));
-    const auto next = bodies.subspan(done + block.size());
-    parts_.pool.load_ahead(next.first(std::min(at_once, next.size())));
-    parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
-    done += block.size();
-    if (from > now) {
-      std::copy(block.begin(), block.end(), known.begin());
-      const std::size_t front = known_at(from, std::span(known).first(block.size()), motions_);
-      for (std::size_t i = front; i < block.size(); ++i) parts_.changes.note(known[i]);
-      block = std::span(known).first(front);
-      if (block.empty()) continue;
+  Block block = block_at(now, from);
+  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch> batches;
+  block.batches = &batches;
+  Chunk& chunk = *chunk_;
+  for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
+    place_chunk(chunk, block, bodies.subspan(done, std::min(kBlock, bodies.size() - done)));
+    fold(chunk);
+    GridCounts counts;
+    for (std::size_t i = 0; i * BoxIndex::kBatch < chunk.placed.size(); ++i) {
+      parts_.boxes.insert(batches[i], near_, counts);
     }
-    if (!place(update, block)) {
-      if (block.data() != known.data()) std::copy(block.begin(), block.end(), known.begin());
-      block = std::span(known).first(refuse_invalid(std::span(known).first(block.size())));
-      if (block.empty()) continue;
-      place(update, block);
-    }
-    parts_.boxes.insert(queue, block, update.boxes, near_);
-    if (tested && near_.size() >= kNearAtOnce) {
-      parts_.boxes.finish(queue, near_);
-      test_near(now);
-    }
+    parts_.boxes.count(counts);
+    if (!chunk.left.empty()) place_left(chunk, block);
+    if (tested && near_.size() >= kNearAtOnce) test_near(now);
   }
-  parts_.boxes.finish(queue, near_);
 }
 
 void WindowUpdates::test_near(Step now) {

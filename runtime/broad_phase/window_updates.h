@@ -6,7 +6,14 @@
 
 namespace orchard::runtime::detail {
 
-// Window updates: motions become boxes, boxes that meet become near pairs.
+// Window updates: motions become boxes, boxes that meet become near pairs. Bodies come in chunks. Of a chunk first the
+// boxes are made, and it is noted which lines of the grid they go to; then they are put there, which finds the pairs.
+//
+// Updates of all windows of many bodies are jobs that may run at once. Of a wave of bodies each job first places a
+// chunk; then each puts the boxes of all chunks into one part of the lines, and tests what it finds near. How that is
+// cut depends on the number of bodies alone, and everything that has an order is put together in that of the chunks, or
+// of the parts: so nothing depends on the executor. One thread gains by it, too, where all lines do not fit into its
+// cache and a part of them does.
 class WindowUpdates {
  public:
   // The parts that an update changes; they outlive this.
@@ -31,7 +38,7 @@ class WindowUpdates {
   void update_all(Step now, Step from, std::span<const BodyIndex> bodies);
   // The same as update(), untested: what is near.
   std::span<const BodyPair> find_near(Step now, std::span<const BodyIndex> bodies);
-  // Whether at least half of the bodies know at `now` what holds at `from`.
+  // Whether at least half of the bodies, which are few, know at `now` what holds at `from`.
   bool know_mostly(Step now, Step from, std::span<BodyIndex> bodies);
   // Asks for the motions of at most kBlock bodies, and moves those whose motions are valid to the front.
   std::span<const Motion> ask_valid(Step now, std::span<BodyIndex>& bodies);
@@ -40,27 +47,22 @@ class WindowUpdates {
 
  private:
   struct Block;
-  void make_room_for_motions(std::size_t count) {
-    if (motions_.size() < count) motions_.resize(count);
-  }
-  void find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested);
-  void test_near(Step now);
-  std::size_t known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept;
-  std::size_t refuse_invalid(std::span<BodyIndex> bodies);
-  bool place(Block& block, std::span<const BodyIndex> bodies);
-  bool set_ends(Block& block, std::span<const BodyIndex> bodies, std::span<const Motion> motions) const noexcept;
-  bool make_boxes(Block& block, std::span<const Motion> motions, bool same_ends) const noexcept;
-  bool note_boxes(Block& block, std::span<const BodyIndex> bodies);
-  void shrink(Block& block, BodyIndex body, std::size_t i);
-  void drop_what_is_none();
-
-  // Many at once (window_updates_shared.cpp).
   struct Chunk;
   struct GridPart;
   struct Shared;
+  std::span<Motion> ask(Step now, std::span<const BodyIndex> bodies);
+  std::size_t known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept;
+  bool set_ends(Block& block, std::span<const BodyIndex> bodies, std::span<const Motion> motions) const noexcept;
+  bool make_boxes(Block& block, std::span<const Motion> motions, bool same_ends) const noexcept;
+  Block block_at(Step now, Step from) const noexcept;
+  void place(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const;
   void place_chunk(Chunk& chunk, Block& block, std::span<const BodyIndex> bodies) const;
-  void place_shared(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const;
   void fold(Chunk& chunk);
+  void place_left(Chunk& chunk, Block& block);
+  QuantizedAabb shrink(Block& block, Window& window, const Motion& motion) const noexcept;
+  void find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested);
+  void test_near(Step now);
+  void drop_what_is_none();
   void find_in_part(Step now, std::size_t index);
   bool are_many(std::size_t bodies) const noexcept;
   void update_wave(Step now, Step from, std::span<const BodyIndex> bodies);
@@ -71,6 +73,7 @@ class WindowUpdates {
   const BroadPhaseOptions& options_;
   std::vector<Motion> motions_;     // of the block under way
   std::vector<BodyPair> near_;      // untested yet
+  std::unique_ptr<Chunk> chunk_;    // of the calling thread
   std::unique_ptr<Shared> shared_;  // null until there are many
 };
 
@@ -83,6 +86,44 @@ struct WindowUpdates::Block {
   std::array<double, kBlock> durations;  // until then, of which the last step is not
   BoxBlock boxes;
   Windows::LastEnd last;
+  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch>* batches = nullptr;  // to be inserted at once; null: scattered
+};
+
+struct WindowUpdates::Chunk {
+  struct Run {
+    Step end;
+    std::size_t bodies;
+  };
+  struct Left {
+    BodyIndex body;
+    Motion motion;
+  };
+  SweptGrid::VisitsByPart visits;
+  std::vector<BodyIndex> placed;   // in order
+  std::vector<Run> runs;           // of these, those one after the other whose windows end together
+  std::vector<BodyIndex> unknown;  // what holds from the later step on
+  std::vector<Left> left;          // not valid, or too large: placed one by one
+  std::vector<Motion> sampled;     // for the plan
+  std::vector<Motion> motions;     // of the block under way
+  QuantizedAabb extent;
+  BodyPool::Answers answers;
+  std::uint64_t asked;
+
+  void note_run(Step end, std::size_t bodies) {
+    if (runs.empty() || runs.back().end != end) runs.push_back({end, 0});
+    runs.back().bodies += bodies;
+  }
+  void clear() noexcept {
+    for (auto& part : visits) part.clear();
+    placed.clear(), runs.clear(), unknown.clear(), left.clear(), sampled.clear();
+    extent = BoxIndex::nothing();
+    asked = 0;
+  }
+  std::size_t memory_bytes() const noexcept {
+    std::size_t bytes = bytes_of(placed, runs, unknown, left, sampled, motions) + answers.memory_bytes();
+    for (const auto& part : visits) bytes += part.memory_bytes();
+    return bytes;
+  }
 };
 
 }  // namespace orchard::runtime::detail

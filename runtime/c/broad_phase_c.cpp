@@ -4,7 +4,6 @@
 
 #include "c/bodies_c.h"
 #include "c/orchard_c.h"
-#include "execution/guarded.h"
 #include "orchard/runtime/broad_queries.h"
 #include "orchard/runtime/orchard_broad_phase.h"
 
@@ -21,28 +20,9 @@ namespace {
 
 using namespace rt::detail;
 
-orchard_body no_body() noexcept { return body_of(rt::kNoBody); }
-
-rt::Motion motion_of(const orchard_motion& from) noexcept {
-  rt::Motion motion;
-  motion.position = vector_of(from.position), motion.velocity = vector_of(from.velocity);
-  motion.radius = from.radius;
-  motion.acceleration = from.acceleration, motion.drift = from.drift;
-  motion.half_space = vector_of(from.half_space);
-  motion.expiry = from.expiry;
-  return motion;
-}
-
-orchard_motion motion_in_c(const rt::Motion& from) noexcept {
-  orchard_motion motion{};
-  std::copy_n(from.position.begin(), 3, motion.position);
-  std::copy_n(from.velocity.begin(), 3, motion.velocity);
-  motion.radius = from.radius;
-  motion.acceleration = from.acceleration, motion.drift = from.drift;
-  std::copy_n(from.half_space.begin(), 3, motion.half_space);
-  motion.expiry = from.expiry;
-  return motion;
-}
+// They are alike in both languages, number by number.
+rt::Motion motion_of(const orchard_motion& from) noexcept { return std::bit_cast<rt::Motion>(from); }
+orchard_motion motion_in_c(const rt::Motion& from) noexcept { return std::bit_cast<orchard_motion>(from); }
 
 rt::MotionSource source_of(orchard_motion_source source, void* context) {
   if (source == nullptr) return {};
@@ -61,16 +41,12 @@ rt::MotionBoundViolationListener listener_of(orchard_motion_bound_listener liste
   if (listener == nullptr) return {};
   return [listener, context](const rt::MotionBoundViolation& broken) {
     const rt::MotionBoundExcess& by = broken.by;
-    const orchard_motion_bound_violation in_c{body_of(broken.body),
-                                              broken.bound_time,
-                                              broken.time,
-                                              motion_in_c(broken.bound),
-                                              motion_in_c(broken.given),
-                                              by.position,
-                                              by.side,
-                                              by.velocity,
-                                              by.turn,
-                                              by.radius};
+    orchard_motion_bound_violation in_c{};
+    in_c.body = body_of(broken.body);
+    in_c.bound_time = broken.bound_time, in_c.time = broken.time;
+    in_c.bound = motion_in_c(broken.bound), in_c.given = motion_in_c(broken.given);
+    in_c.position = by.position, in_c.side = by.side, in_c.velocity = by.velocity, in_c.turn = by.turn;
+    in_c.radius = by.radius;
     listener(context, &in_c);
   };
 }
@@ -83,35 +59,25 @@ const std::uint32_t* indices_of(std::span<const rt::BodyPair> pairs) noexcept {
 
 int as_int(bool done) noexcept { return done ? 1 : 0; }
 
-// 1, or 0 where there is no memory as well.
-template <typename Change>
-int changed(const Change& change) noexcept {
-  return guarded([&] { return as_int(change()); }, [] { return 0; });
-}
-
 template <typename Ask>
 int first(orchard_broad_phase* world, orchard_body_hit* hit, const Ask& ask) noexcept {
-  return guarded(
-      [&] {
-        const std::optional<rt::BodyHit> found = ask();
-        if (found && hit != nullptr) *hit = {found->body, found->along};
-        return world->queries.refused() ? -1 : as_int(found.has_value());
-      },
-      [] { return -1; });
+  return made_or(-1, [&] {
+    const std::optional<rt::BodyHit> found = ask();
+    if (found && hit != nullptr) *hit = {found->body, found->along};
+    return world->queries.refused() ? -1 : as_int(found.has_value());
+  });
 }
 
 // Those that ask() gives, as far as there is room.
 template <typename InC, typename Ask, typename Convert>
 std::size_t written(orchard_broad_phase* world, InC* to, std::size_t room, const Ask& ask,
                     const Convert& convert) noexcept {
-  return guarded(
-      [&]() -> std::size_t {
-        const auto found = ask();
-        if (world->queries.refused()) return ORCHARD_REFUSED;
-        for (std::size_t i = 0; i < std::min(room, found.size()); ++i) to[i] = convert(found[i]);
-        return found.size();
-      },
-      []() -> std::size_t { return ORCHARD_REFUSED; });
+  return made_or(std::size_t{ORCHARD_REFUSED}, [&]() -> std::size_t {
+    const auto found = ask();
+    if (world->queries.refused()) return ORCHARD_REFUSED;
+    for (std::size_t i = 0; i < std::min(room, found.size()); ++i) to[i] = convert(found[i]);
+    return found.size();
+  });
 }
 
 orchard_body_hit hit_in_c(const rt::BodyHit& hit) noexcept { return {hit.body, hit.along}; }
@@ -128,34 +94,27 @@ orchard_body_filter orchard_default_filter(void) {
 }
 orchard_broad_phase_options orchard_default_broad_phase(void) {
   const rt::BroadPhaseOptions options;
-  return {options.time_step,
-          options.start,
-          options.window,
-          options.position_slack,
-          0,
-          nullptr,
-          nullptr,
-          nullptr,
-          nullptr,
-          1};
+  orchard_broad_phase_options result{};
+  result.time_step = options.time_step, result.start = options.start;
+  result.window = options.window, result.position_slack = options.position_slack;
+  result.concurrency = 1;
+  return result;
 }
 
 orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void* context,
                                              const orchard_broad_phase_options* with) {
-  return guarded(
-      [&] {
-        const orchard_broad_phase_options defaults = orchard_default_broad_phase();
-        if (with == nullptr) with = &defaults;
-        rt::BroadPhaseOptions options;
-        options.time_step = with->time_step, options.start = with->start;
-        options.window = with->window;
-        options.position_slack = with->position_slack;
-        options.validate = with->validate != 0;
-        options.broken = listener_of(with->broken, with->broken_context);
-        options.executor = {with->run, with->run_context, with->concurrency};
-        return std::make_unique<orchard_broad_phase>(source_of(source, context), options).release();
-      },
-      []() -> orchard_broad_phase* { return nullptr; });
+  return made_or<orchard_broad_phase*>(nullptr, [&] {
+    const orchard_broad_phase_options defaults = orchard_default_broad_phase();
+    if (with == nullptr) with = &defaults;
+    rt::BroadPhaseOptions options;
+    options.time_step = with->time_step, options.start = with->start;
+    options.window = with->window;
+    options.position_slack = with->position_slack;
+    options.validate = with->validate != 0;
+    options.broken = listener_of(with->broken, with->broken_context);
+    options.executor = {with->run, with->run_context, with->concurrency};
+    return std::make_unique<orchard_broad_phase>(source_of(source, context), options).release();
+  });
 }
 
 void orchard_broad_phase_free(orchard_broad_phase* world) { delete world; }
@@ -165,12 +124,12 @@ double orchard_broad_phase_next_time(const orchard_broad_phase* world) { return 
 
 orchard_body orchard_broad_phase_add(orchard_broad_phase* world, uint8_t importance,
                                      const orchard_body_filter* filter) {
-  return guarded([&] { return body_of(world->world.add(importance, filter_of(filter))); }, no_body);
+  return made_or(kNobody, [&] { return body_of(world->world.add(importance, filter_of(filter))); });
 }
 orchard_body orchard_broad_phase_add_static(orchard_broad_phase* world, const orchard_motion* place, uint8_t importance,
                                             const orchard_body_filter* filter) {
-  return guarded([&] { return body_of(world->world.add_static(motion_of(*place), importance, filter_of(filter))); },
-                 no_body);
+  return made_or(kNobody,
+                 [&] { return body_of(world->world.add_static(motion_of(*place), importance, filter_of(filter))); });
 }
 
 int orchard_broad_phase_remove(orchard_broad_phase* world, orchard_body body) {
@@ -190,11 +149,7 @@ int orchard_broad_phase_set_filter(orchard_broad_phase* world, orchard_body body
 }
 int orchard_broad_phase_set_pair_filter(orchard_broad_phase* world, orchard_pair_filter filter, void* context) {
   return changed([&] {
-    rt::PairFilter made;
-    if (filter != nullptr) {
-      made = [filter, context](rt::BodyId a, rt::BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
-    }
-    world->world.set_pair_filter(std::move(made));
+    world->world.set_pair_filter(filter_of(filter, context));
     return world->world.valid();
   });
 }
@@ -223,7 +178,7 @@ orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t
 }
 
 uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t) {
-  return guarded([&]() -> uint64_t { return world->world.skip_to(t); }, []() -> uint64_t { return 0; });
+  return made_or(uint64_t{0}, [&] { return world->world.skip_to(t); });
 }
 size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
                                         size_t* meetings, size_t* overlaps) {

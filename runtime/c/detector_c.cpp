@@ -5,7 +5,6 @@
 
 #include "c/bodies_c.h"
 #include "c/orchard_c.h"
-#include "execution/guarded.h"
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/orchard_detector.h"
 
@@ -38,9 +37,7 @@ rt::BodyState state_of(const orchard_body_state& from) noexcept {
 
 orchard_body_state state_of(const rt::BodyState& from) noexcept {
   orchard_body_state result{};
-  std::copy(from.pose.rotation.begin(), from.pose.rotation.end(), result.pose.rotation);
-  std::copy(from.pose.translation.begin(), from.pose.translation.end(), result.pose.translation);
-  result.pose.scale = from.pose.scale;
+  result.pose = pose_in_c(from.pose);
   std::copy(from.velocity.begin(), from.velocity.end(), result.velocity);
   std::copy(from.half_space.begin(), from.half_space.end(), result.half_space);
   result.acceleration = from.acceleration, result.drift = from.drift, result.expiry = from.expiry;
@@ -72,12 +69,6 @@ int given(const std::optional<rt::WorldPoint>& from, orchard_world_point* to) no
   return 1;
 }
 
-// What `make` gives, or `otherwise` if there is no memory for it.
-template <typename Result, typename Make>
-Result made_or(Result otherwise, Make&& make) noexcept {
-  return guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
-}
-
 orchard_frame step(orchard_detector& detector, double time, const orchard_budget& given,
                    const rt::StepOptions& options) {
   const rt::Budget budget{given.tests, rt::detail::time_of(given.nanoseconds)};
@@ -98,7 +89,6 @@ orchard_frame step(orchard_detector& detector, double time, const orchard_budget
 }
 
 static_assert(ORCHARD_FIRST_HALF_SPACE == rt::kFirstHalfSpace);
-constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 
 }  // namespace
 
@@ -110,17 +100,13 @@ orchard_body_state orchard_default_state(void) { return state_of(rt::BodyState{}
 
 orchard_detector_options orchard_default_detector(void) {
   const rt::DetectorOptions options;
-  return {options.time_step,
-          options.start,
-          options.position_slack,
-          -1,
-          options.steps_to_end,
-          options.max_unfinished,
-          nullptr,
-          nullptr,
-          1,
-          options.max_fronts,
-          options.max_events};
+  orchard_detector_options result{};
+  result.time_step = options.time_step, result.start = options.start, result.position_slack = options.position_slack;
+  result.watch = -1;
+  result.steps_to_end = options.steps_to_end;
+  result.max_unfinished = options.max_unfinished, result.max_events = options.max_events;
+  result.concurrency = 1;
+  return result;
 }
 
 orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
@@ -136,18 +122,15 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     if (with->watch >= 0) options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
     options.max_unfinished = with->max_unfinished;
-    options.max_fronts = with->max_fronts;
     if (with->max_events > 0) options.max_events = with->max_events;
     options.executor = {with->run, with->run_context, with->concurrency};
-    orchard_detector* const self = made.get();
     if (source == nullptr) {
       made->detector = std::make_unique<rt::Detector>(options);
       return made.release();
     }
-    made->detector =
-        std::make_unique<rt::Detector>([self](double time, std::span<const rt::BodyIndex> bodies,
-                                              std::span<rt::BodyState> states) { fill(*self, time, bodies, states); },
-                                       options);
+    const auto ask = [self = made.get()](double time, std::span<const rt::BodyIndex> bodies,
+                                         std::span<rt::BodyState> states) { fill(*self, time, bodies, states); };
+    made->detector = std::make_unique<rt::Detector>(ask, options);
     return made.release();
   });
 }
@@ -197,48 +180,43 @@ orchard_body orchard_detector_add_half_space(orchard_detector* detector, const d
 }
 
 int orchard_detector_remove(orchard_detector* detector, orchard_body body) {
-  return made_or(0, [&] { return int{detector->detector->remove(id_of(body))}; });
+  return changed([&] { return detector->detector->remove(id_of(body)); });
 }
 int orchard_detector_cancel(orchard_detector* detector, orchard_body body) {
-  return made_or(0, [&] { return int{detector->detector->cancel(id_of(body))}; });
+  return changed([&] { return detector->detector->cancel(id_of(body)); });
 }
 int orchard_detector_teleport(orchard_detector* detector, orchard_body body) {
-  return made_or(0, [&] { return int{detector->detector->teleport(id_of(body))}; });
+  return changed([&] { return detector->detector->teleport(id_of(body)); });
 }
 int orchard_detector_move_static(orchard_detector* detector, orchard_body body, const orchard_pose* pose) {
-  return made_or(0, [&] { return int{detector->detector->move_static(id_of(body), pose_of(*pose))}; });
+  return changed([&] { return detector->detector->move_static(id_of(body), pose_of(*pose)); });
 }
 int orchard_detector_set_local(orchard_detector* detector, orchard_body body, size_t part, const orchard_pose* local) {
-  return made_or(0, [&] { return int{detector->detector->set_local(id_of(body), part, pose_of(*local))}; });
+  return changed([&] { return detector->detector->set_local(id_of(body), part, pose_of(*local)); });
 }
 int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance) {
-  return made_or(0, [&] { return int{detector->detector->set_importance(id_of(body), importance)}; });
+  return changed([&] { return detector->detector->set_importance(id_of(body), importance); });
 }
 int orchard_detector_set_filter(orchard_detector* detector, orchard_body body, const orchard_body_filter* filter) {
-  const rt::BodyFilter made = filter == nullptr ? rt::BodyFilter{} : filter_of(filter);
-  return made_or(0, [&] { return int{detector->detector->set_filter(id_of(body), made)}; });
+  return changed([&] { return detector->detector->set_filter(id_of(body), filter_of(filter)); });
 }
 int orchard_detector_set_state(orchard_detector* detector, orchard_body body, const orchard_body_state* state) {
-  return made_or(0, [&] { return int{detector->detector->set_state(id_of(body), state_of(*state))}; });
+  return changed([&] { return detector->detector->set_state(id_of(body), state_of(*state)); });
 }
 int orchard_detector_set_velocity(orchard_detector* detector, orchard_body body, const double velocity[3]) {
-  return made_or(0, [&] { return int{detector->detector->set_velocity(id_of(body), vector_of(velocity))}; });
+  return changed([&] { return detector->detector->set_velocity(id_of(body), vector_of(velocity)); });
 }
 int orchard_detector_sleep(orchard_detector* detector, orchard_body body) {
-  return made_or(0, [&] { return int{detector->detector->sleep(id_of(body))}; });
+  return changed([&] { return detector->detector->sleep(id_of(body)); });
 }
 int orchard_detector_wake(orchard_detector* detector, orchard_body body) {
-  return made_or(0, [&] { return int{detector->detector->wake(id_of(body))}; });
+  return changed([&] { return detector->detector->wake(id_of(body)); });
 }
 
 int orchard_detector_set_pair_filter(orchard_detector* detector, orchard_pair_filter filter, void* context) {
-  return made_or(0, [&] {
-    rt::PairFilter made;
-    if (filter != nullptr) {
-      made = [filter, context](rt::BodyId a, rt::BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
-    }
-    detector->detector->set_pair_filter(std::move(made));
-    return 1;
+  return changed([&] {
+    detector->detector->set_pair_filter(filter_of(filter, context));
+    return true;
   });
 }
 

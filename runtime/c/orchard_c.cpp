@@ -29,11 +29,8 @@ namespace {
 using namespace rt::detail;
 
 int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
-  if (!from) return 0;
-  std::copy_n(from->rotation.begin(), 9, to->rotation);
-  std::copy_n(from->translation.begin(), 3, to->translation);
-  to->scale = from->scale;
-  return 1;
+  if (from) *to = pose_in_c(*from);
+  return from ? 1 : 0;
 }
 
 // A tree made here, or null where `make` gives none or there is no memory for it.
@@ -51,14 +48,26 @@ orchard_tree* made(Make&& make) noexcept {
   return rt::detail::guarded(work, []() -> orchard_tree* { return nullptr; });
 }
 
-orchard_tree* opened(orchard_tree* tree, rt::LoadStatus status, const char** error) noexcept {
-  if (tree != nullptr && status == rt::LoadStatus::ok) {
-    tree->prepared = rt::PreparedTree(tree->view);
-    return tree;
+// A tree that load(tree) has filled, or null and why there is none.
+template <typename Load>
+orchard_tree* opened(const char** error, const Load& load) noexcept {
+  std::unique_ptr<orchard_tree> tree(new (std::nothrow) orchard_tree);
+  const rt::LoadStatus status = tree ? load(*tree) : rt::LoadStatus::out_of_memory;
+  if (status != rt::LoadStatus::ok) {
+    if (error != nullptr) *error = rt::message(status);
+    return nullptr;
   }
-  if (error != nullptr) *error = rt::message(tree == nullptr ? rt::LoadStatus::out_of_memory : status);
-  delete tree;
-  return nullptr;
+  if (tree->view.blocks.empty()) tree->view = tree->loaded;
+  tree->prepared = rt::PreparedTree(tree->view);
+  return tree.release();
+}
+
+// Whether there is a nearest point, and where.
+int given(const rt::SurfacePoint& from, double* distance, double* point, uint32_t* triangle) noexcept {
+  if (distance != nullptr) *distance = from.distance;
+  if (point != nullptr) std::copy_n(from.point.begin(), 3, point);
+  if (triangle != nullptr) *triangle = from.triangle;
+  return from.triangle != rt::kNoTriangle ? 1 : from.distance == 0 ? -1 : 0;
 }
 
 }  // namespace
@@ -86,27 +95,20 @@ int orchard_pose_from_quaternion(const double wxyz[4], const double translation[
 }
 
 orchard_tree* orchard_tree_read(const char* path, const char** error) {
-  auto* const tree = new (std::nothrow) orchard_tree;
-  if (tree == nullptr) return opened(nullptr, rt::LoadStatus::out_of_memory, error);
-  const rt::LoadStatus status = rt::load_file(path, tree->loaded);
-  tree->view = tree->loaded;
-  return opened(tree, status, error);
+  return opened(error, [path](orchard_tree& tree) { return rt::load_file(path, tree.loaded); });
 }
 
 orchard_tree* orchard_tree_open(const char* path, const char** error) {
-  auto* const tree = new (std::nothrow) orchard_tree;
-  if (tree == nullptr) return opened(nullptr, rt::LoadStatus::out_of_memory, error);
-  const rt::LoadStatus status = tree->mapped.open(path);
-  tree->view = tree->mapped.view();
-  return opened(tree, status, error);
+  return opened(error, [path](orchard_tree& tree) {
+    const rt::LoadStatus status = tree.mapped.open(path);
+    tree.view = tree.mapped.view();
+    return status;
+  });
 }
 
 orchard_tree* orchard_tree_load(const void* bytes, size_t size, const char** error) {
-  auto* const tree = new (std::nothrow) orchard_tree;
-  if (tree == nullptr) return opened(nullptr, rt::LoadStatus::out_of_memory, error);
-  const rt::LoadStatus status = rt::load({static_cast<const std::byte*>(bytes), size}, tree->loaded);
-  tree->view = tree->loaded;
-  return opened(tree, status, error);
+  const std::span file(static_cast<const std::byte*>(bytes), size);
+  return opened(error, [file](orchard_tree& tree) { return rt::load(file, tree.loaded); });
 }
 
 void orchard_tree_close(orchard_tree* tree) { delete tree; }
@@ -182,24 +184,15 @@ int orchard_index_rays(orchard_tree* tree) {
 
 int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3], double limit,
                           double* distance, double point[3], uint32_t* triangle) {
-  const rt::SurfacePoint near = rt::nearest_point(tree->view, pose_of(*pose), vector_of(center), limit);
-  if (distance != nullptr) *distance = near.distance;
-  if (point != nullptr) std::copy_n(near.point.begin(), 3, point);
-  if (triangle != nullptr) *triangle = near.triangle;
-  if (near.triangle != rt::kNoTriangle) return 1;
-  return near.distance == 0 ? -1 : 0;
+  return given(rt::nearest_point(tree->view, pose_of(*pose), vector_of(center), limit), distance, point, triangle);
 }
 
 int orchard_signed_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3],
                                  double limit, double* distance, double point[3], double normal[3],
                                  uint32_t* triangle) {
   const rt::SignedPoint found = rt::signed_nearest_point(tree->view, pose_of(*pose), vector_of(center), limit);
-  if (distance != nullptr) *distance = found.surface.distance;
-  if (point != nullptr) std::copy_n(found.surface.point.begin(), 3, point);
   if (normal != nullptr) std::copy_n(found.normal.begin(), 3, normal);
-  if (triangle != nullptr) *triangle = found.surface.triangle;
-  if (found.surface.triangle != rt::kNoTriangle) return 1;
-  return found.surface.distance == 0 ? -1 : 0;
+  return given(found.surface, distance, point, triangle);
 }
 
 int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, const double half[3],

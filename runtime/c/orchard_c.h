@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <bit>
 
 #include "orchard/runtime/collide.h"
 #include "orchard/runtime/contacts.h"
@@ -26,13 +27,9 @@ namespace orchard::runtime::detail {
 
 inline Workspace& workspace_of(orchard_workspace* workspace) noexcept { return workspace->workspace; }
 
-inline Pose pose_of(const orchard_pose& from) noexcept {
-  Pose pose;
-  std::copy_n(from.rotation, 9, pose.rotation.begin());
-  std::copy_n(from.translation, 3, pose.translation.begin());
-  pose.scale = from.scale;
-  return pose;
-}
+// They are alike in both languages, number by number.
+inline Pose pose_of(const orchard_pose& from) noexcept { return std::bit_cast<Pose>(from); }
+inline orchard_pose pose_in_c(const Pose& from) noexcept { return std::bit_cast<orchard_pose>(from); }
 
 inline std::chrono::nanoseconds time_of(std::uint64_t nanoseconds) noexcept {
   const auto longest = static_cast<std::uint64_t>(std::chrono::nanoseconds::max().count());

@@ -86,8 +86,7 @@ orchard_manifold orchard_contacts_within(orchard_workspace* workspace, const orc
 
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
                                   const orchard_tree* b, const orchard_pose* pose_b) {
-  return rt::detail::manifold_of(
-      rt::contacts(workspace->workspace, rt::TreePair(a->prepared, b->prepared), pose_of(*pose_a), pose_of(*pose_b)));
+  return orchard_contacts_within(workspace, a, pose_a, b, pose_b, 0);
 }
 
 orchard_signed_distance orchard_measure_signed(orchard_workspace* workspace, const orchard_tree* a,

@@ -34,39 +34,6 @@ void add(CachedPair& record, const Verdict& verdict, std::uint32_t part_a, std::
   record.verdict.work = work;
 }
 
-namespace {
-
-// Of parts that are apart by their bounds: how far at least, and the two of whom it is known best how far at most.
-struct PartsApart {
-  SphereGap gap{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  std::uint32_t part_a = 0, part_b = 0;
-
-  void note(const SphereGap& of, std::uint32_t i, std::uint32_t j) noexcept {
-    gap.least = std::min(gap.least, of.least);
-    if (!(of.most < gap.most)) return;
-    gap.most = of.most;
-    part_a = i, part_b = j;
-  }
-};
-
-// As add() of what unasked() would say of them.
-void add_apart(CachedPair& record, const PartsApart& apart) noexcept {
-  Verdict& verdict = record.verdict;
-  if (verdict.answer == Answer::no && apart.gap.most < verdict.separation_bound) {
-    const double lower = verdict.lower_bound;
-    const std::uint64_t work = verdict.work;
-    verdict = Verdict{};
-    verdict.answer = Answer::no;
-    verdict.separation_bound = apart.gap.most, verdict.lower_bound = lower;
-    verdict.work = work;
-    record.part_a = apart.part_a, record.part_b = apart.part_b;
-  }
-  verdict.separation_bound = std::min(verdict.separation_bound, apart.gap.most);
-  verdict.lower_bound = std::min(verdict.lower_bound, apart.gap.least);
-}
-
-}  // namespace
-
 void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b,
                          PartPair& pair) const noexcept {
   places_->place(record.bodies.a, part_a, pair.a);
@@ -86,8 +53,7 @@ bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) n
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
-void PairAnswerer::answer_coherently(std::uint32_t index, CachedPair& record, Step now,
-                                     QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   record.part_a = record.part_b = 0;
   record.impact = false;
   Verdict& verdict = record.verdict;
@@ -102,7 +68,6 @@ void PairAnswerer::answer_coherently(std::uint32_t index, CachedPair& record, St
     const bool tries = slow || record.touching;
     if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
-      if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
       record.along = query_of(scratch.workspace.narrow).apart_along();
     }
     scratch.work += kPairWork + verdict.work;
@@ -132,9 +97,8 @@ void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scr
   verdict.work = scratch.work - before;
 }
 
-void PairAnswerer::answer(std::uint32_t index, CachedPair& record, Step now,
-                          QueryPool::Scratch& scratch) const noexcept {
-  if (record.coherent) return answer_coherently(index, record, now, scratch);
+void PairAnswerer::answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+  if (record.coherent) return answer_coherently(record, now, scratch);
   if (places_->parts(record.bodies.a) == 1 && places_->parts(record.bodies.b) == 1) {
     return answer_two_parts(record, now, scratch);
   }
@@ -176,7 +140,6 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
   const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
   const bool half = is_half_space(bodies.b);
   bool certain = true, placed_b = false;
-  PartsApart apart;
   BoundingSphere b = half || parts_b > 1 ? BoundingSphere{} : places_->sphere(bodies.b, 0);
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
     const BoundingSphere a = places_->sphere(bodies.a, i);
@@ -188,7 +151,10 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
       SphereGap gap = half ? sphere_gap(a, pair.half) : sphere_gap(a, b);
       if (!(gap.least > 0) && !half) gap.least = places_->bounds_gap(bodies, i, j, a, b);
       if (gap.least > 0) {
-        apart.note(gap, i, j);
+        Verdict apart;
+        apart.answer = Answer::no;
+        apart.lower_bound = gap.least, apart.separation_bound = gap.most;
+        add(record, apart, i, j);
         continue;
       }
       if (!placed_a) places_->place(bodies.a, i, pair.a);
@@ -199,8 +165,6 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
       certain = certain && verdict.answer != Answer::maybe;
     }
   }
-  if (record.verdict.answer != Answer::yes && apart.gap.least < std::numeric_limits<double>::infinity())
-    add_apart(record, apart);
   return certain;
 }
 
@@ -227,12 +191,6 @@ void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch
   certain = answer_others(record, touched, pair, scratch) && certain && record.verdict.answer != Answer::maybe;
   if (certain || record.verdict.answer == Answer::yes) record.answered = now;
   record.verdict.work = scratch.work - before;
-}
-
-void PairAnswerer::note_search(std::uint32_t index, CachedPair& record, std::uint64_t work,
-                               QueryPool::Scratch& scratch) noexcept {
-  if (scratch.wanting.capacity() == 0 || !FrontPool::wants(record, work)) return;
-  if (scratch.wanting.size() < scratch.wanting.capacity()) scratch.wanting.push_back(index);
 }
 
 void leave_open(CachedPair& record) noexcept {

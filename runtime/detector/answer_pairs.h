@@ -1,5 +1,5 @@
 #pragma once
-#include "detector/front_pool.h"
+#include "detector/pair_cache.h"
 #include "detector/query_pool.h"
 #include "detector/sweep.h"
 
@@ -17,24 +17,21 @@ class PairAnswerer {
  public:
   explicit PairAnswerer(const ShapePlacements& places) noexcept : places_(&places) {}
 
-  // Every pair of its parts to the end. `index`: of the pair in its cache.
-  void answer(std::uint32_t index, CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  // Every pair of its parts to the end.
+  void answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   // What happened between the step before and this one, until scratch.work has reached `most`.
   void sweep(CachedPair& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
 
   void place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
   // Whether the two move so slowly that what the last step found may be of use. Once a step.
   static bool is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept;
-  // A search has cost so much: what is expensive each time is to have a front.
-  static void note_search(std::uint32_t index, CachedPair& record, std::uint64_t work,
-                          QueryPool::Scratch& scratch) noexcept;
   const ShapePlacements& places() const noexcept { return *places_; }
 
  private:
   static Verdict answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
                               QueryPool::Scratch& scratch) noexcept;
   static Verdict answer_new(CachedPair& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept;
-  void answer_coherently(std::uint32_t index, CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  void answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer_two_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   static constexpr std::uint32_t kNoPart = 0xffffffffu;
   struct PartIndices {

@@ -13,9 +13,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   matcher.match([&](CachedPair& pair) {
     // What the filters exclude is no pair of the broad phase's any more.
     const bool there = matcher.is_there(pair) && matcher.allowed(pair);
-    const bool goes_on = reporter.part(pair, there, there && matcher.has_jumped(pair), step);
-    if (!goes_on) scheduler.forget(pair);
-    return goes_on;
+    return reporter.part(pair, there, there && matcher.has_jumped(pair), step);
   });
   const ActivePairs active = skipper.find_active(matcher.cache());
   frame.pairs += matcher.pair_count();
@@ -74,7 +72,7 @@ void Detector::State::ask_filter(const ActivePairs& active) {
 // Which of the active pairs have to be asked about.
 void Detector::State::open_pairs(const ActivePairs& active, Step step) {
   constexpr std::size_t kPerJob = 512;
-  enum : std::uint8_t { kOpens = 1, kOver = 2, kLarge = 4 };  // kLarge: and begun now
+  enum : std::uint8_t { kOpens = 1, kOver = 2 };
   open.clear();
   detail::grow(marks, active.size());
   ask_filter(active);
@@ -82,24 +80,18 @@ void Detector::State::open_pairs(const ActivePairs& active, Step step) {
     const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       active.prefetch(i, end);
-      auto& known = active.known(i);
-      const bool begins = !matcher.cache().is_begun(known);
-      CachedPair& pair = matcher.cached(known);
+      CachedPair& pair = matcher.cached(active.known(i));
       matcher.allowed(pair);
       bool over = false;
       const bool asked = skipper.needs_answer(pair, step, interrupted, over);
-      marks[i] =
-          static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0) | (begins && pair.large ? kLarge : 0));
+      marks[i] = static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0));
     }
   };
   run_jobs(world.options.executor, (active.size() + kPerJob - 1) / kPerJob, look_at_some);
-  std::size_t large = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     if ((marks[i] & kOver) != 0) reporter.end_by_teleport(active.cached(i), step);
     if ((marks[i] & kOpens) != 0) open.push_back(active.known(i).record);
-    large += (marks[i] & kLarge) != 0;
   }
-  scheduler.note_large(large);
 }
 
 // Where nothing has to wait for all answers: pairs are opened, answered and concluded one after the other.
@@ -107,27 +99,19 @@ std::uint64_t Detector::State::answer_one_by_one(const ActivePairs& active, Step
   const std::size_t jobs = scheduler.jobs(active.size());
   reporter.begin_jobs(active, jobs);
   ask_filter(active);
-  const std::uint64_t work = scheduler.answer_by(jobs, [&](std::size_t job, detail::QueryPool::Scratch& scratch) {
+  return scheduler.answer_by(jobs, [&](std::size_t job, detail::QueryPool::Scratch& scratch) {
     detail::EventReporter::Tally& tally = reporter.tally(job);
     tally = {};
     const std::size_t end = reporter.first_of_job(active, job + 1);
     for (std::size_t i = reporter.first_of_job(active, job); i < end; ++i) {
       active.prefetch(i, end);
-      auto& known = active.known(i);
-      const bool begins = !matcher.cache().is_begun(known);
-      CachedPair& pair = matcher.cached(known);
-      tally.large += begins && pair.large;
+      CachedPair& pair = matcher.cached(active.known(i));
       matcher.allowed(pair);
       bool over = false;
-      if (skipper.needs_answer(pair, step, interrupted, over)) scheduler.answer(known.record, pair, step, scratch);
+      if (skipper.needs_answer(pair, step, interrupted, over)) scheduler.answer(pair, step, scratch);
       reporter.conclude(active, i, tally);
     }
   });
-  std::size_t large = 0;
-  for (std::size_t job = 0; job < jobs; ++job) large += reporter.tally(job).large;
-  scheduler.note_large(large);
-  scheduler.give_fronts(matcher.cache(), step);
-  return work;
 }
 
 }  // namespace orchard::runtime

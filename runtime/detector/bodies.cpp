@@ -323,11 +323,9 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {
-  std::size_t bytes = bytes_of(bodies_) + bytes_of(asking_) + bytes_of(answers_) + bytes_of(sphere_caches_) +
-                      bytes_of(float_spheres_) + bytes_of(invalidated_);
+  std::size_t bytes = bytes_of(bodies_, asking_, answers_, sphere_caches_, float_spheres_, invalidated_);
   for (const Body& body : bodies_)
-    bytes += bytes_of(body.parts) + bytes_of(body.parts_before) + bytes_of(body.part_spheres) +
-             bytes_of(body.float_part_spheres);
+    bytes += bytes_of(body.parts, body.parts_before, body.part_spheres, body.float_part_spheres);
   return bytes;
 }
 

@@ -69,7 +69,7 @@ struct alignas(64) Body {
   bool one = false;        // it has one part,
   bool at_origin = false;  // and that in its own frame
   bool ignores_static = false;
-  bool by_parts = false;       // its pairs with static bodies are found by a PartSearch
+  bool by_parts = false;       // its pairs with static bodies are found by PartPairs
   Step moved = -1;             // the last step at which the pose was another one than at the time asked before
   Step stretched = kNotAsked;  // the step after which parts went farther out than ever before
   double continuous_speed = 0;

@@ -2,6 +2,7 @@
 
 #include "collision/outermost_points.h"
 #include "detector/simple_pair.h"
+#include "math/vector_functions.h"
 
 // Shapes against half-spaces: the least height of a shape over the plane decides.
 namespace orchard::runtime::detail {
@@ -82,15 +83,12 @@ Bottom bottom_of(const Shape& shape, const Pose& pose, const HalfSpace& half) no
     const Vec3& lower = at_p <= at_q ? p : q;
     return {std::min(at_p, at_q) - radius - half.offset, lower - radius * half.normal, kNoTriangle};
   }
-  const auto& r = pose.rotation;
-  const Vec3& n = half.normal;
-  const Vec3 turned = {r[0] * n[0] + r[3] * n[1] + r[6] * n[2], r[1] * n[0] + r[4] * n[1] + r[7] * n[2],
-                       r[2] * n[0] + r[5] * n[1] + r[8] * n[2]};
+  const Vec3 turned = rotate(inverse(Pose{.rotation = pose.rotation}), half.normal);
   const Lowest lowest = lowest_of(shape.tree, turned);
   const Vec3 point = {double{lowest.point[0]} + shape.tree.origin[0], double{lowest.point[1]} + shape.tree.origin[1],
                       double{lowest.point[2]} + shape.tree.origin[2]};
   const Vec3 placed_point = transform(pose, point);
-  return {dot(n, placed_point) - half.offset, placed_point, lowest.triangle};
+  return {dot(half.normal, placed_point) - half.offset, placed_point, lowest.triangle};
 }
 
 bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.obb_nodes.empty(); }
@@ -181,9 +179,6 @@ std::array<Vec3, 2> axes_across(const Vec3& n) noexcept {
   for (std::size_t i = 1; i < 3; ++i) {
     if (std::fabs(n[i]) < std::fabs(n[least])) least = i;
   }
-  const auto cross = [](const Vec3& p, const Vec3& q) {
-    return Vec3{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-  };
   Vec3 axis{};
   axis[least] = 1;
   const Vec3 across = cross(n, axis), e = (1 / length(across)) * across;

@@ -137,7 +137,7 @@ bool HalfSpaces::motion_bound_kept(BodyIndex body, double time, const Motion& no
 }
 
 std::size_t HalfSpaces::memory_bytes() const noexcept {
-  return bytes_of(planes_) + bytes_of(due_) + bytes_of(bounds_) + bytes_of(moving_) + bytes_of(moving_places_);
+  return bytes_of(planes_, due_, bounds_, moving_, moving_places_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -1,6 +1,3 @@
-#include <cmath>
-#include <limits>
-
 #include "collision/solid_contacts.h"
 #include "detector/detector_state.h"
 
@@ -11,23 +8,14 @@ using detail::PartPair;
 
 namespace {
 
-// As its tree stores it, rounded up to float: of a smaller one a corner would be out before it meets a triangle.
-Vec3 stored_half(const detail::Shape& box) noexcept {
-  Vec3 half = box.p;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto nearest = static_cast<float>(half[i]);
-    half[i] = double{nearest} < half[i] ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
-  }
-  return half;
-}
-
-// Boxes are solid, as they are for answers: what is wholly inside one is in contact with it.
+// Boxes are solid, as they are for answers, and as large as their trees store them, rounded up to floats: of a smaller
+// one a corner would be out before it meets a triangle. What is wholly inside one is in contact with it.
 Manifold tree_contacts(Workspace& workspace, const PartPair& pair, const ContactOptions& with) noexcept {
   const detail::Shape &a = *pair.a.shape, &b = *pair.b.shape;
   std::array<detail::SolidBox, 2> boxes{};
   std::size_t count = 0;
-  if (a.kind == detail::ShapeKind::box) boxes[count++] = {true, stored_half(a), b.pieces};
-  if (b.kind == detail::ShapeKind::box) boxes[count++] = {false, stored_half(b), a.pieces};
+  if (a.kind == detail::ShapeKind::box) boxes[count++] = {true, a.box_high, b.pieces};
+  if (b.kind == detail::ShapeKind::box) boxes[count++] = {false, b.box_high, a.pieces};
   return detail::contacts_of_solids(workspace, TreePair(a.prepared, b.prepared), pair.a.pose(), pair.b.pose(), with,
                                     std::span(boxes.data(), count));
 }

@@ -1,7 +1,5 @@
 #include "detector/match_pairs.h"
 
-#include "detector/front_pool.h"
-
 namespace orchard::runtime::detail {
 
 void PairMatcher::gather(Step step, const Advance& now) {
@@ -52,9 +50,7 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
   if (!a.one || !b.one) return pair;
   const Shape &of_a = world_.shapes[a.shape], &of_b = world_.shapes[b.shape];
   pair.coherent = of_a.has_tree() && of_b.has_tree();
-  if (!pair.coherent) return pair;
-  pair.trees = TreePair(of_a.prepared, of_b.prepared);
-  pair.large = FrontPool::are_large(pair.trees);
+  if (pair.coherent) pair.trees = TreePair(of_a.prepared, of_b.prepared);
   return pair;
 }
 

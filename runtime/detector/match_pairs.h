@@ -35,8 +35,7 @@ class PairMatcher {
     return pair.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
   }
   std::size_t memory_bytes() const noexcept {
-    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_) + bytes_of(left_out_) +
-           bytes_of(due_motions_);
+    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_, due_motions_);
   }
 
  private:
@@ -71,8 +70,7 @@ void PairMatcher::match(GoesOn&& goes_on) {
     ++seen_.fresh;
     return generations(pair);
   };
-  const auto load = [&](const BodyPair& pair) ORCHARD_INLINE_LAMBDA { bodies.prefetch_sphere_cache(pair.b); };
-  cache_.match(pairs_.all(), doubted, same, gone, fresh, load);
+  cache_.match(pairs_.all(), doubted, same, gone, fresh);
   seen_.parted = seen_.known + seen_.fresh + cache_.kept().size() - cache_.size();
   bodies.forget_invalidated();
 }

@@ -43,23 +43,6 @@ std::size_t PairCache::common(std::span<const BodyPair> a, std::span<const BodyP
   return i;
 }
 
-// Before anything is done about it: then it is known what will be needed from memory.
-void PairCache::compare(std::span<const BodyPair> pairs) {
-  changes_.clear(), partings_.clear();
-  std::size_t old = 0, now = 0;
-  while (now < pairs.size() || old < pairs_.size()) {
-    const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
-    old += run, now += run;
-    const std::size_t old_then = old, now_then = now;
-    for (; old < pairs_.size() && (now == pairs.size() || pairs_[old] < pairs[now]); ++old) {
-      partings_.push_back(static_cast<std::uint32_t>(old));
-    }
-    while (now < pairs.size() && (old == pairs_.size() || pairs[now] < pairs_[old])) ++now;
-    const auto count = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-    changes_.push_back({count(run), count(old - old_then), count(now - now_then)});
-  }
-}
-
 void PairCache::keep(std::size_t from, std::size_t count) {
   const auto some = [&](const auto& of) { return std::span(of).subspan(from, count); };
   const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };

@@ -10,8 +10,6 @@
 
 namespace orchard::runtime::detail {
 
-inline constexpr std::uint32_t kNoFront = 0xffffffffu;
-
 // What is remembered of a pair that could not be skipped at some step, while it is one, or until its touch has ended.
 // First what every loop over pairs reads.
 struct CachedPair {
@@ -26,15 +24,12 @@ struct CachedPair {
   bool touching = false;
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   bool met = false;       // of several parts, part_a and part_b have met, and are trees: `trees` knows where
-  bool large = false;     // trees, so that a front may be of use
   bool impact = false;
   bool swept = false;   // at the step before both poses were known: a sweep may start there
   bool unseen = false;  // there is no pose of the previous step, so no sweep is possible
   std::uint8_t importance = 0;
-  std::uint8_t costly = 0;         // searches of late, see there
-  std::uint8_t roots_wait = 0;     // steps within a budget for which the roots are not asked by themselves
-  std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
-  Step answered = -1;              // the step of `verdict`, if that is certain
+  std::uint8_t roots_wait = 0;  // steps within a budget for which the roots are not asked by themselves
+  Step answered = -1;           // the step of `verdict`, if that is certain
   std::uint32_t part_a = 0, part_b = 0;
   Verdict verdict;
   Vec3 apart_by{};     // from centre to centre,
@@ -87,12 +82,9 @@ class PairCache {
   const BodyPair& pair(std::size_t place) const noexcept { return pairs_[place]; }
   Known& known(std::size_t place) noexcept { return known_[slots_[place] & kSlot]; }
   const Known& known(std::size_t place) const noexcept { return known_[slots_[place] & kSlot]; }
-  // Whether a certain "no" would change its record; and whether its end would be noticed.
+  // Whether a certain "no" would change its record, or its end would be noticed.
   bool busy(std::size_t place) const noexcept { return (slots_[place] & kBusy) != 0; }
-  bool is_held(std::size_t place) const noexcept { return (slots_[place] & (kBusy | kHeld)) != 0; }
-  void tell(std::size_t place, bool busy, bool held) noexcept {
-    slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0) | (held ? kHeld : 0);
-  }
+  void tell(std::size_t place, bool busy) noexcept { slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0); }
   ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
   CachedPair& operator[](std::uint32_t record) noexcept { return *place_of(record); }
@@ -104,23 +96,16 @@ class PairCache {
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
-  // the former if that says true; generations(pair) for each that is new, and load(pair) some pairs ahead.
-  template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
-  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations,
-             Load&& load);
+  // the former if that says true; generations(pair) for each that is new.
+  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
+  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
-    return pieces_.size() * sizeof(Piece) + bytes_of(pieces_) + bytes_of(free_) + bytes_of(known_) +
-           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_) +
-           bytes_of(kept_places_) + bytes_of(changes_) + bytes_of(partings_);
+    return pieces_.size() * sizeof(Piece) +
+           bytes_of(pieces_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
   }
 
  private:
-  struct Change {  // so many pairs are as they were, then so many are no more, and so many new
-    std::uint32_t alike, parted, fresh;
-  };
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
-  void compare(std::span<const BodyPair> pairs);
-  ORCHARD_INLINE void prefetch_parting(std::size_t i) const noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
@@ -140,31 +125,18 @@ class PairCache {
   std::vector<Known> known_;
   std::vector<std::uint32_t> free_slots_;
   std::vector<BodyPair> pairs_, next_pairs_;
-  static constexpr std::uint32_t kBusy = 0x80000000u, kHeld = 0x40000000u, kSlot = kHeld - 1;
+  static constexpr std::uint32_t kBusy = 0x80000000u, kSlot = kBusy - 1;
   std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and flags
   std::vector<std::uint32_t> kept_places_;
-  std::vector<Change> changes_;          // in match()
-  std::vector<std::uint32_t> partings_;  // places, in all of these
 };
 
-// What partings_[i] and some after it need.
-ORCHARD_INLINE void PairCache::prefetch_parting(std::size_t i) const noexcept {
-  constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
-  if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
-  if (i + kRecord >= partings_.size()) return;
-  const std::size_t place = partings_[i + kRecord];
-  if (is_held(place)) prefetch_all(*place_of(known(place).record));
-}
-
-template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
+template <typename Doubted, typename IsSame, typename Gone, typename Generations>
 void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                      Generations&& generations, Load&& load) {
-  constexpr std::size_t kFreshAhead = 8;
-  compare(pairs);
+                      Generations&& generations) {
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   const auto look_at = [&](std::size_t place) {
     if (same(known(place))) return keep(place, 1);
-    if (is_held(place)) gone(known(place));  // of a body that is no more: it cannot stay
+    if (busy(place)) gone(known(place));  // of a body that is no more: it cannot stay
     leave(place);
     add(pairs_[place], generations(pairs_[place]));
   };
@@ -178,22 +150,18 @@ void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame
     }
   };
   const auto part = [&](std::size_t place) {
-    if (!is_held(place) || !gone(known(place))) return leave(place);
+    if (!busy(place) || !gone(known(place))) return leave(place);
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
     keep(place, 1);
   };
-  std::size_t old = 0, now = 0, gone_by = 0;
-  for (const Change& change : changes_) {
-    take_over(old, old + change.alike);
-    old += change.alike, now += change.alike;
-    for (std::uint32_t i = 0; i < change.parted; ++i) {
-      prefetch_parting(gone_by++);
-      part(old++);
-    }
-    for (std::uint32_t i = 0; i < change.fresh; ++i, ++now) {
-      if (now + kFreshAhead < pairs.size()) load(pairs[now + kFreshAhead]);
+  const std::size_t had = pairs_.size();
+  for (std::size_t old = 0, now = 0; old < had || now < pairs.size();) {
+    const std::size_t alike = common(pairs.subspan(now), std::span(pairs_).subspan(old));
+    take_over(old, old + alike);
+    old += alike, now += alike;
+    for (; old < had && (now == pairs.size() || pairs_[old] < pairs[now]); ++old) part(old);
+    for (; now < pairs.size() && (old == had || pairs[now] < pairs_[old]); ++now)
       add(pairs[now], generations(pairs[now]));
-    }
   }
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }

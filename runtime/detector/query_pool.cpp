@@ -4,8 +4,7 @@
 
 namespace orchard::runtime::detail {
 
-void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps,
-                        std::size_t fronts) {
+void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps) {
   const bool more = seen_shapes_ < shape_count || (sweeps && !sweeps_);
   sweeps_ = sweeps_ || sweeps;
   for (; seen_shapes_ < shape_count; ++seen_shapes_) {
@@ -15,10 +14,7 @@ void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::
     }
   }
   const std::size_t before = scratches_.size();
-  while (scratches_.size() < jobs) {
-    scratches_.push_back(std::make_unique<Scratch>());
-    scratches_.back()->wanting.reserve(fronts);
-  }
+  while (scratches_.size() < jobs) scratches_.push_back(std::make_unique<Scratch>());
   if (deepest_.tree.blocks.empty()) return;
   for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
     scratches_[i]->workspace.narrow.bind(deepest_, deepest_);

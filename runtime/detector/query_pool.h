@@ -14,13 +14,12 @@ class QueryPool {
  public:
   // Room for `jobs` jobs at once and pairs of these shapes, so that no query, and if there are sweeps, none of these,
   // allocates.
-  void prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps, std::size_t fronts);
+  void prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps);
   std::size_t jobs() const noexcept { return scratches_.size(); }
 
   struct Scratch {
     Workspace workspace{0};
     std::uint64_t work = 0;
-    std::vector<std::uint32_t> wanting;  // records that are to have fronts; no more than there are
   };
   Scratch& scratch(std::size_t job) noexcept { return *scratches_[job]; }
 

@@ -88,8 +88,7 @@ void EventReporter::conclude(const ActivePairs& active, std::size_t i, Tally& ta
   if (maybe) tally.worst_bound = std::max(tally.worst_bound, pair.verdict.separation_bound);
   outcomes_[i] = begin_or_end(pair);
   tally.events += outcomes_[i] != Outcome::nothing;
-  const bool busy = pair.touching || pair.waited > 0;
-  active.keep(i, busy, busy || pair.large);
+  active.tell(i, pair.touching || pair.waited > 0);
   if (pair.allowed) skipper_.keep_clearance(active.known(i), pair);
   pair.along = {};
 }

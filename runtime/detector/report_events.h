@@ -17,7 +17,7 @@ class EventReporter {
 
   // What a job's share of the active pairs adds to the frame, and where their events are to be.
   struct Tally {
-    std::size_t events = 0, certain = 0, large = 0;  // large: pairs of large trees, begun now
+    std::size_t events = 0, certain = 0;
     double worst_bound = 0;
     std::size_t ended_from = 0, events_from = 0;
   };
@@ -33,9 +33,7 @@ class EventReporter {
   void report(const ActivePairs& active, Step step, Frame& frame);
 
   std::span<const PairEvent> events() const noexcept { return std::span(events_).first(event_count_); }
-  std::size_t memory_bytes() const noexcept {
-    return bytes_of(outcomes_) + bytes_of(tallies_) + bytes_of(events_) + bytes_of(ended_);
-  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(outcomes_, tallies_, events_, ended_); }
 
  private:
   enum class Outcome : std::uint8_t {  // the events, and none

@@ -136,8 +136,7 @@ std::span<const BodyIndex> StateSampler::refused() {
 }
 
 std::size_t StateSampler::memory_bytes() const noexcept {
-  return monitor_.memory_bytes() + bytes_of(everyone_) + bytes_of(refused_) + bytes_of(broken_) + bytes_of(paired_) +
-         bytes_of(is_paired_);
+  return monitor_.memory_bytes() + bytes_of(everyone_, refused_, broken_, paired_, is_paired_);
 }
 
 }  // namespace orchard::runtime::detail

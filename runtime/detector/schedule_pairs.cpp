@@ -8,7 +8,7 @@ void PairScheduler::prepare() {
   const Executor& executor = world_.options.executor;
   queries_.prepare(world_.shapes, world_.shapes.size(),
                    executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * 4,
-                   world_.any_continuous, world_.options.max_fronts);
+                   world_.any_continuous);
 }
 
 // The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
@@ -21,36 +21,15 @@ std::size_t PairScheduler::jobs(std::size_t count) const noexcept {
 
 std::uint64_t PairScheduler::answer_all(PairCache& records, std::span<const std::uint32_t> open, Step now) {
   const std::size_t among = jobs(open.size());
-  const std::uint64_t work = answer_by(among, [&](std::size_t job, QueryPool::Scratch& scratch) {
+  return answer_by(among, [&](std::size_t job, QueryPool::Scratch& scratch) {
     const std::size_t end = open.size() * (job + 1) / among;
     for (std::size_t i = open.size() * job / among; i < end; ++i) {  // what a pair needs is all over memory
       constexpr std::size_t kRecord = 6, kBodies = 4;                // pairs ahead
       if (i + kRecord < end) prefetch_all(records[open[i + kRecord]]);
       if (i + kBodies < end) answerer_.places().prefetch_bodies(records[open[i + kBodies]].bodies);
-      answerer_.answer(open[i], records[open[i]], now, scratch);
+      answerer_.answer(records[open[i]], now, scratch);
     }
   });
-  give_fronts(records, now);
-  return work;
-}
-
-// Jobs take the pairs in their order, and what a job leaves out for want of room would not get a front anyway.
-void PairScheduler::give_fronts(PairCache& records, Step now) {
-  for (std::size_t job = 0; job < queries_.jobs(); ++job) {
-    auto& wanting = queries_.scratch(job).wanting;
-    fronts_.give(records, wanting, now);
-    wanting.clear();
-  }
-}
-
-void PairScheduler::forget(CachedPair& record) noexcept {
-  fronts_.give_back(record);
-  large_pairs_ -= record.large;
-}
-
-void PairScheduler::note_large(std::size_t more) {
-  large_pairs_ += more;
-  fronts_.prepare(large_pairs_);
 }
 
 bool PairScheduler::sweeps(const PairCache& records, std::span<const std::uint32_t> open) noexcept {

@@ -8,25 +8,20 @@ namespace orchard::runtime::detail {
 // Schedule: which pairs of a step are answered when, by jobs, and within a budget in what order.
 class PairScheduler {
  public:
-  explicit PairScheduler(const World& world) noexcept
-      : world_(world), answerer_(world.places), fronts_(world.options.max_fronts) {}
+  explicit PairScheduler(const World& world) noexcept : world_(world), answerer_(world.places) {}
 
-  void prepare();                            // before a step: room for all shapes and threads
-  void note_large(std::size_t more);         // pairs of large trees have begun
-  void forget(CachedPair& record) noexcept;  // a pair is none any more
+  void prepare();  // before a step: room for all shapes and threads
 
   // Every pair to its end. Returns the work.
   std::uint64_t answer_all(PairCache& records, std::span<const std::uint32_t> open, Step now);
   // The same for a caller that does more with each of `count` things: work(job, scratch), where answer() may be called,
-  // for so many jobs, each with its part of them; and give_fronts() afterwards.
+  // for so many jobs, each with its part of them.
   std::size_t jobs(std::size_t count) const noexcept;
   template <typename Work>
   std::uint64_t answer_by(std::size_t jobs, Work&& work);
-  void answer(std::uint32_t index, CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
-    answerer_.answer(index, record, now, scratch);
+  void answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+    answerer_.answer(record, now, scratch);
   }
-  // To the pairs whose last searches were the most expensive.
-  void give_fronts(PairCache& records, Step now);
   // The same as far as the budget goes, in three parts: what is done in any case; what the budget allows; and what that
   // makes of the records. What is not answered has the answer maybe and is not CachedPair::answered.
   void begin_within(PairCache& records, std::span<const std::uint32_t> open, Step now);
@@ -38,8 +33,7 @@ class PairScheduler {
 
   Workspace* workspace() noexcept { return queries_.jobs() == 0 ? nullptr : &queries_.scratch(0).workspace; }
   std::size_t memory_bytes() const noexcept {
-    return queries_.memory_bytes() + fronts_.memory_bytes() + bytes_of(tasks_) + bytes_of(schedule_) +
-           bytes_of(sorted_) + bytes_of(order_) + bytes_of(sweeps_);
+    return queries_.memory_bytes() + bytes_of(tasks_, schedule_, sorted_, order_, sweeps_);
   }
 
  private:
@@ -71,13 +65,10 @@ class PairScheduler {
   const World& world_;
   PairAnswerer answerer_;
   QueryPool queries_;
-  FrontPool fronts_;
-  std::size_t large_pairs_ = 0;                   // among those that are remembered
   std::vector<Task> tasks_;                       // in the order of pairs, then of parts
   std::vector<std::uint32_t> schedule_, sorted_;  // of tasks
   std::vector<std::uint32_t> order_, sweeps_;
   std::size_t begun_ = 0;  // of schedule_
-  Step now_ = -1;
   std::int64_t lead_ = 0;  // of the work on what begins
 };
 

@@ -43,9 +43,9 @@ void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t
     PartPair pair;
     if (is_half_space(record.bodies.b)) pair.half = places.half_space(record.bodies.b);
     for (std::uint32_t i = 0; i < parts_a; ++i) {
-      places.place_sphere(record.bodies.a, i, pair.a);
+      places.place(record.bodies.a, i, pair.a);
       for (std::uint32_t j = 0; j < parts_b; ++j) {
-        places.place_sphere(record.bodies.b, j, pair.b);
+        places.place(record.bodies.b, j, pair.b);
         Task& task = tasks_.emplace_back();
         task.record = index, task.part_a = i, task.part_b = j;
         task.simple = pair.simple();
@@ -110,7 +110,6 @@ void PairScheduler::decide(Task& task, CachedPair& record, std::uint64_t most,
   Verdict verdict;
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
-    if (verdict.answer != Answer::yes) PairAnswerer::note_search(task.record, record, verdict.work, scratch);
   } else {
     narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
@@ -134,7 +133,6 @@ void PairScheduler::once_each(std::span<const std::uint32_t> tasks, StepBudget& 
       if (alone ? budget.may_begin() : !budget.late()) piece(task, records[task.record], scratch);
     }
   });
-  give_fronts(records, now_);
   for (const std::uint32_t index : tasks) {
     const Task& task = tasks_[index];
     budget.spend(task.work);
@@ -255,7 +253,6 @@ void PairScheduler::fold(PairCache& records, std::span<const std::uint32_t> open
 
 void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open, Step now) {
   make_tasks(records, open, now);
-  now_ = now;
   sort_tasks(records);
   begun_ = 0;
   lead_ = 0;

@@ -18,7 +18,21 @@ bool is_with_static(const BodyTable& bodies, const BodyPair& pair) noexcept {
 }  // namespace
 
 bool PartPairs::finds(const BodyPair& pair) const noexcept {
-  return search_.any() && !is_half_space(pair.b) && is_with_static(world_.bodies, pair);
+  return any() && !is_half_space(pair.b) && is_with_static(world_.bodies, pair);
+}
+
+// The static bodies whose spheres touch one of these, in ascending order. Until the next call.
+std::span<const BodyIndex> PartPairs::touching(std::span<const FloatSphere> spheres) {
+  spheres_.prepare();
+  touching_.clear();
+  for (const FloatSphere& sphere : spheres) spheres_.append_touching(sphere, touching_);
+  std::sort(touching_.begin(), touching_.end());
+  touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
+  return touching_;
+}
+
+void PartPairs::static_changed(BodyIndex body) {
+  if (any()) spheres_.put(body, world_.bodies.float_part_spheres(body));
 }
 
 // A body whose state is not valid may be where it was.
@@ -32,11 +46,11 @@ void PartPairs::keep_pairs_of(BodyIndex body, const PairCache& before, std::vect
 }
 
 void PartPairs::find(Step step, const PairCache& before, std::vector<BodyPair>& found) {
-  if (!search_.any()) return;
-  sampler_.sample(step, search_.bodies());
-  for (const BodyIndex body : search_.bodies()) {
+  if (!any()) return;
+  sampler_.sample(step, bodies_);
+  for (const BodyIndex body : bodies_) {
     if (world_.bodies[body].valid) {
-      for (const BodyIndex other : search_.touching(body, world_.bodies))
+      for (const BodyIndex other : touching(world_.bodies.float_part_spheres(body)))
         found.push_back({std::min(body, other), std::max(body, other)});
     } else {
       sampler_.refuse({&body, 1});
@@ -57,11 +71,12 @@ BodyFilter PartPairs::broad_filter(const Body& body) noexcept {
 void PartPairs::search(BodyIndex index, bool wanted) {
   Body& body = world_.bodies[index];
   body.by_parts = wanted;
-  if (wanted) {
-    search_.begin(index, world_.bodies);
-  } else {
-    search_.end(index);
+  const bool begins = !any();
+  if (wanted) bodies_.insert(std::lower_bound(bodies_.begin(), bodies_.end(), index), index);
+  for (BodyIndex i = 0; begins && i < world_.bodies.slots(); ++i) {
+    if (world_.bodies[i].id != kNoBody && world_.bodies[i].is_static) static_changed(i);
   }
+  if (!wanted) end(index);
   broad_.set_filter(body.id, broad_filter(body));
 }
 
@@ -70,10 +85,10 @@ void PartPairs::choose(Step step, const PairCache& pairs) {
   if (!bodies.any_parts() || !world_.any_static || world_.any_continuous || step < choose_at_) return;
   choose_at_ = step + kSteps;
   to_change_.clear();
-  for (const BodyIndex index : search_.bodies()) {
+  for (const BodyIndex index : bodies_) {
     const Body& body = bodies[index];
-    if (body.valid && search_.count_touching(bodies.sphere_around(index)) < kNoLonger * body.parts.size())
-      to_change_.push_back(index);
+    const FloatSphere around = bodies.sphere_around(index);
+    if (body.valid && touching({&around, 1}).size() < kNoLonger * body.parts.size()) to_change_.push_back(index);
   }
   static_pairs_.assign(bodies.slots(), 0);
   for (std::size_t place = 0; place < pairs.size(); ++place) {
@@ -87,17 +102,22 @@ void PartPairs::choose(Step step, const PairCache& pairs) {
   for (const BodyIndex body : to_change_) search(body, !bodies[body].by_parts);
 }
 
+void PartPairs::end(BodyIndex body) noexcept {
+  std::erase(bodies_, body);
+  if (!any()) spheres_ = {};
+}
+
 void PartPairs::choose_none() {
-  while (search_.any()) search(search_.bodies().front(), false);
+  while (any()) search(bodies_.front(), false);
 }
 
 void PartPairs::gone(const Body& body) noexcept {
-  if (body.by_parts) search_.end(body.id.index);
-  if (body.is_static) search_.static_gone(body.id.index);
+  if (body.by_parts) end(body.id.index);
+  if (body.is_static && any()) spheres_.take_away(body.id.index);
 }
 
 std::size_t PartPairs::memory_bytes() const noexcept {
-  return search_.memory_bytes() + bytes_of(static_pairs_) + bytes_of(to_change_);
+  return bytes_of(bodies_, touching_) + spheres_.memory_bytes() + bytes_of(static_pairs_, to_change_);
 }
 
 }  // namespace orchard::runtime::detail

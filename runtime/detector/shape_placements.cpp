@@ -30,18 +30,6 @@ void ShapePlacements::place(BodyIndex body, std::uint32_t part, PlacedPart& plac
   placed_part.shape = nullptr;
 }
 
-void ShapePlacements::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
-  if (is_half_space(body)) {
-    placed_part.shape = nullptr;
-    return;
-  }
-  const Body& of = (*bodies_)[body];
-  const PartRecord& record = of.parts[part];
-  placed_part.shape = &(*shapes_)[record.shape];
-  placed_part.rigid = of.valid;
-  placed_part.be_in(sphere(body, part));
-}
-
 void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
                                    PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) {

@@ -41,8 +41,6 @@ class ShapePlacements {
     return of.one ? 1 : static_cast<std::uint32_t>(of.parts.size());
   }
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
-  // All but the pose: enough for spheres, and a third of the time.
-  void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   BoundingSphere sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
     const Body& of = (*bodies_)[body];
     if (!of.one) return of.part_spheres[part];

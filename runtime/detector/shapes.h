@@ -68,6 +68,20 @@ inline Vec3 nearest_of_segment(const Vec3& p, const Vec3& q, const Vec3& to) noe
   return square > 0 ? p + std::clamp(dot(to - p, d) / square, 0.0, 1.0) * d : p;
 }
 
+// When origin + t way, 0 <= t <= to, enters a box; infinite: it does not.
+inline double enters_box(const Vec3& low, const Vec3& high, const Vec3& origin, const Vec3& way, double to) noexcept {
+  double from = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (way[i] == 0) {
+      if (origin[i] < low[i] || origin[i] > high[i]) return kInfinity;
+      continue;
+    }
+    const double p = (low[i] - origin[i]) / way[i], q = (high[i] - origin[i]) / way[i];
+    from = std::max(from, std::min(p, q)), to = std::min(to, std::max(p, q));
+  }
+  return from <= to ? from : kInfinity;
+}
+
 // `local` in `body`: each may be off by kRigidTolerance, and together by more. What is not rigid stays so.
 Pose placed(const Pose& body, const Pose& local) noexcept;
 

@@ -69,26 +69,11 @@ struct NearestOfBox {  // in the box's frame at scale 1
   double distance = 0;
 };
 
-// The first place of the segment from p to q in a solid box, as a part of it, or beyond 1.
-double segment_enters_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
-  double from = 0, to = 1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double way = q[i] - p[i];
-    if (way == 0) {
-      if (std::fabs(p[i]) > half[i]) return kInfinity;
-      continue;
-    }
-    const double one = (-half[i] - p[i]) / way, other = (half[i] - p[i]) / way;
-    from = std::max(from, std::min(one, other)), to = std::min(to, std::max(one, other));
-  }
-  return from <= to ? from : kInfinity;
-}
-
 // Of a solid box and the segment from p to q. The square of the distance along the segment is convex, and quadratic
 // between the places where a coordinate enters or leaves the box.
 NearestOfBox nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
   const Vec3 way = q - p;
-  if (const double inside = segment_enters_box(half, p, q); inside <= 1) {
+  if (const double inside = enters_box(-half, half, p, way, 1); inside <= 1) {
     const Vec3 at = point_of(p, q, inside);
     return {at, at, 0};
   }

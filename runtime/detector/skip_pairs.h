@@ -14,8 +14,8 @@ class ActivePairs {
   PairCache::Known& known(std::size_t i) const noexcept { return cache_->known(active_[i]); }
   // Precondition: PairMatcher::cached() has begun it.
   CachedPair& cached(std::size_t i) const noexcept { return (*cache_)[known(i).record]; }
-  // Whether a certain "no" at the next step would change what is remembered; whether the pair's end would be noticed.
-  void keep(std::size_t i, bool busy, bool held) const noexcept { cache_->tell(active_[i], busy, held); }
+  // Whether a certain "no" at the next step would change what is remembered, or the pair's end would be noticed.
+  void tell(std::size_t i, bool busy) const noexcept { cache_->tell(active_[i], busy); }
   // For loops that end at `end`: what the next ones need is on its way from memory.
   ORCHARD_INLINE void prefetch(std::size_t i, std::size_t end) const noexcept {
     constexpr std::size_t kKnown = 12, kCached = 8, kBodies = 6;  // places ahead
@@ -43,7 +43,7 @@ class PairSkipper {
   bool needs_answer(CachedPair& pair, Step step, bool interrupted, bool& over) const noexcept;
   // After an answer: how far the two may move before they have to be asked about again.
   void keep_clearance(PairCache::Known& known, const CachedPair& pair) const noexcept;
-  std::size_t memory_bytes() const noexcept { return bytes_of(active_) + bytes_of(active_of_job_); }
+  std::size_t memory_bytes() const noexcept { return bytes_of(active_, active_of_job_); }
 
  private:
   RelativePlacement relative_placement(const BodyPair& pair) const noexcept;

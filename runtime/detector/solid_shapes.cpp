@@ -15,20 +15,6 @@ Vec3 into(const Pose& pose, const Vec3& v) noexcept {  // a vector in the shape'
 
 Vec3 point_into(const Pose& pose, const Vec3& p) noexcept { return into(pose, p - Vec3(pose.translation)); }
 
-// When a ray enters a box around the origin; infinite: it does not.
-double ray_enters_box(const Vec3& half, const Vec3& origin, const Vec3& way) noexcept {
-  double from = 0, to = kInfinity;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (way[i] == 0) {
-      if (std::fabs(origin[i]) > half[i]) return kInfinity;
-      continue;
-    }
-    const double p = (-half[i] - origin[i]) / way[i], q = (half[i] - origin[i]) / way[i];
-    from = std::max(from, std::min(p, q)), to = std::min(to, std::max(p, q));
-  }
-  return from <= to ? from : kInfinity;
-}
-
 // The smaller root of a t^2 + 2 b t + c, if it is not below 0; else infinite.
 double first_root(double a, double b, double c) noexcept {
   const double h = b * b - a * c;
@@ -60,7 +46,7 @@ double enters_capsule(const Vec3& p, const Vec3& q, double radius, const Vec3& o
 std::optional<RayHit> cast_ray(const Shape& shape, const Pose& pose, const Ray& ray) noexcept {
   if (shape.kind == ShapeKind::tree) return cast_ray(shape.tree, pose, ray.origin, ray.direction, ray.longest);
   const Vec3 origin = point_into(pose, ray.origin), way = into(pose, ray.direction);
-  const double along = shape.kind == ShapeKind::box ? ray_enters_box(shape.p, origin, way)
+  const double along = shape.kind == ShapeKind::box ? enters_box(-shape.p, shape.p, origin, way, kInfinity)
                                                     : enters_capsule(shape.p, shape.q, shape.radius, origin, way);
   if (!(along <= ray.longest) || along == kInfinity) return std::nullopt;
   return RayHit{along, Vec3(ray.origin) + along * Vec3(ray.direction), kNoTriangle};

@@ -62,7 +62,7 @@ void StaticSpheres::put(BodyIndex body, std::span<const FloatSphere> spheres) {
 }
 
 // By the coordinate in which they differ most, the radius being one: large ones stay with large ones. In parts of whole
-// groups, and of groups of groups.
+// groups.
 void StaticSpheres::split(std::span<Sphere> spheres) {
   if (spheres.size() <= kGroup) return;
   constexpr std::array kCoordinates = {&FloatSphere::x, &FloatSphere::y, &FloatSphere::z, &FloatSphere::radius};
@@ -96,19 +96,15 @@ void StaticSpheres::enter(std::size_t place) {
   for (std::size_t d = 0; d < 4; ++d) group.at[d][lane] = at[d];
   group.body[lane] = sphere.body, group.version[lane] = sphere.version;
   const Box box = box_around(sphere.at);
-  std::size_t child = place / kGroup;
-  for (auto& boxes : levels_) {
-    const std::size_t at_lane = child % kGroup;
-    child /= kGroup;
-    if (child == boxes.size()) {
-      BoxGroup& added = boxes.emplace_back();
-      for (std::size_t d = 0; d < 3; ++d) added.low[d].fill(kNothing), added.high[d].fill(kNothing);
-    }
-    for (std::size_t d = 0; d < 3; ++d) {
-      float &low = boxes[child].low[d][at_lane], &high = boxes[child].high[d][at_lane];
-      low = low <= box.low[d] ? low : box.low[d];
-      high = high >= box.high[d] ? high : box.high[d];
-    }
+  const std::size_t index = place / kGroup, in_boxes = index % kGroup;
+  if (index / kGroup == boxes_.size()) {
+    BoxGroup& added = boxes_.emplace_back();
+    for (std::size_t d = 0; d < 3; ++d) added.low[d].fill(kNothing), added.high[d].fill(kNothing);
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    float &low = boxes_.back().low[d][in_boxes], &high = boxes_.back().high[d][in_boxes];
+    low = low <= box.low[d] ? low : box.low[d];
+    high = high >= box.high[d] ? high : box.high[d];
   }
 }
 
@@ -116,7 +112,7 @@ void StaticSpheres::sort() {
   std::erase_if(spheres_, [this](const Sphere& sphere) { return !is_there(sphere.body, sphere.version); });
   split(spheres_);
   groups_.clear();
-  for (auto& boxes : levels_) boxes.clear();
+  boxes_.clear();
   sorted_ = spheres_.size();
   gone_ = entered_ = 0;
 }
@@ -143,42 +139,23 @@ ORCHARD_INLINE std::uint32_t StaticSpheres::touching(const SphereGroup& spheres,
   });
 }
 
-template <std::size_t kLevel>
-ORCHARD_INLINE void StaticSpheres::append_in(std::size_t group, const FloatSphere& sphere, const Box& box,
-                                             std::vector<BodyIndex>& bodies) const {
-  for_lanes(meeting(levels_[kLevel][group], box), [&](std::size_t lane) ORCHARD_INLINE_LAMBDA {
-    const std::size_t child = group * kGroup + lane;
-    if constexpr (kLevel > 0) {
-      append_in<kLevel - 1>(child, sphere, box, bodies);
-    } else {
-      const SphereGroup& spheres = groups_[child];
+ORCHARD_INLINE void StaticSpheres::append_all(const FloatSphere& sphere, std::vector<BodyIndex>& bodies) const {
+  const Box box = box_around(sphere);
+  for (std::size_t first = 0; first < boxes_.size(); ++first) {
+    for_lanes(meeting(boxes_[first], box), [&](std::size_t lane) ORCHARD_INLINE_LAMBDA {
+      const SphereGroup& spheres = groups_[first * kGroup + lane];
       for_lanes(touching(spheres, sphere), [&](std::size_t hit) ORCHARD_INLINE_LAMBDA {
         const BodyIndex body = spheres.body[hit];
         if (is_there(body, spheres.version[hit])) bodies.push_back(body);
       });
-    }
-  });
-}
-
-// From the first level on that has one group, or the last one.
-template <std::size_t kLevel>
-ORCHARD_INLINE void StaticSpheres::append_from(const FloatSphere& sphere, const Box& box,
-                                               std::vector<BodyIndex>& bodies) const {
-  if constexpr (kLevel + 1 < kLevels) {
-    if (levels_[kLevel].size() > 1) return append_from<kLevel + 1>(sphere, box, bodies);
+    });
   }
-  for (std::size_t group = 0; group < levels_[kLevel].size(); ++group) append_in<kLevel>(group, sphere, box, bodies);
 }
 
 void StaticSpheres::append_touching(const FloatSphere& sphere, std::vector<BodyIndex>& bodies) const {
-  const Box box = box_around(sphere);
-  per_machine([&]() ORCHARD_INLINE_LAMBDA { append_from<0>(sphere, box, bodies); });
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { append_all(sphere, bodies); });
 }
 
-std::size_t StaticSpheres::memory_bytes() const noexcept {
-  std::size_t bytes = bytes_of(places_) + bytes_of(spheres_) + bytes_of(groups_);
-  for (const auto& boxes : levels_) bytes += bytes_of(boxes);
-  return bytes;
-}
+std::size_t StaticSpheres::memory_bytes() const noexcept { return bytes_of(places_, spheres_, groups_, boxes_); }
 
 }  // namespace orchard::runtime::detail

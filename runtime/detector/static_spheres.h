@@ -4,7 +4,7 @@
 namespace orchard::runtime::detail {
 
 // The spheres of static bodies' parts, for queries at each step: which of them does another sphere touch: groups of
-// neighbours in boxes, and groups of groups. What changes is added at the end, and all is sorted again once that is
+// neighbours in boxes. What changes is added at the end, and all is sorted again once that is
 // much.
 class StaticSpheres {
  public:
@@ -13,13 +13,14 @@ class StaticSpheres {
   void take_away(BodyIndex body) noexcept;
   // Before append_touching(), if anything has changed. O(n log n) once a part of n spheres is new or gone.
   void prepare();
-  // The bodies of spheres that touch it; one may come up for each of its spheres. O(log n) groups, and what they hold.
+  // The bodies of spheres that touch it; one may come up for each of its spheres. O(n / 32), and the groups in its
+  // reach.
   void append_touching(const FloatSphere& sphere, std::vector<BodyIndex>& bodies) const;
   std::size_t size() const noexcept { return spheres_.size(); }  // and some that are gone
   std::size_t memory_bytes() const noexcept;
 
  private:
-  static constexpr std::size_t kGroup = 32, kLevels = 5;  // kGroup^(kLevels + 1) spheres, and more in more groups
+  static constexpr std::size_t kGroup = 32;
   struct Sphere {
     FloatSphere at;
     BodyIndex body;
@@ -49,16 +50,12 @@ class StaticSpheres {
   // Lanes, as bits: whose boxes meet this one, whose spheres touch this one.
   static std::uint32_t meeting(const BoxGroup& boxes, const Box& box) noexcept;
   static std::uint32_t touching(const SphereGroup& spheres, const FloatSphere& sphere) noexcept;
-  template <std::size_t kLevel>
-  void append_in(std::size_t group, const FloatSphere& sphere, const Box& box, std::vector<BodyIndex>& bodies) const;
-  template <std::size_t kLevel>
-  void append_from(const FloatSphere& sphere, const Box& box, std::vector<BodyIndex>& bodies) const;
+  void append_all(const FloatSphere& sphere, std::vector<BodyIndex>& bodies) const;
 
-  std::vector<Place> places_;        // by body
-  std::vector<Sphere> spheres_;      // in the order of groups
-  std::vector<SphereGroup> groups_;  // of spheres_
-  // Boxes around groups_, then around groups of those before.
-  std::array<std::vector<BoxGroup>, kLevels> levels_;
+  std::vector<Place> places_;                        // by body
+  std::vector<Sphere> spheres_;                      // in the order of groups
+  std::vector<SphereGroup> groups_;                  // of spheres_
+  std::vector<BoxGroup> boxes_;                      // around groups_
   std::size_t gone_ = 0, sorted_ = 0, entered_ = 0;  // of spheres_
 };
 

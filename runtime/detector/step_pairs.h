@@ -24,8 +24,7 @@ class StepPairs {
   }
   std::span<const BodyPair> all() const noexcept { return all_; }
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(with_planes) + bytes_of(kept) + bytes_of(by_parts) + bytes_of(with_kept_) + bytes_of(with_parts_) +
-           bytes_of(with_all_);
+    return bytes_of(with_planes, kept, by_parts, with_kept_, with_parts_, with_all_);
   }
 
  private:

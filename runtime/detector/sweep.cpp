@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "math/vector_functions.h"
+
 namespace orchard::runtime::detail {
 namespace {
 
@@ -12,10 +14,6 @@ constexpr double kSkipGrowth = 4;    // and times that, each time,
 constexpr double kMinSkip = 1e-9;    // but so much of the way at least,
 constexpr double kMaxSkip = 1.0 / 64;    // and so much of it at most the first time
 constexpr double kSpeedRounding = 1e-9;  // of speeds
-
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 // The tree of a segment has its ends rounded to floats.
 double margin_of(const PlacedPart& part) noexcept {

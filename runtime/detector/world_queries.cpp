@@ -26,21 +26,6 @@ double distance_to(const Vec3& low, const Vec3& high, const Vec3& point) noexcep
   return length(way);
 }
 
-// When a ray enters a box, in lengths of its direction; infinite: it does not.
-double enters(const Vec3& low, const Vec3& high, const Ray& ray) noexcept {
-  double from = 0, to = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double at = ray.origin[i], way = ray.direction[i];
-    if (way == 0) {
-      if (at < low[i] || at > high[i]) return std::numeric_limits<double>::infinity();
-      continue;
-    }
-    const double p = (low[i] - at) / way, q = (high[i] - at) / way;
-    from = std::max(from, std::min(p, q)), to = std::min(to, std::max(p, q));
-  }
-  return from <= to ? from : std::numeric_limits<double>::infinity();
-}
-
 bool is_better(const WorldPoint& a, const WorldPoint& b) noexcept {
   return std::tie(a.distance, a.body.index, a.part) < std::tie(b.distance, b.body.index, b.part);
 }
@@ -170,7 +155,8 @@ std::optional<WorldPoint> WorldQueries::cast_ray(const World& world, const Ray& 
   world.halves.each([&](const Body& body, const HalfSpace& half) {
     if (counts(body, filter)) offer(body, 0, detail::cast_ray(half, ray));
   });
-  walk([&](const Vec3& low, const Vec3& high) { return enters(low, high, ray); }, most,
+  walk([&](const Vec3& low, const Vec3& high) { return enters_box(low, high, ray.origin, ray.direction, kInfinity); },
+       most,
        [&](const Part& part) {
          const Body& body = world.bodies[part.body];
          if (!counts(body, filter)) return;

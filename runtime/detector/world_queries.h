@@ -13,10 +13,7 @@ class WorldQueries {
   std::optional<WorldPoint> nearest(const World& world, const Vec3& point, double limit, const QueryFilter& filter);
   std::span<const BodyId> touching_sphere(const World& world, const Vec3& center, double radius,
                                           const QueryFilter& filter);
-  std::size_t memory_bytes() const noexcept {
-    return bytes_of(parts_) + bytes_of(nodes_) + bytes_of(poses_) + bytes_of(asked_) + bytes_of(answers_) +
-           bytes_of(found_);
-  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(parts_, nodes_, poses_, asked_, answers_, found_); }
 
  private:
   struct Part {

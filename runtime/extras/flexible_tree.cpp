@@ -233,58 +233,62 @@ double FlexibleTree::max_of_block(std::uint32_t index) const noexcept {
   return largest;
 }
 
-void FlexibleTree::refit_spheres() noexcept {
-  for (std::size_t level = dirty_spheres_.size(); level-- > 0;) {
-    for (const std::uint32_t index : dirty_spheres_[level]) {
-      Node& node = spheres_[index];
+// From the lowest level up: by how much each dirty node is enlarged, and its parent then, if that has changed.
+template <typename EnlargedBy, typename Write>
+void FlexibleTree::refit(std::vector<Node>& nodes, Levels& dirty, const EnlargedBy& enlarged_by,
+                         const Write& write) noexcept {
+  for (std::size_t level = dirty.size(); level-- > 0;) {
+    for (const std::uint32_t index : dirty[level]) {
+      Node& node = nodes[index];
       node.dirty = false;
-      SiblingBlock& block = tree_.blocks[index / kBlockWidth];
-      const std::uint32_t lane = index % kBlockWidth, link = block.link[lane];
-      double enlarged = 0;
-      if (link & kLeafBit) {
-        enlarged = max_of_leaf(link);
-        enlarged_ += enlarged - node.enlarged;
-      } else {
-        const Children children = children_of(tree_.branching, link);
-        for (std::uint32_t i = 0; i < children.count; ++i) {
-          enlarged = std::max(enlarged, spheres_[children.first * kBlockWidth + i].enlarged);
-        }
-      }
-      const bool changed = enlarged != node.enlarged;
-      node.enlarged = enlarged;
-      if (index != 0) block.radius[lane] = raised(node.radius, enlarged);
-      if (changed && node.parent != kNone) mark(spheres_, dirty_spheres_, node.parent);
+      const double before = std::exchange(node.enlarged, enlarged_by(index));
+      write(index, before);
+      if (node.enlarged != before && node.parent != kNone) mark(nodes, dirty, node.parent);
     }
-    dirty_spheres_[level].clear();
+    dirty[level].clear();
   }
+}
+
+void FlexibleTree::refit_spheres() noexcept {
+  const auto link_of = [this](std::uint32_t index) {
+    return tree_.blocks[index / kBlockWidth].link[index % kBlockWidth];
+  };
+  const auto enlarged_by = [&](std::uint32_t index) {
+    if (link_of(index) & kLeafBit) return max_of_leaf(link_of(index));
+    const Children children = children_of(tree_.branching, link_of(index));
+    double enlarged = 0;
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      enlarged = std::max(enlarged, spheres_[children.first * kBlockWidth + i].enlarged);
+    }
+    return enlarged;
+  };
+  refit(spheres_, dirty_spheres_, enlarged_by, [&](std::uint32_t index, double before) {
+    const Node& node = spheres_[index];
+    if (link_of(index) & kLeafBit) enlarged_ += node.enlarged - before;
+    if (index != 0) tree_.blocks[index / kBlockWidth].radius[index % kBlockWidth] = raised(node.radius, node.enlarged);
+  });
 }
 
 void FlexibleTree::refit_obb_nodes() noexcept {
   constexpr double kNormalLength = 1 + 2e-6;  // of a ball slab's normals, at most
-  for (std::size_t level = dirty_slabs_.size(); level-- > 0;) {
-    for (const std::uint32_t index : dirty_slabs_[level]) {
-      Node& node = obb_nodes_[index];
-      node.dirty = false;
-      ObbNodeBlock& block = tree_.obb_nodes[index / kBlockWidth];
-      const std::uint32_t lane = index % kBlockWidth, child = block.child[lane];
-      double enlarged = 0;
-      if (child & kLeafBit) {
-        enlarged = max_of_block(child & ~kLeafBit);
-      } else {
-        for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-          enlarged = std::max(enlarged, obb_nodes_[child * kBlockWidth + i].enlarged);
-        }
-      }
-      const bool changed = enlarged != node.enlarged;
-      node.enlarged = enlarged;
-      block.radius[lane] = raised(node.radius, enlarged);
-      block.height[lane] = raised(node.sides[0], enlarged * kNormalLength);
-      block.width[lane] = raised(node.sides[1], enlarged * kNormalLength);
-      block.length[lane] = raised(node.sides[2], enlarged * kNormalLength);
-      if (changed && node.parent != kNone) mark(obb_nodes_, dirty_slabs_, node.parent);
+  const auto enlarged_by = [this](std::uint32_t index) {
+    const std::uint32_t child = tree_.obb_nodes[index / kBlockWidth].child[index % kBlockWidth];
+    if (child & kLeafBit) return max_of_block(child & ~kLeafBit);
+    double enlarged = 0;
+    for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+      enlarged = std::max(enlarged, obb_nodes_[child * kBlockWidth + i].enlarged);
     }
-    dirty_slabs_[level].clear();
-  }
+    return enlarged;
+  };
+  refit(obb_nodes_, dirty_slabs_, enlarged_by, [this](std::uint32_t index, double) {
+    const Node& node = obb_nodes_[index];
+    ObbNodeBlock& block = tree_.obb_nodes[index / kBlockWidth];
+    const std::uint32_t lane = index % kBlockWidth;
+    block.radius[lane] = raised(node.radius, node.enlarged);
+    block.height[lane] = raised(node.sides[0], node.enlarged * kNormalLength);
+    block.width[lane] = raised(node.sides[1], node.enlarged * kNormalLength);
+    block.length[lane] = raised(node.sides[2], node.enlarged * kNormalLength);
+  });
 }
 
 }  // namespace orchard::runtime

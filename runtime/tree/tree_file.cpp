@@ -188,31 +188,22 @@ LoadStatus unless_out_of_memory(const Work& work) noexcept {
 }  // namespace
 
 const char* message(LoadStatus status) noexcept {
-  switch (status) {
-    case LoadStatus::ok:
-      return "the tree was loaded";
-    case LoadStatus::cannot_open:
-      return "the file cannot be opened";
-    case LoadStatus::read_failed:
-      return "the file could not be read to its end";
-    case LoadStatus::truncated:
-      return "the file is shorter than its header says: copy or build it again";
-    case LoadStatus::bad_magic:
-      return "this is not an .orchard file";
-    case LoadStatus::version_newer:
-      return "the file was written by a newer version of orchard";
-    case LoadStatus::version_older:
-      return "the file was written by an older version of orchard: build it again";
-    case LoadStatus::cannot_map:
-      return "the file cannot be used in place here: load it instead";
-    case LoadStatus::checksum_mismatch:
-      return "the file was altered after it was written: its checksum does not match";
-    case LoadStatus::invalid_structure:
-      return "the file's contents are not a valid sphere-tree";
-    case LoadStatus::out_of_memory:
-      return "there is not enough memory for the tree";
-  }
-  return "unknown status";
+  constexpr std::array kMessages = {
+      "the tree was loaded",
+      "the file cannot be opened",
+      "the file could not be read to its end",
+      "the file is shorter than its header says: copy or build it again",
+      "this is not an .orchard file",
+      "the file was written by a newer version of orchard",
+      "the file was written by an older version of orchard: build it again",
+      "the file was altered after it was written: its checksum does not match",
+      "the file's contents are not a valid sphere-tree",
+      "there is not enough memory for the tree",
+      "the file cannot be used in place here: load it instead",
+  };
+  static_assert(kMessages.size() == static_cast<std::size_t>(LoadStatus::cannot_map) + 1);
+  const auto index = static_cast<std::size_t>(status);
+  return index < kMessages.size() ? kMessages[index] : "unknown status";
 }
 
 std::vector<std::byte> serialize(const TreeView& tree) {

@@ -144,12 +144,13 @@ class LevelStart {
       const bool is_unused = balls_[b].samples.empty() && balls_[b].radius < 0;
       (is_unused ? unused : used).push_back(b);
     }
-    const auto count = static_cast<std::ptrdiff_t>(std::min(unused.size(), used.size()));
-    std::partial_sort(used.begin(), used.begin() + count, used.end(), [&](Index a, Index b) {
-      const double of_a = balls_[a].looseness(), of_b = balls_[b].looseness();
-      return of_a > of_b || (of_a == of_b && a < b);
-    });
-    for (std::ptrdiff_t k = 0; k < count; ++k) share(balls_[used[k]], balls_[unused[k]]);
+    const std::size_t count = std::min(unused.size(), used.size());
+    std::partial_sort(used.begin(), used.begin() + static_cast<std::ptrdiff_t>(count), used.end(),
+                      [&](Index a, Index b) {
+                        const double of_a = balls_[a].looseness(), of_b = balls_[b].looseness();
+                        return of_a > of_b || (of_a == of_b && a < b);
+                      });
+    for (std::size_t k = 0; k < count; ++k) share(balls_[used[k]], balls_[unused[k]]);
   }
 
   void share(const LevelBall& loosest, LevelBall& unused) {
@@ -183,10 +184,10 @@ class LevelStart {
     tbb::parallel_for(Index{0}, samples_.size(), [&](Index s) {
       double min = kInfinity;
       for (Index r : regions_.regions_of(s)) {
-        const auto& [balls, centers, center_distances] = balls_in[r];
-        centers.each_squared_distance(samples_.points[s], [&](std::size_t k, double squared) {
-          if (is_below(min, squared, center_distances[k]))
-            min = std::sqrt(squared) + center_distances[k], owner[s] = balls[k];
+        const RegionBalls& in = balls_in[r];
+        in.centers.each_squared_distance(samples_.points[s], [&](std::size_t k, double squared) {
+          if (is_below(min, squared, in.center_distances[k]))
+            min = std::sqrt(squared) + in.center_distances[k], owner[s] = in.balls[k];
         });
       }
     });

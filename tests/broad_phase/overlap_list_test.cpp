@@ -86,6 +86,24 @@ TEST(PackedAabb, IsTheWholeBoxUpToFourCells) {
   }
 }
 
+TEST(SweptGrid, SharesNoLineBetweenCellsOfABox) {
+  constexpr auto kMaxOffset = static_cast<int>(kMaxCellsPerAxis) - 1;
+  for (unsigned bits = kMinLineBits; bits <= kMaxLineBits; ++bits) {
+    const std::array<std::uint32_t, 3> factors = line_factors(bits);
+    const std::uint32_t mask = (1u << bits) - 1;
+    for (int z = 0; z <= kMaxOffset; ++z) {
+      for (int y = -kMaxOffset; y <= kMaxOffset; ++y) {
+        for (int x = -kMaxOffset; x <= kMaxOffset; ++x) {
+          const std::uint32_t line = static_cast<std::uint32_t>(x) * factors[0] +
+                                     static_cast<std::uint32_t>(y) * factors[1] +
+                                     static_cast<std::uint32_t>(z) * factors[2];
+          ASSERT_EQ((line & mask) == 0, x == 0 && y == 0 && z == 0) << bits;
+        }
+      }
+    }
+  }
+}
+
 // As many lines are read for each entry, however long and thin the world is: a rebuild takes time in proportion.
 TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   constexpr std::size_t kBodies = 320 * kBlock;
@@ -93,8 +111,10 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   for (const std::array<double, 3>& cells : shapes) {
     test::Draw draw(1);
     SweptGrid grid;
-    grid.reset(kBodies / 2, {});
-    SweptGrid::Queue queue;
+    grid.begin_reset(kBodies / 2);
+    grid.empty_parts({});
+    SweptGrid::Batch batch;
+    GridCounts counts;
     std::vector<PackedAabb> boxes(kBodies);
     std::vector<BodyPair> pairs;
     for (BodyIndex begin = 0; begin < kBodies; begin += kBlock) {
@@ -110,10 +130,11 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
         boxes[ids[i]] = PackedAabb(box);
         block.set(i, box);
       }
-      grid.insert(queue, ids, block, boxes, pairs);
+      for (std::size_t first = 0; first < kBlock; first += SweptGrid::kBatch) {
+        grid.encode(batch, std::span(ids).subspan(first, SweptGrid::kBatch), block, first);
+        grid.insert(batch, boxes, pairs, counts);
+      }
     }
-    grid.finish(queue, boxes, pairs);
-    const GridCounts counts = grid.counts();
     EXPECT_LT(static_cast<double>(counts.lines_read), 1.5 * static_cast<double>(counts.entries)) << cells[0];
   }
 }

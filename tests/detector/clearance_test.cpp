@@ -178,35 +178,6 @@ TEST(Clearances, LastWhileBodiesSlideAlongEachOther) {
   EXPECT_EQ(frame.events[0].a, lower);
 }
 
-// A front changes what a search costs, not what it finds.
-TEST(Fronts, OfTheDetectorsPoolChangeNoEvent) {
-  const test::Scene scene = test::chain(60, 60, 7 + orchard::test::first_seed());
-  std::vector<std::pair<PairChange, std::size_t>> without;
-  std::uint64_t work_without = 0;
-  std::size_t memory_without = 0;
-  for (const std::size_t fronts : {0u, 3u, 64u}) {
-    DetectorOptions options;
-    options.max_fronts = fronts;
-    test::SceneRun run(scene, options);
-    std::vector<std::pair<PairChange, std::size_t>> all;
-    std::uint64_t work = 0;
-    for (int step = 0; step < scene.steps; ++step) {
-      const Frame frame = run.step(step);
-      work += frame.work;
-      for (const PairEvent& event : frame.events) all.push_back({event.change, run.numbers(event).first});
-    }
-    const std::size_t memory = run.detector().memory_bytes();
-    if (fronts == 0) {
-      without = all, work_without = work, memory_without = memory;
-      continue;
-    }
-    EXPECT_EQ(all, without);
-    EXPECT_LT(work, work_without);
-    EXPECT_LE(memory, memory_without + fronts * (sizeof(PairFront) + 64));
-    EXPECT_GE(memory, memory_without + sizeof(PairFront));
-  }
-}
-
 // By bisection: the distance of a point on the segment from the box is convex.
 TEST(RoundAgainstBox, TouchesWhereTheSegmentComesNearEnough) {
   std::size_t near = 0;

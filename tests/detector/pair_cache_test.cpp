@@ -66,7 +66,7 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
             EXPECT_EQ(known.clearance.changes, model[known.pair].mark);
             return lasts(known.pair);
           },
-          generation_of, [](const BodyPair&) {});
+          generation_of);
       ASSERT_EQ(gone, gone_expected);
       ASSERT_EQ(table.size(), expected.size());
       ASSERT_EQ(table.kept().size(), kept.size());
@@ -78,7 +78,7 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
         ASSERT_EQ(of.pair, pair);
         ASSERT_EQ(of.generations, known.generation);
         ASSERT_EQ(of.record != kNoRecord, known.record);
-        ASSERT_EQ(table.is_held(place), known.held);
+        ASSERT_EQ(table.busy(place), known.held);
         if (known.mark != 0) {
           ASSERT_EQ(of.clearance.changes, known.mark);
         }
@@ -88,13 +88,13 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
         if (!known.record && draw.bits() % 2 == 0) {
           table.take(place);
           ASSERT_FALSE(table.is_begun(of));
-          ASSERT_EQ(table.begin(of).front, kNoFront);
+          ASSERT_EQ(table.begin(of).answered, -1);
           known.record = true;
         }
         known.mark = of.clearance.changes = ++marks;
         if (known.record) table[of.record].waited = known.mark;
         known.held = known.record && draw.bits() % 2 == 0;
-        table.tell(place++, false, known.held);
+        table.tell(place++, known.held);
       }
       model = expected;
     }

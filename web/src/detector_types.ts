@@ -59,7 +59,6 @@ export interface DetectorOptions {
   watch?: boolean;
   stepsToEnd?: number;
   maxUnfinished?: number;
-  maxFronts?: number;
   /** A call of step() ends early once it has so many events. */
   maxEvents?: number;
 }

@@ -74,20 +74,6 @@ using MotionSource = std::function<void(double time, std::span<const BodyIndex> 
 // Static bodies use indices, too. A body without a value is refused.
 MotionSource values_of(const std::vector<Motion>& values);
 
-// Motions as arrays of floats, by BodyIndex, that hold at the time passed to advance(). They need a third of the memory
-// of Motion values, which matters because an update of all windows reads all of them. BroadPhase::reading() reads them
-// without a callback. The arrays of positions need an element for each body; a body beyond the end of `x` is refused.
-// Each other array has the same length or is empty. If it is empty, all its values are 0; if `expiry` is empty, bounds
-// never expire. Rounding to float makes positions inexact. If the application keeps doubles and rounds them when it
-// stores them here, set position_slack = float_slack(). If it keeps its state in floats, use the M and drift that
-// kept_in_float() returns (motion_helpers.h).
-struct MotionArrays {
-  std::span<const float> x{}, y{}, z{};     // Positions.
-  std::span<const float> vx{}, vy{}, vz{};  // Velocities.
-  std::span<const float> radius{}, acceleration{}, drift{};
-  std::span<const double> expiry{};
-};
-
 // A motion that does not keep the bounds that were given before for the same body: the bounds of `bound`, which held
 // from bound_time on, do not allow the motion `given` at `time`.
 struct MotionBoundViolation {
@@ -205,8 +191,6 @@ class BroadPhase {
   // Constructs a broad phase that keeps an event for each near pair, at the first step at which the bounds of the two
   // can touch. Without a source there can be only static bodies.
   explicit BroadPhase(MotionSource source, const BroadPhaseOptions& options = {});
-  // Does the same with motions in arrays. `arrays` must outlive the broad phase; its spans may change between calls.
-  static BroadPhase reading(const MotionArrays& arrays, const BroadPhaseOptions& options = {});
   BroadPhase(BroadPhase&&) noexcept;
   BroadPhase& operator=(BroadPhase&&) noexcept;
   ~BroadPhase();
@@ -278,8 +262,7 @@ class BroadPhase {
   bool may_change() const noexcept;
   friend BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options,
                                              const detail::MakeMethod& make);
-  BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make,
-             const MotionArrays* arrays = nullptr);
+  BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make);
   Advance process(double t_now, const Budget* budget, std::uint64_t replay);
   Advance process_steps(double t_now, const Budget* budget, std::uint64_t replay);
   BodyId add_body(std::uint8_t importance, const BodyFilter& filter, const Motion* place);

@@ -38,8 +38,7 @@ struct NearBody {
 // - A query reads the cells that it meets, and asks for the motion of each body whose box it meets.
 // - It also asks for each body that was added or cancelled since the last step, that waits for a budget, or that is as
 //   large as several cells. At the step before many bounds expire together, that may be half of the bodies.
-// - A query that meets more cells than there are bodies, or any query in a world of up to 192 bodies, tests the box of
-//   each body instead of the cells; a ray then asks for the motion of each body.
+// - A query that meets more cells than there are bodies tests the box of each body instead of the cells.
 // With another algorithm, every query asks for the motion of each body.
 //
 // A query is refused if a number is not finite or above kMaxNumber (a ray may be infinitely long), if the direction is
@@ -80,8 +79,7 @@ class BodyQueries {
 
  private:
   struct Line;  // A ray or a segment with a direction of length 1.
-  struct FirstHit;
-  struct AllHits;
+  struct Hits;
   std::int64_t step() const noexcept;
   bool begin(bool valid);
   std::span<const BodyIndex> new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter);
@@ -90,10 +88,8 @@ class BodyQueries {
   template <typename Touches>
   std::span<const BodyIndex> touching(const Vec3& lower, const Vec3& upper, const QueryFilter& filter,
                                       const Touches& touches);
-  template <typename Hits>
-  void walk(const Line& line, Hits& hits);
+  std::span<const BodyHit> along(const Line& line, const QueryFilter& filter, bool first);
   std::optional<BodyHit> first_along(const Line& line, const QueryFilter& filter);
-  std::span<const BodyHit> all_along(const Line& line, const QueryFilter& filter);
   std::span<const BodyIndex> all_bodies();
 
   BroadPhase* world_;

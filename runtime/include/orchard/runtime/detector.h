@@ -125,9 +125,6 @@ struct DetectorOptions {
   // A call of step() ends once it has at least this number of events, at least 1. So its memory does not grow with the
   // length of a pause: see Frame::steps_left.
   std::size_t max_events = std::size_t{1} << 18;
-  // The maximum number of fronts (PairFront, 43 KB each). Pairs of large trees that stay close and are expensive to
-  // search get one when they come near each other. 0 allows none.
-  std::size_t max_fronts = 64;
   // Runs pairs, poses and events in parallel, and the broad phase's windows if many bodies are in pairs. Results are
   // the same with any executor. Sources and filters are always called in the thread that calls step().
   Executor executor{};

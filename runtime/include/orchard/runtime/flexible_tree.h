@@ -71,6 +71,8 @@ class FlexibleTree {
   void enlarge_for_good();
   void mark(std::vector<Node>& nodes, Levels& levels, std::uint32_t node) noexcept;
   void rewrite(std::uint32_t block) noexcept;
+  template <typename EnlargedBy, typename Write>
+  void refit(std::vector<Node>& nodes, Levels& dirty, const EnlargedBy& enlarged_by, const Write& write) noexcept;
   void refit_spheres() noexcept;
   void refit_obb_nodes() noexcept;
   double max_of_leaf(std::uint32_t link) const noexcept;

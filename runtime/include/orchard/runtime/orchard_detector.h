@@ -62,7 +62,6 @@ typedef struct orchard_detector_options {
   orchard_run_jobs run; /* Null: serial. */
   void* run_context;
   size_t concurrency;
-  size_t max_fronts; /* 43 KB each, for pairs of large trees that stay close. */
   size_t max_events; /* A call ends after a step with this many events; 0: the default. See orchard_frame.steps_left. */
 } orchard_detector_options;
 

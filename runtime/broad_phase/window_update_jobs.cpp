@@ -1,0 +1,120 @@
+#include <new>
+
+#include "broad_phase/window_updates.h"
+#include "execution/guarded.h"
+
+// Window updates of many bodies by jobs.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kChunks = 8;       // in a wave
+constexpr std::size_t kMaxWave = 32768;  // bodies; waves are as large as each other, so that none is a rest
+
+}  // namespace
+
+struct WindowUpdates::GridPart {
+  std::vector<BodyPair> near;
+  GridCounts counts;
+  NearPairs::Outcome outcome;
+};
+
+struct WindowUpdates::Shared {
+  std::array<Chunk, kChunks> chunks;
+  std::array<GridPart, SweptGrid::kParts> parts;
+};
+
+WindowUpdates::WindowUpdates(const Parts& parts, const BroadPhaseOptions& options)
+    : parts_(parts), options_(options), chunk_(std::make_unique<Chunk>()) {}
+WindowUpdates::~WindowUpdates() = default;
+
+std::size_t WindowUpdates::memory_bytes() const noexcept {
+  std::size_t bytes = bytes_of(motions_, near_) + sizeof(Chunk) + chunk_->memory_bytes();
+  if (!shared_) return bytes;
+  bytes += sizeof(Shared);
+  for (const Chunk& chunk : shared_->chunks) bytes += chunk.memory_bytes();
+  for (const GridPart& part : shared_->parts) bytes += bytes_of(part.near) + part.outcome.memory_bytes();
+  return bytes;
+}
+
+// Nothing may be thrown through an executor: lack of memory is told when all jobs have ended.
+template <typename Job>
+void WindowUpdates::run_all(std::size_t count, const Job& job) {
+  if (options_.executor.run == nullptr) {
+    for (std::size_t i = 0; i < count; ++i) job(i);
+    return;
+  }
+  std::array<bool, std::max(kChunks, 1 + SweptGrid::kParts)> done{};
+  auto guarded_job = [&](std::size_t i) { done[i] = guarded([&] { return job(i), true; }, [] { return false; }); };
+  run_jobs(options_.executor, count, guarded_job);
+  if (std::all_of(done.begin(), done.begin() + static_cast<std::ptrdiff_t>(count), [](bool d) { return d; })) return;
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+  throw std::bad_alloc();
+#endif
+}
+
+void WindowUpdates::find_in_part(Step now, std::size_t index) {
+  GridPart& part = shared_->parts[index];
+  part.near.clear();
+  part.counts = {};
+  if (!parts_.boxes.in_order()) parts_.boxes.empty_part(index);  // in the cache where it is used at once
+  for (const Chunk& chunk : shared_->chunks) parts_.boxes.insert(chunk.visits[index].visits(), part.near, part.counts);
+  const BodyPool& pool = parts_.pool;
+  if (pool.asks_user_filter()) return;
+  if (pool.filters_pairs()) {
+    part.counts.pairs -= std::erase_if(part.near, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
+  }
+  parts_.pairs.test_near(now, part.near, part.outcome);
+}
+
+void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> bodies) {
+  const std::size_t share = (bodies.size() + kChunks - 1) / kChunks;
+  const std::size_t size = (share + kBlock - 1) / kBlock * kBlock;
+  Block update = block_at(now, from);
+  run_all(kChunks, [&](std::size_t i) {
+    const std::size_t begin = std::min(bodies.size(), i * size), end = std::min(bodies.size(), begin + size);
+    Block block = update;
+    place_chunk(shared_->chunks[i], block, bodies.subspan(begin, end - begin));
+  });
+  run_all(1 + SweptGrid::kParts, [&](std::size_t i) {  // what a part's job uses is none of what folding changes
+    if (i > 0) return find_in_part(now, i - 1);
+    for (Chunk& chunk : shared_->chunks) fold(chunk);
+  });
+  parts_.boxes.all_parts_emptied();
+  for (GridPart& part : shared_->parts) {
+    parts_.boxes.count(part.counts);
+    if (parts_.pool.asks_user_filter()) {  // it is asked by one thread
+      near_.insert(near_.end(), part.near.begin(), part.near.end());
+    } else {
+      parts_.pairs.take(part.outcome);
+    }
+  }
+  for (Chunk& chunk : shared_->chunks) place_left(chunk, update);
+  test_near(now);
+}
+
+// Whether jobs are worth it: what they have to do is told by the bodies, and by the pairs that are near, of which so
+// many make up for a body. A thread that is alone takes a little longer with jobs unless there are many of either.
+bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
+  constexpr std::size_t kFewer = 4;
+  constexpr double kPairsOfBody = 48;
+  const std::size_t least = options_.min_bodies_for_jobs;
+  const double pairs = parts_.planner.plan().pairs_per_body;
+  const double work = static_cast<double>(bodies) * (1 + pairs / kPairsOfBody);
+  return bodies > 0 && bodies >= least / kFewer && work >= static_cast<double>(least);
+}
+
+void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
+  if (!are_many(bodies.size()) || parts_.pool.motion_bound_check() != nullptr) {
+    parts_.boxes.empty(options_.executor);
+    return update(now, from, bodies);
+  }
+  if (!shared_) shared_ = std::make_unique<Shared>();
+  near_.clear();
+  const std::size_t waves = (bodies.size() + kMaxWave - 1) / kMaxWave;
+  const std::size_t size = (bodies.size() + waves - 1) / waves;
+  for (std::size_t done = 0; done < bodies.size(); done += size) {
+    update_wave(now, from, bodies.subspan(done, std::min(size, bodies.size() - done)));
+  }
+}
+
+}  // namespace orchard::runtime::detail
