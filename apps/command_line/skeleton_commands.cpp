@@ -45,6 +45,9 @@ void add_axis_options(CLI::App& command, MedialCommand& axis, Request& request, 
   add_tuning(command, axis.tuning, false, std::move(measures));
   // These are named like those of the axis' own report, of which nothing is written here.
   command.remove_option(command.get_option("--segment-angle"));
+  command.add_option("--axis", axis.axis,
+                     "Use this axis of the mesh instead of building one, as orchard medial has written it (.ma, .obj, "
+                     ".ply; docs/reference/formats.md). Options that build an axis cannot be given beside it");
   add_report(command, axis.report);
   add_threads(command, request);
   command.add_flag("!--no-views", axis.views, "Do not write files for ParaView");
@@ -77,10 +80,13 @@ void add_skeleton(CLI::App& app, Request& request) {
   command.footer(
       "Examples:\n  orchard skeleton data/faucet.obj -o out/faucet\n"
       "  orchard skeleton data/lamp.obj -o out/lamp --prune erosion=5 --prune ratio=0.5\n"
-      "  orchard skeleton data/lamp.obj -o out/lamp --side outside");
+      "  orchard skeleton data/lamp.obj -o out/lamp --side outside\n"
+      "  orchard skeleton data/lamp.obj -o out/lamp --axis out/lamp/lamp.ma");
   command.callback([&request, &command] {
     request.skeleton.axis.output.run = invocation_of(command, request.typed);
     request.skeleton.axis.given = given_of(command);
+    // The erosion of curves, not that of axes.
+    std::erase(request.skeleton.axis.given, "prune erosion");
     request.run = [&request] { request.exit_code = orchard::apps::skeleton(request.skeleton); };
   });
 }

@@ -54,7 +54,8 @@ json to_json(const SegmentReport& report) {
           {"regions", report.parts.regions},
           {"necks", std::move(necks)},
           {"topology", to_json(report.axis.found)},
-          {"topology_of_solid", to_json(report.axis.wanted)}};
+          {"topology_of_solid", to_json(report.axis.wanted)},
+          {"axis", axis_json(report.command.axis, report.axis)}};
 }
 
 void print(const SegmentReport& report) {

@@ -44,7 +44,7 @@ ExitCode skeleton(const SkeletonCommand& command) {
   const SolidAxis axis = solid_axis(axis_command, bar.callback(), bar);
   const Stopwatch watch;
   const CurveSkeleton found = curve_skeleton(axis.solid.surface, axis.mesh, command.options, bar.callback());
-  StageTimes seconds = axis.build.seconds;
+  StageTimes seconds = axis_seconds(axis);
   seconds.emplace_back("skeleton", watch.seconds());
   bar.clear();
   const SkeletonReport report{

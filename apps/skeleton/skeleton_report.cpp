@@ -72,7 +72,7 @@ Broken broken(const SkeletonReport& report) {
   if (report.found == report.axis.wanted) return result;
   result.what.push_back(
       fmt::format("the skeleton has {}, the solid {}", in_words(report.found), in_words(report.axis.wanted)));
-  result.remedy = topology_remedy(report.axis);
+  result.remedy = topology_remedy(report.command.axis, report.axis);
   return result;
 }
 
@@ -102,11 +102,7 @@ json to_json(const SkeletonReport& report) {
           {"topology", to_json(report.found)},
           {"topology_of_solid", to_json(report.axis.wanted)},
           {"promise", {{"kept", promise.none()}, {"broken", promise.what}}},
-          {"axis",
-           {{"vertices", report.axis.mesh.centers.size()},
-            {"triangles", report.axis.mesh.triangles.size()},
-            {"topology", to_json(report.axis.found)},
-            {"promise", to_json(report.axis.build.promise)}}}};
+          {"axis", axis_json(report.command.axis, report.axis)}};
 }
 
 void print(const SkeletonReport& report) {

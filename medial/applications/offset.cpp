@@ -16,7 +16,10 @@ constexpr double kBoundAccuracy = 0.02;  // tolerances
 // Number of parts in addition to the triangles; they take a minute at most.
 constexpr std::size_t kMaxOffsetParts = 4'000'000;
 constexpr double kMostCells = 2e7;         // of a grid: some ten gigabytes
-constexpr double kClearOfWall = 1 + 1e-3;  // cells that a cavity is deeper than the wall
+constexpr double kClearOfWall = 1 + 1e-3;  // cells that a cavity is deeper than the wall at first
+// Tolerances: by how much a cavity stays deeper than the wall when it is made again with the depth that it had to
+// spare.
+constexpr double kSpareDepth = 0.05;
 
 void require_offset_options(const Surface& surface, const OffsetOptions& options) {
   if (!(options.distance > 0) || !(options.distance <= kMaxCoordinate))
@@ -79,6 +82,19 @@ void require_any(const OffsetMesh& offset) {
                      " by more than the grid's cells show; take a smaller distance or tolerance");
 }
 
+// The cavity of a wall. No place of a triangle is farther from a corner of it than a cell, so that a level one cell
+// deeper keeps the wall. Most meshes need far less: once it is proven what the first one keeps to spare, the second one
+// is less deep by that.
+OffsetMesh cavity_of(const Surface& surface, double wall, double cell, double tolerance, const Progress& progress) {
+  const double depth = wall + kClearOfWall * cell;
+  OffsetMesh first = level_mesh(surface, OffsetSide::inside, depth, cell, tolerance, progress);
+  require_any(first);
+  const double spare = first.min_distance - wall - kSpareDepth * tolerance;
+  if (!(spare > kSpareDepth * tolerance)) return first;
+  OffsetMesh second = level_mesh(surface, OffsetSide::inside, depth - spare, cell, tolerance, progress);
+  return second.min_distance >= wall ? second : first;
+}
+
 }  // namespace
 
 double OffsetMesh::error() const { return std::max(max_distance - distance, distance - min_distance); }
@@ -100,9 +116,7 @@ HollowMesh hollow_mesh(const Surface& surface, double wall, const OffsetOptions&
   const double tolerance = own.tolerance * surface.bounding_box().diagonal().norm(),
                cell = cell_for(own.side, tolerance, wall);
   HollowMesh result;
-  // Every place of a triangle is within one cell of each of its corners.
-  result.cavity = level_mesh(surface, own.side, wall + kClearOfWall * cell, cell, tolerance, progress);
-  require_any(result.cavity);
+  result.cavity = cavity_of(surface, wall, cell, tolerance, progress);
   result.min_wall = result.cavity.min_distance;
   result.mesh = surface.mesh();
   const auto first = static_cast<Index>(result.mesh.vertices.size());

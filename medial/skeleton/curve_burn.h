@@ -15,10 +15,10 @@ struct PrunedCurves {
   std::vector<double> significance;
 };
 
-// Burns the curves of a complex from their ends and removes insignificant ends. `diagonal` is that of the solid, to
-// which options.erosion refers, and `edge_length` is the longest edge of the mesh; both are in mesh units. A vertex
-// disappears together with its only edge, in an elementary collapse. For curves of the axis itself, and for sheets so
-// narrow that they are nearly curves, no width has to be subtracted, so they are kept up to their ends. O(n log n).
+// Burns the curves of a complex from their ends, finds where each curve ends (SkeletonOptions), and removes what is
+// beyond and the branches that are insignificant. `diagonal` is that of the solid, to which options.erosion refers, and
+// `edge_length` the longest edge of the mesh; both in mesh units. A vertex disappears with its only edge, in an
+// elementary collapse. O(n log n).
 PrunedCurves prune_curves(const MedialMesh& mesh, const CellIncidence& at, const SheetBurn& burn,
                           const SkeletonOptions& options, double diagonal, double edge_length);
 

@@ -43,11 +43,7 @@ Vector gradient_of(const std::array<Point, 3>& corners, const std::array<double,
 class SheetBurner {
  public:
   SheetBurner(const MedialMesh& mesh, const CellIncidence& at)
-      : mesh_(mesh),
-        at_(at),
-        sectors_(3 * mesh.triangles.size()),
-        arrivals_(3 * mesh.triangles.size(), kNotBurned),
-        starts_(3 * mesh.triangles.size(), 0) {
+      : mesh_(mesh), at_(at), sectors_(3 * mesh.triangles.size()), arrivals_(3 * mesh.triangles.size(), kNotBurned) {
     result_.isolated.assign(mesh.edges.size(), std::numeric_limits<double>::quiet_NaN());
     result_.edge_alive.assign(mesh.edges.size(), 1);
     result_.triangle_alive.assign(mesh.triangles.size(), 1);
@@ -78,13 +74,7 @@ class SheetBurner {
     return 3 * triangle + (corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2);
   }
   double& arrival(Index corner) { return arrivals_[sectors_.root(corner)]; }
-  // Returns when the fire that is at a corner left the border.
-  double& start(Index corner) { return starts_[sectors_.root(corner)]; }
-  void arrive(Index corner, double time, double started) {
-    if (!(time < arrival(corner))) return;
-    arrival(corner) = time;
-    start(corner) = started;
-  }
+  void arrive(Index corner, double time) { arrival(corner) = std::min(arrival(corner), time); }
 
   // The corners around a vertex that are connected across edges with two triangles burn together.
   void join_sectors() {
@@ -102,8 +92,7 @@ class SheetBurner {
       const auto [a, b] = mesh_.edges[edge];
       if (triangles.empty()) result_.isolated[edge] = 0.5 * (mesh_.radii[a] + mesh_.radii[b]);
       if (triangles.size() != 1) continue;
-      for (const Index vertex : {a, b})
-        arrive(corner_at(triangles[0], vertex), mesh_.radii[vertex], mesh_.radii[vertex]);
+      for (const Index vertex : {a, b}) arrive(corner_at(triangles[0], vertex), mesh_.radii[vertex]);
     }
     for (const Index edge : at_.border_edges()) offer(edge, at_.triangles_at[edge][0]);
   }
@@ -140,9 +129,7 @@ class SheetBurner {
 
   void burn(Index triangle, Index edge) {
     const Index corner = 3 * triangle + kCornersOfSide[side_of(triangle, edge)][2];
-    const auto [a, b] = mesh_.edges[edge];
-    const Index from_a = corner_at(triangle, a), from_b = corner_at(triangle, b);
-    arrive(corner, time_across(triangle, edge), start(arrival(from_a) <= arrival(from_b) ? from_a : from_b));
+    arrive(corner, time_across(triangle, edge));
     result_.triangle_alive[triangle] = result_.edge_alive[edge] = 0;
     for (const Index side : at_.sides[triangle]) {
       if (side == edge) continue;
@@ -160,45 +147,43 @@ class SheetBurner {
   // Lets the fire go on into the last sheet at an edge after the others have burned.
   void cross(Index edge, Index next) {
     for (const Index vertex : mesh_.edges[edge]) {
-      Index latest = kNone;
+      double latest = 0;
       for (const Index triangle : at_.triangles_at[edge]) {
-        if (triangle == next) continue;
-        const Index corner = corner_at(triangle, vertex);
-        if (latest == kNone || arrival(corner) > arrival(latest)) latest = corner;
+        if (triangle != next) latest = std::max(latest, arrival(corner_at(triangle, vertex)));
       }
-      arrive(corner_at(next, vertex), arrival(latest), start(latest));
+      arrive(corner_at(next, vertex), latest);
     }
   }
 
   void set_vertices() {
     std::vector<double>& times = result_.vertex_times;
     times.assign(mesh_.centers.size(), -kNotBurned);
-    result_.vertex_widths.assign(mesh_.centers.size(), 0);
     std::vector<Vector>& fronts = result_.vertex_fronts;
     fronts.assign(mesh_.centers.size(), Vector::Zero());
-    std::vector<double> counts(mesh_.centers.size(), 0);
+    std::vector<double> areas(mesh_.centers.size(), 0);
     for (Index triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
       const auto& [a, b, c] = mesh_.triangles[triangle];
+      const auto& at = mesh_.centers;
+      const double area = (at[b] - at[a]).cross(at[c] - at[a]).norm();
       const std::array own{arrival(3 * triangle), arrival(3 * triangle + 1), arrival(3 * triangle + 2)};
-      const Vector front = gradient_of({mesh_.centers[a], mesh_.centers[b], mesh_.centers[c]}, own);
+      const Vector front = gradient_of({at[a], at[b], at[c]}, own);
       for (Index k = 0; k < 3; ++k) {
         const Index vertex = mesh_.triangles[triangle][k];
         times[vertex] = std::max(times[vertex], own[k]);
-        result_.vertex_widths[vertex] = std::max(result_.vertex_widths[vertex], own[k] - start(3 * triangle + k));
-        fronts[vertex] += front;
-        ++counts[vertex];
+        fronts[vertex] += area * front;
+        areas[vertex] += area;
       }
     }
     for (Index vertex = 0; vertex < mesh_.size(); ++vertex) {
       times[vertex] = std::max(times[vertex], mesh_.radii[vertex]);
-      if (counts[vertex] > 0) fronts[vertex] /= counts[vertex];
+      if (areas[vertex] > 0) fronts[vertex] /= areas[vertex];
     }
   }
 
   const MedialMesh& mesh_;
   const CellIncidence& at_;
-  DisjointSets sectors_;                   // of the corners of triangles
-  std::vector<double> arrivals_, starts_;  // of each sector, at its root
+  DisjointSets sectors_;          // of the corners of triangles
+  std::vector<double> arrivals_;  // of each sector, at its root
   std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
   double now_ = 0;
   SheetBurn result_;

@@ -16,10 +16,8 @@ struct SheetBurn {
   // The time at which the fire has reached a vertex in all sheets around it; its radius for a vertex without sheets,
   // infinity on closed sheets.
   std::vector<double> vertex_times;
-  // How far the fire that reached a vertex had come from the border; 0 for a vertex without sheets.
-  std::vector<double> vertex_widths;
-  // The mean direction of the fronts in the triangles around each vertex. Its length is about 1 where one fire passes,
-  // and 0 where two meet head-on or there are no triangles.
+  // The mean direction of the fronts in the triangles around each vertex, by their area. Its length is about 1 where
+  // one fire passes, and 0 where two meet head-on or there are no triangles.
   std::vector<Vector> vertex_fronts;
 };
 

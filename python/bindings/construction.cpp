@@ -45,4 +45,5 @@ PYBIND11_MODULE(_construction, module) {
   bind_spheretree(module);
   bind_sets(module);
   bind_robot(module);
+  bind_applications(module);
 }

@@ -60,5 +60,6 @@ void bind_medial(py::module_& module);
 void bind_spheretree(py::module_& module);
 void bind_sets(py::module_& module);
 void bind_robot(py::module_& module);
+void bind_applications(py::module_& module);
 
 }  // namespace orchard::python

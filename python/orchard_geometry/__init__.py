@@ -21,6 +21,7 @@ from .runtime import (Answer, BroadPhase, Detector, Tree, cast_rays, closer_than
                       nearest_points, time_of_impact)
 
 if typing.TYPE_CHECKING:
+    from ._applications import Curve, Offset, Skeleton, SurfaceParts, hollow, offset
     from ._medial import (MedialAxis, Quality, StructureGraph, Structure, box_mesh, medial_axis, tuning_options)
     from ._mesh import (Mesh, closest_points, contains, inspect, load, repair, sample_surface, set_threads,
                         signed_distance, wrap)
@@ -37,6 +38,7 @@ _CONSTRUCTION = {
               "signed_distance", "wrap"),
     "_voronoi": ("Voronoi", "voronoi"),
     "_medial": ("MedialAxis", "Quality", "StructureGraph", "Structure", "box_mesh", "medial_axis", "tuning_options"),
+    "_applications": ("Curve", "Offset", "Skeleton", "SurfaceParts", "hollow", "offset"),
     "_thickness": ("LocalThickness", "Thickness", "local_thickness", "thickness"),
     "_spheretree": ("Certificate", "SphereTree", "sphere_tree"),
     "_robot": ("LinkSpheres", "RobotSpheres", "robot"),
@@ -45,11 +47,11 @@ _CONSTRUCTION = {
 _HOME = {name: module for module, names in _CONSTRUCTION.items() for name in names}
 
 __all__ = [
-    "Answer", "Audit", "BroadPhase", "Cancelled", "Certificate", "Detector", "LinkSpheres", "LocalThickness",
-    "MedialAxis", "Mesh", "MeshError", "OrchardError", "Particles", "Quality", "RepairWarning", "RobotSpheres",
-    "StructureGraph", "SphereSet", "SphereTree", "Structure", "Thickness", "Tree", "Voronoi", "audit", "box_mesh",
-    "cast_rays", "closer_than", "closest_points", "collide", "contacts", "contains", "distance", "inspect", "load",
-    "local_thickness", "medial_axis", "nearest_points", "repair", "robot", "runtime", "sample_surface",
+    "Answer", "Audit", "BroadPhase", "Cancelled", "Certificate", "Curve", "Detector", "LinkSpheres", "LocalThickness",
+    "MedialAxis", "Mesh", "MeshError", "Offset", "OrchardError", "Particles", "Quality", "RepairWarning", "RobotSpheres",
+    "Skeleton", "StructureGraph", "SphereSet", "SphereTree", "Structure", "SurfaceParts", "Thickness", "Tree", "Voronoi", "audit", "box_mesh",
+    "cast_rays", "closer_than", "closest_points", "collide", "contacts", "contains", "distance", "hollow", "inspect", "load",
+    "local_thickness", "medial_axis", "nearest_points", "offset", "repair", "robot", "runtime", "sample_surface",
     "set_threads", "signed_distance", "sphere_set", "sphere_tree", "thickness", "time_of_impact", "tuning_options",
     "voronoi", "wrap",
 ]

@@ -8,6 +8,7 @@ import typing
 import numpy
 
 from . import _construction
+from ._applications import Skeleton, SurfaceParts, parts_of, skeleton_of
 from ._arrays import Anything, Floats, Indices, choice, floats, indices, number, view, whole
 from ._axis_files import write_axis
 from ._axis_parts import KINDS, Arc, Quality, StructureGraph, Structure, signed
@@ -166,6 +167,25 @@ class MedialAxis:
     def thickness(self, points: Anything = None, **options: typing.Any) -> Thickness:
         """How thick the solid is: see thickness()."""
         return thickness(self.mesh, points, **options)
+
+    def skeleton(self, *, erosion: float = 1, ratio: float = 0.35, edge: float = 0.75, straighten: int = 20,
+                 progress: Progress = None) -> Skeleton:
+        """The axis reduced to curves, with the loops, parts and cavities that it has. erosion: the smallest significance
+        of a branch, in percent of the diagonal; ratio: the smallest rate at which it grows; edge: the longest edge, in
+        percent of the diagonal; straighten: rounds in which curves are straightened.
+
+        >>> from orchard_geometry import box_mesh
+        >>> len(medial_axis(box_mesh([1, 2, 4]), samples=800).skeleton().curves)
+        1
+        """
+        return skeleton_of(self._axis, erosion, ratio, edge, straighten, progress)
+
+    def segment(self, *, by: str = "both", neck: float = 0.2, min_area: float = 0.2, faces: int = 20_000,
+                seam_rounds: int = 5, progress: Progress = None) -> SurfaceParts:
+        """The surface divided by the sheets of the axis ("sheets"), at its necks ("necks"), or by sheets that are cut at
+        necks ("both"). neck: the smallest significance of a neck; min_area: the smallest patch, in percent of the
+        surface; faces: about how many the surface is divided into; seam_rounds: in which seams are smoothed."""
+        return parts_of(self._axis, by, neck, min_area, faces, seam_rounds, progress)
 
     def structure_graph(self) -> StructureGraph:
         """The lines of the axis as a graph."""

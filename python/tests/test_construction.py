@@ -99,6 +99,42 @@ def test_an_axis_is_judged_simplified_and_compared(box_axis):
         box_axis.distance(3)
 
 
+def test_an_axis_becomes_curves_and_parts_of_the_surface(tmp_path):
+    axis = og.medial_axis(og.box_mesh([1, 2, 4]), samples=800)
+    skeleton = axis.skeleton()
+    assert len(skeleton.curves) == 1
+    assert skeleton.curves[0].length == pytest.approx(4, abs=0.25)
+    assert skeleton.radii == pytest.approx(numpy.ones(len(skeleton.vertices)))
+    assert skeleton.topology() == {"components": 1, "loops": 0, "cavities": 0}
+    assert len(skeleton.curves[0].vertices) == len(skeleton.vertices) == len(skeleton.edges) + 1
+    skeleton.save(tmp_path / "box.swc")
+    assert (tmp_path / "box.swc").read_text() == skeleton.text("swc")
+    with pytest.raises(ValueError, match="ratio"):
+        axis.skeleton(ratio=0.1)
+    with pytest.raises(ValueError, match="pdf"):
+        skeleton.save(tmp_path / "box.pdf")
+    parts = axis.segment(by="sheets", faces=2000)
+    assert sum(part["area"] for part in parts.parts) == pytest.approx(112)
+    assert len(parts.part_of_face) == len(parts.mesh.faces) == len(parts.of_face)
+    assert sum(len(parts.part_mesh(i).faces) for i in range(len(parts.parts))) == len(parts.mesh.faces)
+    assert all(part["region"] is None for part in parts.parts)
+    with pytest.raises(ValueError, match="part"):
+        parts.part_mesh(len(parts.parts))
+
+
+def test_offsets_have_proven_distances(box):
+    grown = og.offset(box, 0.1, tolerance=2)
+    assert grown.mesh.solid and grown.error <= grown.tolerance
+    assert box.closest_points(grown.mesh.vertices).distances == pytest.approx(0.1, abs=grown.tolerance)
+    assert grown.mesh.volume > box.volume > og.offset(box, 0.1, side="inside", tolerance=2).mesh.volume
+    hollowed = og.hollow(box, 0.1, tolerance=2)
+    assert hollowed.min_wall >= 0.1 and hollowed.mesh.volume < box.volume
+    with pytest.raises(ValueError, match="distance"):
+        og.offset(box, 0)
+    with pytest.raises(og.MeshError, match="deeper"):
+        og.hollow(box, 5)
+
+
 def test_thickness(box):
     found = og.thickness(box, [[0, 0, 0.4], [0, 0, -0.4]])
     assert found.thickness == pytest.approx([0.8, 0.8])

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "orchard/geometry/mesh_io.h"
@@ -50,6 +51,49 @@ TEST(SkeletonCommand, TakesTheOutsideToo) {
   EXPECT_GT(report["closed_sheets"]["triangles"].get<int>(), 0);
 }
 
+TEST(SkeletonCommand, TakesTheAxisOfAFileInPlaceOfItsOwn) {
+  const Workplace here;
+  const std::string mesh = here.add("torus.obj", test::torus(24, 12)), axis = (here / "torus.ma").string();
+  ASSERT_EQ(here.run({"medial", mesh, "-o", axis, "--samples", "500", "--quiet"}).exit_code, 0);
+  const auto curves = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"skeleton", mesh, "-o", (here / "out").string(), "--quiet", "--no-views"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished run = here.run(words);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return test::without_provenance(here.files("out").at("torus-skeleton.csv"));
+  };
+  EXPECT_EQ(curves({"--axis", axis}), curves({"--samples", "500"}));
+  EXPECT_EQ(curves({"--axis", axis, "--prune", "erosion=1"}), curves({"--axis", axis}));
+  const Finished parts = here.run({"segment", mesh, "-o", (here / "out").string(), "--axis", axis, "--json"});
+  ASSERT_EQ(parts.exit_code, 0) << parts.err;
+  EXPECT_EQ(json::parse(parts.out)["axis"]["file"], axis);
+}
+
+TEST(SkeletonCommand, RefusesTheAxisOfAnotherMesh) {
+  const Workplace here;
+  const std::string ring = here.add("torus.obj", test::torus(24, 12)), axis = (here / "torus.ma").string(),
+                    box = here.add("box.obj", test::box(Point(-3, -3, -1), Point(3, 3, 1))),
+                    bar = here.add("bar.obj", test::box(Point(-3, -0.4, -0.4), Point(3, 0.4, 0.4))),
+                    balls = here.add("balls.sph", std::string("4 2\n1.9 0 0 0.5\n0 2 0 0.5\n"));
+  ASSERT_EQ(here.run({"medial", ring, "-o", axis, "--samples", "500", "--quiet"}).exit_code, 0);
+  const auto refused = [&](const std::string& command, const std::string& mesh, std::vector<std::string> more,
+                           const std::string& what) {
+    std::vector<std::string> words{command, mesh, "-o", (here / "out").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished run = here.run(words);
+    EXPECT_EQ(run.exit_code, 2) << what;
+    EXPECT_NE(run.err.find(what), std::string::npos) << run.err;
+  };
+  refused("skeleton", box, {"--axis", axis}, "torus.ma: the balls do not lie near the mesh");
+  refused("segment", bar, {"--axis", axis}, "torus.ma");
+  refused("skeleton", ring, {"--axis", axis, "--side", "outside"}, "torus.ma");
+  refused("skeleton", ring, {"--axis", axis, "--samples", "900"}, "--samples has no effect with --axis");
+  refused("segment", ring, {"--axis", axis, "--prune", "angle=9"}, "has no effect with --axis");
+  refused("skeleton", ring, {"--axis", (here / "none.ma").string()}, "none.ma");
+  refused("skeleton", ring, {"--axis", balls}, "balls alone");
+  EXPECT_FALSE(std::filesystem::exists(here / "out"));
+}
+
 TEST(SkeletonCommand, RefusesBadOptionsBeforeItBuilds) {
   const Workplace here;
   const std::string mesh = here.add("ball.obj", test::icosphere(1));
@@ -87,6 +131,20 @@ TEST(SegmentCommand, WritesLabelsAndMeshesThatCoverTheSurface) {
   EXPECT_EQ(triangles, report["triangles"].get<std::size_t>());
   const PlyTables tables(here / "out/box-segments.ply");
   EXPECT_EQ(tables.find("face")->find("part")->numbers.size(), triangles);
+}
+
+TEST(SegmentCommand, SaysBeforeItBuildsThatAPartCannotBeWritten) {
+  const Workplace here;
+  const std::string mesh = here.add("box.obj", test::box(Point(0, 0, 0), Point(4, 3, 1)));
+  std::filesystem::create_directories(here / "out/box-segment-001.ply");
+  const std::vector<std::string> words{"segment", mesh, "-o", (here / "out").string(), "--samples", "300"};
+  EXPECT_EQ(here.run(words).exit_code, 0);
+  std::vector<std::string> with_meshes = words;
+  with_meshes.insert(with_meshes.end(), {"--meshes", "--force"});
+  const Finished run = here.run(with_meshes);
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("box-segment-001.ply: cannot be written, it is a folder"), std::string::npos) << run.err;
+  EXPECT_EQ(run.out, "");  // nothing was read yet
 }
 
 TEST(SegmentCommand, RefusesBadOptions) {

@@ -17,14 +17,21 @@ namespace orchard {
 // A fire that starts at the borders of the axis with the radius there as its time, and that runs along the axis at unit
 // speed, burns a point of a sheet at its burn time. Fires that meet leave a curve behind, which a second fire burns
 // from its ends. The significance of a place of a curve is the time between both fires: how much longer the curve
-// reaches, measured along itself, than the sheets beside it are wide.
+// reaches, measured along itself, than the sheets beside it are wide. Along the curve it grows at the rate 1 - cos(a),
+// where a is the angle between the curve and the fire of the sheets: not at all where the fire runs along with the
+// curve, as on the conical sheet at the flat end of a cylinder, and by the length where it runs across. Where the axis
+// is a curve itself, the rate is that at which the radius does not change.
+// The end of a curve lies where the fire turns from one to the other: where the significance, less options.ratio for
+// each unit of length, is least.
 struct SkeletonOptions {
   // The smallest significance, at least 0. Shorter branches are removed; higher values remove more. 0.01 keeps branches
-  // that reach 1 % of the diagonal farther than the sheets beside them.
+  // that reach 1 % of the diagonal farther than the sheets beside them. Below three edges (edge_length), a branch
+  // cannot be told from the triangulation, so the larger of both counts.
   double erosion = 0.01;
-  // The smallest significance as a fraction of the time of the second fire, in [0.2, 1). At the middle of a branch that
-  // runs into a corner of w degrees of a plate, it is 1 - sin(w / 2): 0.29 at 90 degrees. The default of 0.35 removes
-  // such branches at corners of more than 81 degrees. The triangulation may change a ratio by about 0.07.
+  // The smallest rate at which the significance grows, in [0.2, 1), and the smallest significance as a fraction of the
+  // time of the second fire. In a branch that runs into a corner of w degrees of a plate, or into the tip of a cone,
+  // the rate is 1 - sin(w / 2): 0.29 at 90 degrees. The default of 0.35 removes such branches at corners of more than
+  // 81 degrees. The triangulation may change a rate by about 0.07.
   double ratio = 0.35;
   // The longest edge of the complex that burns, and so of the skeleton, above 0. Lower values place the skeleton more
   // accurately, at a cost that grows with the square. It is raised where the complex would have more than about two

@@ -49,7 +49,7 @@ struct OffsetMesh {
 //    vanish are nowhere deeper than that.
 // An edge of the offset is cut off within the tolerance. Throws InputError unless the options are in range, and
 // surface.solid() if the offset has a side, or if nothing is left of the solid at that depth. Deterministic; parallel.
-// About a minute for each million cells.
+// About four microseconds of one core for each triangle of the result.
 OffsetMesh offset_mesh(const Surface& surface, const OffsetOptions& options, const Progress& progress = {});
 
 // A solid with a cavity inside it.
@@ -60,9 +60,11 @@ struct HollowMesh {
   double min_wall = 0;
 };
 
-// Hollows a solid: the cavity consists of the places deeper than `wall`, in mesh units, and no wall is thinner than
-// `wall` or thicker than `wall` plus the tolerance twice, up to the edges of the cavity. Parts thinner than two walls
-// stay solid. The cavity has no opening. options.distance and options.side do not count. Throws as offset_mesh() does.
+// Hollows a solid: the cavity consists of the places deeper than `wall`, in mesh units. No wall is thinner than `wall`,
+// and cavity.max_distance is a proven bound on how thick it is at any place of the cavity: above `wall` by 1.6
+// tolerances at most, where the cavity has sharp edges, and by a tenth of the tolerance on most flat walls. Parts
+// thinner than two walls stay solid. The cavity has no opening. options.distance and options.side do not count. Throws
+// as offset_mesh() does; takes twice as long.
 HollowMesh hollow_mesh(const Surface& surface, double wall, const OffsetOptions& options,
                        const Progress& progress = {});
 
