@@ -1,6 +1,7 @@
-// Contacts of pairs, ours and FCL's, scene by scene:  contacts_bench [-n queries] [-ours times] [-only part of a scene's name] [body.obj|body.orchard ..]
-// Each row has the mean of the best of a few passes, in microseconds, and a hash of all manifolds: a change that is to
-// leave them as they are leaves it, too. `-ours`: asks ours alone that many times, for instruments that count.
+// Contacts of pairs, ours and FCL's, scene by scene:  contacts_bench [-n queries] [-ours times] [-only part of a
+// scene's name] [body.obj|body.orchard ..] Each row has the mean of the best of a few passes, in microseconds, and a
+// hash of all manifolds: a change that is to leave them as they are leaves it, too. `-ours`: asks ours alone that many
+// times, for instruments that count.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -93,8 +94,8 @@ class Bench {
     }
     Hash hash;
     for (const Query& q : queries) hash.add(contacts(workspace_, pair_, q.a, q.b));
-    const double all = best_mean(
-        queries.size(), [&](std::size_t i) { contacts(workspace_, pair_, queries[i].a, queries[i].b); });
+    const double all =
+        best_mean(queries.size(), [&](std::size_t i) { contacts(workspace_, pair_, queries[i].a, queries[i].b); });
     const double points = best_mean(queries.size(), [&](std::size_t i) {
       contacts(workspace_, pair_, queries[i].a, queries[i].b, {.depth = false});
     });
@@ -205,10 +206,9 @@ void measure_ball(const PackedSphereTree& ground, const Options& options) {
   Hash hash;
   for (const PairEvent& event : events) hash.add(world.manifold(event));
   const double all = best_mean(events.size(), [&](std::size_t i) { world.manifold(events[i]); });
-  const double near =
-      best_mean(places.size(), [&](std::size_t i) { nearest_point(ground, {}, places[i]); });
-  std::printf("%-34s %9.2f %9.2f (nearest point) %zu %016llx\n", name.c_str(), all, near,
-              events.size(), static_cast<unsigned long long>(hash.value()));
+  const double near = best_mean(places.size(), [&](std::size_t i) { nearest_point(ground, {}, places[i]); });
+  std::printf("%-34s %9.2f %9.2f (nearest point) %zu %016llx\n", name.c_str(), all, near, events.size(),
+              static_cast<unsigned long long>(hash.value()));
 }
 
 }  // namespace
@@ -238,7 +238,8 @@ int main(int argc, char** argv) {
   const PackedSphereTree ground = build_tree(terrain(256), {.leaf_triangles = 4, .bounds = false});
   const PackedSphereTree ball =
       build_tree(orchard::runtime::test::uv_sphere(32, 16, 0.3), {.leaf_triangles = 4, .bounds = false});
-  Bench(ground, ball, options).measure(resting("sphere of 960 on terrain, 10 % of R", ground, ball, options.count, 0.1));
+  Bench(ground, ball, options)
+      .measure(resting("sphere of 960 on terrain, 10 % of R", ground, ball, options.count, 0.1));
   measure_ball(ground, options);
   return 0;
 }
