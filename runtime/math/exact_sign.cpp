@@ -24,7 +24,16 @@ Pair two_sum(double a, double b) noexcept {
 
 Pair two_product(double a, double b) noexcept {
   const double product = a * b;
+#ifdef __MINGW32__  // its std::fma() rounds twice; so by halves of the digits (Dekker 1971)
+  const auto high_part = [](double x) {
+    const double shifted = 134217729.0 * x;  // 2^27 + 1
+    return shifted - (shifted - x);
+  };
+  const double ah = high_part(a), bh = high_part(b), al = a - ah, bl = b - bh;
+  return {product, ((ah * bh - product) + ah * bl + al * bh) + al * bl};
+#else
   return {product, std::fma(a, b, -product)};
+#endif
 }
 
 Pair difference(double a, double b) noexcept { return two_sum(a, -b); }  // exact
