@@ -13,6 +13,12 @@
 namespace orchard::runtime {
 namespace {
 
+#ifdef _WIN32
+constexpr LoadStatus kStatusOfFolder = LoadStatus::cannot_open;  // folders are not opened as files there
+#else
+constexpr LoadStatus kStatusOfFolder = LoadStatus::read_failed;
+#endif
+
 using namespace orchard::runtime::test;
 
 std::filesystem::path scratch(const std::string& name) {
@@ -107,7 +113,7 @@ TEST(TreeFile, LoadsFromDiskAndNamesWhatFails) {
   EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::truncated);
   std::filesystem::remove(path);
   EXPECT_EQ(load_file(path.string().c_str(), loaded), LoadStatus::cannot_open);
-  EXPECT_EQ(load_file(std::filesystem::temp_directory_path().string().c_str(), loaded), LoadStatus::read_failed);
+  EXPECT_EQ(load_file(std::filesystem::temp_directory_path().string().c_str(), loaded), kStatusOfFolder);
   EXPECT_TRUE(same(loaded, tree));
 }
 
@@ -143,7 +149,7 @@ TEST(TreeFile, IsUsedInPlaceWithoutACopy) {
   EXPECT_EQ(moved.open(path.string().c_str()), LoadStatus::truncated);
   std::filesystem::remove(path);
   EXPECT_EQ(moved.open(path.string().c_str()), LoadStatus::cannot_open);
-  EXPECT_EQ(moved.open(std::filesystem::temp_directory_path().string().c_str()), LoadStatus::read_failed);
+  EXPECT_EQ(moved.open(std::filesystem::temp_directory_path().string().c_str()), kStatusOfFolder);
 }
 
 TEST(TreeFile, IsNotUsedInPlaceWhereItIsNotAligned) {
