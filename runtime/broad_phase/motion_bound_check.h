@@ -3,6 +3,8 @@
 
 namespace orchard::runtime::detail {
 
+inline constexpr Vec3 kNoVelocity{};
+
 // Compares each motion that is given with the bounds given before for the same body: those of the last motion, and the
 // strictest ones that have not expired, because looser bounds do not replace stricter ones.
 class MotionBoundCheck {

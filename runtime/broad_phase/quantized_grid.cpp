@@ -11,8 +11,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kMiddle = 0x1p30 + kQuanta / 2;  // the origin's quantum: in the middle of a cell
-constexpr double kRoundingQuanta = 0x1p-8;        // covers some roundings of numbers below 2^32
+constexpr double kMiddle = 0x1p30 + 0.5 * kQuanta;  // the origin's quantum: in the middle of a cell
+constexpr double kRoundingQuanta = 0x1p-8;          // covers some roundings of numbers below 2^32
 
 // Some bodies' motions by coordinate.
 template <typename Numbers>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "orchard/runtime/motion.h"
+#include "broad_phase/motion_bound_check.h"
 
 namespace orchard::runtime::detail {
 
@@ -77,7 +77,7 @@ class QuantizedGrid {
   void move_to(double seconds) noexcept;                   // since it was made
   const Vec3& origin() const noexcept { return origin_; }  // where it has moved to
   const Vec3& velocity() const noexcept { return velocity_; }
-  bool moves() const noexcept { return velocity_ != Vec3{}; }
+  bool moves() const noexcept { return velocity_ != kNoVelocity; }
   // Where a point lies along an axis, to less than a quantum if it lies within the quantized grid.
   double quantum(double coordinate, std::size_t axis) const noexcept;
   double quanta(double length) const noexcept { return length * per_length_; }

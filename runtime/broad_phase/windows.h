@@ -18,7 +18,7 @@ struct Window {
 
 // It will never move, unless it is cancelled.
 inline bool rests(const Motion& motion) noexcept {
-  return motion.expiry == std::numeric_limits<double>::infinity() && motion.velocity == Vec3{} &&
+  return motion.expiry == std::numeric_limits<double>::infinity() && motion.velocity == kNoVelocity &&
          motion.acceleration == 0 && motion.drift == 0;
 }
 

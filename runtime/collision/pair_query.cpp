@@ -100,7 +100,11 @@ bool PairQuery::bound_to(const PreparedTree& a, const PreparedTree& b) const noe
   if (ordered_by_pose_ && arguments_exchanged_) return false;  // as the last poses had it
   if (!first_.owns() || !second_.owns()) return false;         // whether those are still there is not known
   const Side &of_a = arguments_exchanged_ ? *second_ : *first_, &of_b = arguments_exchanged_ ? *first_ : *second_;
-  return a.fingerprint != 0 && std::memcmp(&of_a, &a, sizeof a) == 0 && std::memcmp(&of_b, &b, sizeof b) == 0;
+  // Where only bytes between the members differ, the trees are bound again, which is right too.
+  const auto same = [](const Side& x, const Side& y) {
+    return std::memcmp(&x, &y, sizeof x) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
+  };
+  return a.fingerprint != 0 && same(of_a, a) && same(of_b, b);
 }
 
 // The same without a look at what was bound before.

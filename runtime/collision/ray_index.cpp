@@ -141,7 +141,10 @@ class Builder {
   double area_of(const Part& part) const { return part.size() <= kBlockWidth ? -1 : box_of(part).half_area(); }
 
   // What it costs to look at so many triangles, in leaves of eight of which one in four lanes is empty.
-  static double cost_of(std::size_t triangles) { return static_cast<double>((triangles + 3) / 4); }
+  static double cost_of(std::size_t triangles) {
+    const std::size_t lanes = (triangles + 3) / 4;
+    return static_cast<double>(lanes);
+  }
 
   // Puts the triangles of the first part to the front, in all three orders, and returns where the second one begins.
   std::size_t halve(const Part& part) {

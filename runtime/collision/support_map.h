@@ -14,6 +14,8 @@ struct Support {
   Vec3 point;   // where about
 };
 
+inline constexpr double kHalfSupportCells = 0.5 * kSupportCells;
+
 // Where a direction, not zero, leaves the cube of directions: an axis, its sign, a cell of that face and a place in it.
 struct SupportCell {
   std::size_t axis, next, last;
@@ -30,7 +32,7 @@ inline SupportCell support_cell(std::span<const float> map, const Vec3& u) noexc
   c.next = c.axis == 2 ? 0 : c.axis + 1, c.last = c.axis == 0 ? 2 : c.axis - 1;
   c.size = std::fabs(u[c.axis]);
   c.slow = u[c.next] / c.size, c.fast = u[c.last] / c.size;  // from -1 to 1, rounding included
-  c.f = (c.slow + 1) * (kSupportCells / 2), c.g = (c.fast + 1) * (kSupportCells / 2);
+  c.f = (c.slow + 1) * kHalfSupportCells, c.g = (c.fast + 1) * kHalfSupportCells;
   const int i = std::min(static_cast<int>(c.f), static_cast<int>(kSupportCells) - 1);
   const int j = std::min(static_cast<int>(c.g), static_cast<int>(kSupportCells) - 1);
   c.f -= i, c.g -= j;
@@ -58,8 +60,8 @@ inline Support support_along(std::span<const float> map, const Vec3& u) noexcept
   const double a = double{at[0]}, b = double{at[kSupportCells + 1]}, c = double{at[1]},
                d = double{at[kSupportCells + 2]};
   const double low = a + cell.f * (b - a), high = c + cell.f * (d - c), value = low + cell.g * (high - low);
-  const double by_slow = ((b - a) + cell.g * ((d - c) - (b - a))) * (kSupportCells / 2);
-  const double by_fast = (high - low) * (kSupportCells / 2);
+  const double by_slow = ((b - a) + cell.g * ((d - c) - (b - a))) * kHalfSupportCells;
+  const double by_fast = (high - low) * kHalfSupportCells;
   Support support{value * cell.size, {}};
   support.point[cell.axis] = (u[cell.axis] < 0 ? -1 : 1) * (value - cell.slow * by_slow - cell.fast * by_fast);
   support.point[cell.next] = by_slow, support.point[cell.last] = by_fast;

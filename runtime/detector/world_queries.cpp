@@ -213,8 +213,8 @@ std::span<const BodyId> WorldQueries::touching_sphere(const World& world, const 
 std::optional<WorldPoint> Detector::cast_ray(const Ray& ray, const QueryFilter& filter) {
   State& s = *state_;
   const Vec3 way = ray.direction;
-  if (!s.takes_changes() || !detail::is_finite(ray.origin) || !detail::is_finite(way) || way == Vec3{} ||
-      !(ray.longest >= 0))
+  if (!s.takes_changes() || !detail::is_finite(ray.origin) || !detail::is_finite(way) ||
+      (way[0] == 0 && way[1] == 0 && way[2] == 0) || !(ray.longest >= 0))
     return std::nullopt;
   s.queries.update(s.world);
   return s.queries.cast_ray(s.world, ray, filter);

@@ -221,7 +221,7 @@ ORCHARD_INLINE Vector spread(T value) noexcept {
     const decltype(Vector::low) half = {value, value, value, value};
     return {half, half};
   }
-  std::array<T, sizeof(Vector) / sizeof(T)> copies;
+  std::array<T, sizeof(Vector) / sizeof(T)> copies;  // NOLINT(bugprone-sizeof-expression): vectors are no pointers
   for (T& copy : copies) copy = value;
   return load<Vector>(copies);
 }

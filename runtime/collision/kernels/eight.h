@@ -29,7 +29,7 @@ struct Eight {
     Floats x, y, z;
   };
 
-  static constexpr std::size_t kCount = sizeof(Floats) / sizeof(float);
+  static constexpr std::size_t kCount = sizeof(Floats) / sizeof(float);  // NOLINT(bugprone-sizeof-expression)
   static constexpr std::uint32_t kAll = (1u << kCount) - 1;
 
   // All of eight, or the one of them that is asked for.
