@@ -10,6 +10,7 @@ namespace {
 // A ray that passes a corner or an edge within this margin counts as meeting it, so that no ray passes between two
 // triangles because of rounding.
 constexpr double kOnTriangleBorder = 1e-12;  // of the triangle's area
+constexpr double kOutside = 1e-10;  // of a squared radius: far more than the roundings of a distance from the centre
 
 void take(Touch& best, const TangentPlace& place, const Point& at) {
   const Vector way = place.position - at;
@@ -62,6 +63,15 @@ std::optional<Interval> part_in_cone(const TangentPlace& place, const Point& a, 
   return Interval{roots[0], roots[1]};
 }
 
+// Whether no place of an edge makes a ball smaller than `limit`: those that do lie inside the ball of this radius, up
+// to rounding.
+bool is_edge_outside(const TangentPlace& place, const Point& a, const Point& b, double limit) {
+  const Vector e = b - a, way = place.position - limit * place.normal - a;
+  const double squared = e.squaredNorm();
+  const double t = squared > 0 ? std::clamp(way.dot(e) / squared, 0.0, 1.0) : 0;
+  return (way - t * e).squaredNorm() >= limit * limit * (1 + kOutside);
+}
+
 // Tries the places of an edge. Along a line the radius falls and then rises, so within the cone it is least at the
 // place nearest to its minimum.
 void take_edge(Touch& best, const TangentPlace& place, const Point& a, const Point& b) {
@@ -108,7 +118,10 @@ Touch touch_of_triangle(const TangentPlace& place, const std::array<Point, 3>& c
       return best;
     }
   }
-  for (std::size_t i = 0; i < 3; ++i) take_edge(best, place, corners[i], corners[(i + 1) % 3]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point &a = corners[i], &b = corners[(i + 1) % 3];
+    if (!is_edge_outside(place, a, b, std::min(limit, best.radius))) take_edge(best, place, a, b);
+  }
   return best;
 }
 

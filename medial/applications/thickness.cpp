@@ -8,6 +8,7 @@
 
 #include "divided_mesh.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/spatial_order.h"
 #include "tangent_ball.h"
 
 namespace orchard {
@@ -30,6 +31,10 @@ std::vector<ThicknessAt> searched(const Surface& surface, const detail::SlabTree
                                   std::span<const SurfacePlace> places, const ThicknessOptions& options,
                                   const Progress& progress, double begin, double end) {
   std::vector<ThicknessAt> found(places.size());
+  std::vector<Point> positions;
+  positions.reserve(places.size());
+  for (const SurfacePlace& place : places) positions.push_back(place.position);
+  const std::vector<std::size_t> order = spatial_order(positions);
   for (std::size_t first = 0; first < places.size(); first += kReport) {
     const double part = static_cast<double>(first) / static_cast<double>(places.size());
     report_progress(progress, "thickness", begin + (end - begin) * part);
@@ -37,7 +42,7 @@ std::vector<ThicknessAt> searched(const Surface& surface, const detail::SlabTree
     tbb::parallel_for(std::size_t{0}, (last - first + kTask - 1) / kTask, [&](std::size_t task) {
       detail::TangentBallSearch search(surface, tree, options);
       const std::size_t stop = std::min(last, first + (task + 1) * kTask);
-      for (std::size_t i = first + task * kTask; i < stop; ++i) found[i] = search.at(places[i]);
+      for (std::size_t i = first + task * kTask; i < stop; ++i) found[order[i]] = search.at(places[order[i]]);
     });
   }
   return found;

@@ -20,7 +20,7 @@ inline bool read_ma_bytes(const std::uint8_t* data, std::size_t size) {
     flagged = parse({reinterpret_cast<const char*>(data), size});
   } catch (const InputError& error) {
     const std::string_view message = error.what();
-    const bool named = message.starts_with("bytes, line ") || message.starts_with("bytes: is empty");
+    const bool named = message.starts_with("bytes, line ") || message.starts_with("bytes: the file is empty");
     if (!named || message.find('\n') != message.npos || message.size() > 300)
       throw std::logic_error("not a message to show to a user: " + std::string(message));
     return false;

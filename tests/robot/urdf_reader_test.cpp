@@ -31,7 +31,7 @@ TEST(UrdfReader, NamesFileAndLineOfEveryFault) {
       {"<robot name='r'>\n<link name='a'>\n</robot>", ", line ", "well-formed"},
       {"<mujoco/>", "line 1", "<mujoco>"},
       {"<robot name='r'>\n</robot>", "r.urdf", "no link"},
-      {"<robot>\n<link name='a'/>\n<link name='a'/>\n</robot>", "line 3", "a already"},
+      {"<robot>\n<link name='a'/>\n<link name='a'/>\n</robot>", "line 3", "already a link a"},
       {"<robot>\n<link/>\n</robot>", "line 2", "no name"},
       {"<robot>\n<link name='a'/>\n<joint name='j' type='fixed'>\n<parent link='a'/>\n<child "
        "link='b'/></joint></robot>",

@@ -161,7 +161,7 @@ TEST(Usage, AFolderInPlaceOfAFileIsNamed) {
       const Finished run = here.run(arguments);
       EXPECT_EQ(run.exit_code, 2) << arguments[0];
       EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
-      EXPECT_NE(run.err.find(input + ": is a folder"), std::string::npos) << run.err;
+      EXPECT_NE(run.err.find(input + ": this is a folder"), std::string::npos) << run.err;
     }
   }
 }

@@ -107,7 +107,7 @@ TEST(Reading, SaysInEveryCommandWhatItSkipped) {
     EXPECT_EQ(refused.exit_code, 2) << command;
     EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
     EXPECT_NE(refused.err.find("line 34"), std::string::npos) << refused.err;
-    EXPECT_NE(refused.err.find("without --strict"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("leave out --strict"), std::string::npos) << refused.err;
   }
 }
 

@@ -130,7 +130,7 @@ TEST(Leaderboard, TakesMeshAndSystemFromATable) {
   put(here / "in/results.csv", "file,mesh,system\nunknown-x-3.ma,none.obj,x\n");
   const Finished refused = here.run(words(in, (here / "other").string()));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("results.csv, line 2: no mesh of this name"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("results.csv, line 2: there is no mesh of this name"), std::string::npos) << refused.err;
 }
 
 TEST(Leaderboard, RefusesAFolderWithoutMeshesOrAxes) {

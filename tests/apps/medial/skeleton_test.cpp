@@ -74,7 +74,7 @@ TEST(SkeletonCommand, RefusesTheAxisOfAnotherMesh) {
   const std::string ring = here.add("torus.obj", test::torus(24, 12)), axis = (here / "torus.ma").string(),
                     box = here.add("box.obj", test::box(Point(-3, -3, -1), Point(3, 3, 1))),
                     bar = here.add("bar.obj", test::box(Point(-3, -0.4, -0.4), Point(3, 0.4, 0.4))),
-                    balls = here.add("balls.sph", std::string("4 2\n1.9 0 0 0.5\n0 2 0 0.5\n"));
+                    balls = here.add("balls.sph", std::string("4 2\n1 0 0 0.35\n0 1 0 0.35\n"));
   ASSERT_EQ(here.run({"medial", ring, "-o", axis, "--samples", "500", "--quiet"}).exit_code, 0);
   const auto refused = [&](const std::string& command, const std::string& mesh, std::vector<std::string> more,
                            const std::string& what) {
@@ -143,7 +143,9 @@ TEST(SegmentCommand, SaysBeforeItBuildsThatAPartCannotBeWritten) {
   with_meshes.insert(with_meshes.end(), {"--meshes", "--force"});
   const Finished run = here.run(with_meshes);
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("box-segment-001.ply: cannot be written, it is a folder"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("box-segment-001.ply: the file cannot be written because a folder has this name"),
+            std::string::npos)
+      << run.err;
   EXPECT_EQ(run.out, "");  // nothing was read yet
 }
 
