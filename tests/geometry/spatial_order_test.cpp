@@ -30,9 +30,9 @@ TEST(SpatialOrder, HasEachPointOnceAndIsShort) {
   for (const Index count : {1000u, 8000u}) {
     const std::vector<Point> points = random_points(3, count);
     std::vector<std::size_t> order = spatial_order(points);
-    // The shortest order is about 0.7 n^(2/3) long, and that of a Hilbert curve less than half as much again; a random
-    // one 0.66 n.
-    EXPECT_LT(length_in(points, order), 1.1 * std::pow(count, 2.0 / 3));
+    // The shortest order is about 0.7 n^(2/3) long, and that of a Hilbert curve less than twice that; a random one 0.66
+    // n.
+    EXPECT_LT(length_in(points, order), 1.4 * std::pow(count, 2.0 / 3));
     std::sort(order.begin(), order.end());
     std::vector<std::size_t> all(count);
     std::iota(all.begin(), all.end(), std::size_t{0});
