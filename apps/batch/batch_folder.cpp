@@ -139,7 +139,7 @@ std::optional<MeshResult> BatchFolder::find(const std::string& key) const {
 }
 
 fs::path BatchFolder::begin(const std::string& key) const {
-  const fs::path place = work_ / key;
+  fs::path place = work_ / key;
   make_folder(place);
   return place;
 }

@@ -56,7 +56,7 @@ class Divider {
     const Index low = std::min(a.vertex, b.vertex), high = std::max(a.vertex, b.vertex);
     const auto next = static_cast<Index>(result_.mesh.vertices.size());
     const auto [entry, fresh] = middles_.try_emplace(std::uint64_t{low} << 32 | high, next);
-    const Corner corner{entry->second, 0.5 * (a.at + b.at)};
+    Corner corner{entry->second, 0.5 * (a.at + b.at)};
     if (fresh) {
       const Point at = 0.5 * (result_.mesh.vertices[low] + result_.mesh.vertices[high]);
       result_.mesh.vertices.push_back(at);
@@ -77,7 +77,7 @@ class Divider {
     // A part with one long edge is turned to begin with it; one with two begins after its short edge.
     std::size_t first = 0;
     while (count < 3 && !(count == 1 ? is_long[first] : !is_long[(first + 2) % 3])) ++first;
-    const Corner a = part[first], b = part[(first + 1) % 3], c = part[(first + 2) % 3];
+    const Corner &a = part[first], &b = part[(first + 1) % 3], &c = part[(first + 2) % 3];
     const Corner ab = middle(a, b);
     if (count == 1) {
       divide({a, ab, c});

@@ -111,6 +111,7 @@ void set_parts(const std::vector<RawLabel>& raw, const PartOptions& options, Sur
   std::map<RawLabel, Index> numbers;
   for (const RawLabel& label : raw) numbers.try_emplace(label, 0);
   std::vector<RawLabel> names;
+  names.reserve(numbers.size());
   for (auto& [label, number] : numbers) {
     number = static_cast<Index>(names.size());
     names.push_back(label);
