@@ -34,7 +34,8 @@ void check(const PruneOptions& options) {
   check_length("geodesic length", options.geodesic);
 }
 
-// Whether an axis consists of balls with few contacts, edges and triangles: refined and imported ones do.
+// Whether an axis consists of balls with few contacts, edges and triangles. Refined ones do; imported ones have a
+// contact for each surface point around a ball.
 bool can_be_cut(const MedialAxis& axis) {
   if (axis.topology_faces.size() > 0) return false;
   for (Index face = 0; face < axis.faces.size(); ++face)
