@@ -24,26 +24,33 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 // The parts of the axis' area that the values of a curve remove where the measure alone decides.
 constexpr double kParts[] = {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
 
-// A measure by its name on the command line, its array and its field of PruneOptions.
-struct Named {
-  ImportanceMeasure measure;
-  const char* name;
-  const char* array;
-  const char* unit;  // of the values of --prune
-  double PruneOptions::*option;
-};
-constexpr Named kMeasures[] = {
-    {ImportanceMeasure::angle, "angle", "contact_angle", "degrees", &PruneOptions::angle},
-    {ImportanceMeasure::scale, "scale", "scale_ratio", "", &PruneOptions::scale},
-    {ImportanceMeasure::border_loss, "border-loss", "border_loss", "% of the diagonal", &PruneOptions::border_loss},
-    {ImportanceMeasure::lambda, "lambda", "lambda", "% of the diagonal", &PruneOptions::lambda},
-    {ImportanceMeasure::erosion, "erosion", "erosion_thickness", "% of the diagonal", &PruneOptions::erosion},
-    {ImportanceMeasure::geodesic, "geodesic", "medial_geodesic", "% of the diagonal", &PruneOptions::geodesic}};
+// The name of a measure on the command line.
+std::string option_name(ImportanceMeasure measure) {
+  std::string name = name_of(measure);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
 
-const Named& named_measure(const std::string& name) {
-  for (const Named& measure : kMeasures)
-    if (name == measure.name) return measure;
+ImportanceMeasure measure_named(const std::string& name) {
+  for (const ImportanceMeasure measure : kImportanceMeasures)
+    if (name == option_name(measure)) return measure;
   throw InputError("--importance: there is no measure " + name);
+}
+
+// The name of the array of a measure.
+const char* array_name(ImportanceMeasure measure) {
+  switch (measure) {
+    case ImportanceMeasure::angle:
+      return "contact_angle";
+    case ImportanceMeasure::scale:
+      return "scale_ratio";
+    case ImportanceMeasure::erosion:
+      return "erosion_thickness";
+    case ImportanceMeasure::geodesic:
+      return "medial_geodesic";
+    default:
+      return name_of(measure);
+  }
 }
 
 // The area of the faces, and a third of that of the faces around each vertex.
@@ -93,24 +100,22 @@ PrunedRow measured_row(const Surface& surface, const MedialAxis& axis, const Qua
 
 std::vector<PrunedRow> curve_of(const MedialCommand& command, const Surface& surface, const MedialAxis& axis,
                                 const Progress& progress) {
-  const Named& named = named_measure(command.prune_curve);
-  const double diagonal = surface.bounding_box().diagonal().norm();
-  std::vector<double> measure = importance(surface, axis, named.measure, progress), area_of_vertex;
-  const bool is_length = named.measure != ImportanceMeasure::angle && named.measure != ImportanceMeasure::scale;
-  const double unit = is_length ? diagonal : 1;
-  for (double& value : measure) value /= unit;
+  const ImportanceMeasure measure = measure_named(command.prune_curve);
+  const std::vector<double> values = importance(surface, axis, measure, progress);
+  std::vector<double> area_of_vertex;
   const double whole = areas(medial_mesh(axis), area_of_vertex);
   QualityOptions options = quality_options(command);
   options.contact_cells = 1;  // what the rows do not tell is not measured
   options.economy_candidates = options.economy_samples = 1;
+  const double unit = is_length(measure)                    ? 100 / surface.bounding_box().diagonal().norm()
+                      : measure == ImportanceMeasure::angle ? kDegrees
+                                                            : 1;
   std::vector<PrunedRow> rows{measured_row(surface, axis, options, whole, progress)};
-  rows.front().value = named.measure == ImportanceMeasure::scale ? 1 : 0;
-  for (const double value : values_of_curve(measure, std::move(area_of_vertex))) {
-    PruneOptions pruning;
-    if (!(value > pruning.*named.option)) continue;
-    pruning.*named.option = value;
-    PrunedRow row = measured_row(surface, prune(surface, axis, pruning, progress), options, whole, progress);
-    row.value = value * (is_length ? 100 : named.measure == ImportanceMeasure::angle ? kDegrees : 1);
+  rows.front().value = measure == ImportanceMeasure::scale ? 1 : 0;
+  for (const double value : values_of_curve(values, std::move(area_of_vertex))) {
+    if (!(unit * value > rows.front().value)) continue;
+    PrunedRow row = measured_row(surface, prune(surface, axis, measure, values, value), options, whole, progress);
+    row.value = unit * value;
     rows.push_back(row);
   }
   return rows;
@@ -138,8 +143,10 @@ json to_json(const std::vector<PrunedRow>& rows) {
   return result;
 }
 
-std::string to_svg(const std::vector<PrunedRow>& rows, const Named& measure) {
-  const std::string x_label = fmt::format("{}{}{}", measure.name, *measure.unit == '\0' ? "" : ", ", measure.unit);
+std::string to_svg(const std::vector<PrunedRow>& rows, ImportanceMeasure measure) {
+  const std::string x_label = option_name(measure) + (is_length(measure)                    ? ", % of the diagonal"
+                                                      : measure == ImportanceMeasure::angle ? ", degrees"
+                                                                                            : "");
   plot::Plot error, size;
   error.title = "Two-sided distance of surface and envelope";
   error.x_label = size.x_label = x_label;
@@ -162,8 +169,8 @@ std::string to_svg(const std::vector<PrunedRow>& rows, const Named& measure) {
   return plot::to_svg({error, size}, 2);
 }
 
-void print_curve(const std::vector<PrunedRow>& rows, const Named& measure) {
-  fmt::print("pruned by {}: distance of surface and envelope, % of the diagonal\n", measure.name);
+void print_curve(const std::vector<PrunedRow>& rows, ImportanceMeasure measure) {
+  fmt::print("pruned by {}: distance of surface and envelope, % of the diagonal\n", option_name(measure));
   fmt::print("  {:>10} {:>8} {:>8} {:>10} {:>8} {:>10}\n", "value", "balls", "area, %", "two-sided", "mean",
              "coverage");
   for (const PrunedRow& row : rows)
@@ -181,7 +188,7 @@ std::vector<std::string> importance_names() {
 
 std::vector<std::string> prune_names() {
   std::vector<std::string> names;
-  for (const Named& measure : kMeasures) names.emplace_back(measure.name);
+  for (const ImportanceMeasure measure : kImportanceMeasures) names.push_back(option_name(measure));
   return names;
 }
 
@@ -204,12 +211,12 @@ AxisImportance measure_importance(const MedialCommand& command, const Surface& s
                                   const Progress& progress) {
   AxisImportance result;
   for (const std::string& name : command.importance) {
-    const Named& measure = named_measure(name);
-    time_stage(result.seconds, measure.array, [&] {
-      std::vector<double> values = importance(surface, axis, measure.measure, progress);
+    const ImportanceMeasure measure = measure_named(name);
+    time_stage(result.seconds, array_name(measure), [&] {
+      std::vector<double> values = importance(surface, axis, measure, progress);
       for (double& value : values)
         if (!std::isfinite(value)) value = std::numeric_limits<double>::quiet_NaN();
-      result.arrays.push_back({measure.array, std::move(values)});
+      result.arrays.push_back({array_name(measure), std::move(values)});
     });
   }
   if (!command.prune_curve.empty())
@@ -220,8 +227,8 @@ AxisImportance measure_importance(const MedialCommand& command, const Surface& s
 void write_importance(const MedialCommand& command, const AxisImportance& importance, json& report, Outputs& outputs) {
   if (!importance.seconds.empty()) report["importance_seconds"] = seconds_json(importance.seconds);
   if (importance.curve.empty()) return;
-  const Named& measure = named_measure(command.prune_curve);
-  report["prune_curve"] = {{"measure", measure.name}, {"rows", to_json(importance.curve)}};
+  const ImportanceMeasure measure = measure_named(command.prune_curve);
+  report["prune_curve"] = {{"measure", option_name(measure)}, {"rows", to_json(importance.curve)}};
   const std::vector<std::string> names = importance_file_names(command);
   write_file(outputs.add(names[0], "values of --prune against the error and the size of the axis"),
              to_csv(importance.curve));

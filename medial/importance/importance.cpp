@@ -124,6 +124,16 @@ std::vector<double> geodesics(const Surface& surface, const MedialAxis& axis, co
 
 }  // namespace
 
+const char* name_of(ImportanceMeasure measure) {
+  constexpr std::array kNames{"angle", "border_loss", "lambda", "scale", "erosion", "geodesic"};
+  static_assert(kNames.size() == kImportanceMeasures.size());
+  return kNames[static_cast<std::size_t>(measure)];
+}
+
+bool is_length(ImportanceMeasure measure) {
+  return measure != ImportanceMeasure::angle && measure != ImportanceMeasure::scale;
+}
+
 std::vector<double> importance(const Surface& surface, const MedialAxis& axis, ImportanceMeasure measure,
                                const Progress& progress) {
   if (axis.size() == 0) throw InputError("the importance of an axis: it has no vertices");

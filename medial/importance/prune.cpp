@@ -69,38 +69,100 @@ detail::BallComplex complex_of(const Surface& surface, const MedialAxis& axis) {
   return complex;
 }
 
-MedialAxis cut(const Surface& surface, const MedialAxis& axis, const std::vector<double>& over_limit, double diagonal) {
-  detail::BallComplex complex = complex_of(surface, axis);
-  detail::cut_where_below(surface, complex, over_limit, kMerging * diagonal);
-  MedialAxis result = detail::axis_of_balls(surface, complex);
-  result.stems = axis.stems;
-  result.bridges = axis.bridges;
-  result.left_out = axis.left_out;
-  return result;
+bool removes_nothing(ImportanceMeasure measure, double limit) {
+  return limit == (measure == ImportanceMeasure::scale ? 1 : 0);
 }
 
+// The places of an axis that are below the limits of some measures.
+class Insignificant {
+ public:
+  Insignificant(const Surface& surface, const MedialAxis& axis)
+      : surface_(surface),
+        axis_(axis),
+        cuts_(can_be_cut(axis)),
+        over_limit_(axis.size(), std::numeric_limits<double>::infinity()) {}
+
+  // Whether whole cells have a value of their own for a measure, so that those of the vertices are not needed.
+  bool is_of_cells(ImportanceMeasure measure) const {
+    return !cuts_ && (measure == ImportanceMeasure::angle || measure == ImportanceMeasure::lambda);
+  }
+
+  // Adds those that a measure of cells or vertices finds. `limit` has the unit of the values, which are not read if
+  // is_of_cells(measure).
+  void add(ImportanceMeasure measure, double limit, const std::vector<double>& values) {
+    if (is_of_cells(measure)) {
+      (measure == ImportanceMeasure::angle ? cells_.angle : cells_.lambda) = limit;
+      return;
+    }
+    for (Index v = 0; v < axis_.size(); ++v) over_limit_[v] = std::min(over_limit_[v], values[v] / limit);
+  }
+
+  MedialAxis removed() const {
+    if (!cuts_) return detail::prune_cells(axis_, cells_, over_limit_);
+    detail::BallComplex complex = complex_of(surface_, axis_);
+    detail::cut_where_below(surface_, complex, over_limit_, kMerging * surface_.bounding_box().diagonal().norm());
+    MedialAxis result = detail::axis_of_balls(surface_, complex);
+    result.stems = axis_.stems;
+    result.bridges = axis_.bridges;
+    result.left_out = axis_.left_out;
+    return result;
+  }
+
+ private:
+  const Surface& surface_;
+  const MedialAxis& axis_;
+  const bool cuts_;
+  detail::CellLimits cells_;
+  std::vector<double> over_limit_;
+};
+
 }  // namespace
+
+double& limit_of(PruneOptions& options, ImportanceMeasure measure) {
+  switch (measure) {
+    case ImportanceMeasure::angle:
+      return options.angle;
+    case ImportanceMeasure::border_loss:
+      return options.border_loss;
+    case ImportanceMeasure::lambda:
+      return options.lambda;
+    case ImportanceMeasure::scale:
+      return options.scale;
+    case ImportanceMeasure::erosion:
+      return options.erosion;
+    case ImportanceMeasure::geodesic:
+      return options.geodesic;
+  }
+  throw InputError("pruning: not a measure of importance");
+}
 
 MedialAxis prune(const Surface& surface, const MedialAxis& axis, const PruneOptions& options,
                  const Progress& progress) {
   check(options);
   if (options.removes_nothing() || axis.size() == 0) return axis;
-  const double diagonal = surface.bounding_box().diagonal().norm();
-  const bool cuts = can_be_cut(axis);
-  std::vector<double> over_limit(axis.size(), std::numeric_limits<double>::infinity());
-  const auto apply = [&](ImportanceMeasure measure, double limit) {
-    const std::vector<double> values = importance(surface, axis, measure, progress);
-    for (Index v = 0; v < axis.size(); ++v) over_limit[v] = std::min(over_limit[v], values[v] / limit);
-  };
-  if (options.scale > 1) apply(ImportanceMeasure::scale, options.scale);
-  if (options.border_loss > 0) apply(ImportanceMeasure::border_loss, options.border_loss * diagonal);
-  if (options.erosion > 0) apply(ImportanceMeasure::erosion, options.erosion * diagonal);
-  if (options.geodesic > 0) apply(ImportanceMeasure::geodesic, options.geodesic * diagonal);
-  if (!cuts)
-    return detail::prune_cells(axis, {.angle = options.angle, .lambda = options.lambda * diagonal}, over_limit);
-  if (options.angle > 0) apply(ImportanceMeasure::angle, options.angle);
-  if (options.lambda > 0) apply(ImportanceMeasure::lambda, options.lambda * diagonal);
-  return cut(surface, axis, over_limit, diagonal);
+  PruneOptions limits = options;
+  Insignificant insignificant(surface, axis);
+  for (const ImportanceMeasure measure : kImportanceMeasures) {
+    double limit = limit_of(limits, measure);
+    if (removes_nothing(measure, limit)) continue;
+    if (is_length(measure)) limit *= surface.bounding_box().diagonal().norm();
+    insignificant.add(
+        measure, limit,
+        insignificant.is_of_cells(measure) ? std::vector<double>{} : importance(surface, axis, measure, progress));
+  }
+  return insignificant.removed();
+}
+
+MedialAxis prune(const Surface& surface, const MedialAxis& axis, ImportanceMeasure measure,
+                 const std::vector<double>& values, double limit) {
+  if (values.size() != axis.size()) throw InputError("pruning needs one value of the measure for each vertex");
+  PruneOptions options;
+  limit_of(options, measure) = is_length(measure) ? limit / surface.bounding_box().diagonal().norm() : limit;
+  check(options);
+  if (options.removes_nothing() || axis.size() == 0) return axis;
+  Insignificant insignificant(surface, axis);
+  insignificant.add(measure, limit, values);
+  return insignificant.removed();
 }
 
 }  // namespace orchard

@@ -112,12 +112,8 @@ py::tuple simplify(const AxisPointer& axis, Index vertices, double error, bool f
 // `limits` are the values by the names of the measures, in the library's units.
 AxisPointer pruned(const AxisPointer& axis, const std::map<std::string, double>& limits, Index samples,
                    std::uint64_t seed, py::object progress) {
-  const PruneOptions options{.angle = limits.at("angle"),
-                             .scale = limits.at("scale"),
-                             .border_loss = limits.at("border_loss"),
-                             .lambda = limits.at("lambda"),
-                             .erosion = limits.at("erosion"),
-                             .geodesic = limits.at("geodesic")};
+  PruneOptions options;
+  for (const ImportanceMeasure measure : kImportanceMeasures) limit_of(options, measure) = limits.at(name_of(measure));
   return watched(std::move(progress), [&](const Progress& watch) {
     auto build = axis->build ? std::make_shared<MedialBuild>(*axis->build) : std::make_shared<MedialBuild>();
     if (!axis->build) {
@@ -137,21 +133,14 @@ AxisPointer pruned(const AxisPointer& axis, const std::map<std::string, double>&
 }
 
 py::dict importance_of_balls(const Axis& axis, const std::vector<std::string>& names, py::object progress) {
-  constexpr std::array<std::pair<const char*, ImportanceMeasure>, 5> kNamed{
-      {{"border_loss", ImportanceMeasure::border_loss},
-       {"lambda", ImportanceMeasure::lambda},
-       {"scale", ImportanceMeasure::scale},
-       {"erosion", ImportanceMeasure::erosion},
-       {"geodesic", ImportanceMeasure::geodesic}}};
   if (!axis.build) throw InputError("importance: the contacts of an axis that was not built here are not known");
   py::dict result;
-  for (const auto& [name, measure] : kNamed) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
-    std::vector<double> values = watched(progress, [&, &which = measure](const Progress& watch) {
-      return importance(*axis.surface, axis.build->axis, which, watch);
-    });
+  for (const ImportanceMeasure measure : kImportanceMeasures) {
+    if (std::find(names.begin(), names.end(), name_of(measure)) == names.end()) continue;
+    std::vector<double> values = watched(
+        progress, [&](const Progress& watch) { return importance(*axis.surface, axis.build->axis, measure, watch); });
     values.resize(axis.mesh.centers.size(), std::numeric_limits<double>::quiet_NaN());  // middles of faces have none
-    result[name] = own(std::move(values));
+    result[name_of(measure)] = own(std::move(values));
   }
   return result;
 }

@@ -25,7 +25,9 @@ class Finder {
 
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
   // For very many, room for as many more would be too much.
-  const bool few = 2 * pairs.size() < slots || pairs.size()<kFewPairs, many = pairs.size()> kPairsWithRoom * slots;
+  const std::size_t count = pairs.size();
+  const bool few = 2 * count < slots || count < kFewPairs;
+  const bool many = count > kPairsWithRoom * slots;
   if (few || many) return std::sort(pairs.begin(), pairs.end());
   room.resize(pairs.size());
   sort_by_body(pairs, room, slots, &BodyPair::b);

@@ -225,10 +225,13 @@ void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PoseP
   }
 }
 
-// Of the walk: what the search for the shortest way out may take.
+// Of the walk: what the search for the shortest way out may take. An effort below 0, or one that is not a number,
+// counts as 0.
 std::uint64_t search_work(double effort, double found) noexcept {
   constexpr double kLeast = 400, kMost = 1e18;  // kLeast: bodies of few triangles
-  return static_cast<std::uint64_t>(std::clamp(effort * found, kLeast, kMost));
+  const double work = effort * std::max(found, 1.0);
+  if (!(work > kLeast)) return static_cast<std::uint64_t>(kLeast);
+  return static_cast<std::uint64_t>(std::min(work, kMost));
 }
 
 // Without triangles, or without an answer: what the spheres say.

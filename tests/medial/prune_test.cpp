@@ -141,6 +141,27 @@ TEST(Prune, OfARefinedAxisCutsTrianglesAlongTheLevel) {
   }
 }
 
+TEST(Prune, WithKnownValuesIsTheSameAsWithoutThem) {
+  const Surface surface(test::l_shape());
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  for (const MedialAxis& axis : {axis_of(surface, 500), refined_axis_of(surface)}) {
+    for (const ImportanceMeasure measure : kImportanceMeasures) {
+      PruneOptions options;
+      const double limit = measure == ImportanceMeasure::angle      ? 1.7
+                           : measure == ImportanceMeasure::scale    ? 1.5
+                           : measure == ImportanceMeasure::geodesic ? 0.4
+                                                                    : 0.04;
+      limit_of(options, measure) = limit;
+      const MedialAxis expected = prune(surface, axis, options),
+                       found = prune(surface, axis, measure, importance(surface, axis, measure),
+                                     is_length(measure) ? limit * diagonal : limit);
+      EXPECT_NE(found.centers, axis.centers) << name_of(measure);
+      EXPECT_EQ(found.centers, expected.centers) << name_of(measure);
+      EXPECT_EQ(found.faces.items, expected.faces.items) << name_of(measure);
+    }
+  }
+}
+
 TEST(Prune, IsTheLastStepOfABuild) {
   const Surface surface(test::box({0, 0, 0}, {1, 4, 4}));
   MedialBuildOptions options{.sampling = {.face_points = 800, .edge_points = 200}};

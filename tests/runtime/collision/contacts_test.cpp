@@ -183,6 +183,27 @@ TEST(Contacts, AreNoMoreThanHalfDeeperThanTheLeastWayOut) {
   EXPECT_GT(judged, 20u);
 }
 
+TEST(Contacts, TakeAnyEffortAndOneThatIsNoNumberAsNone) {
+  const auto ring = build_tree(torus(20, 10, 1, 0.15), {.bounds = false}),
+             small = build_tree(box({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}));
+  const PreparedTree a(ring), b(small);
+  Workspace workspace;
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Pose& at_b : {Pose{.translation = {0.86, 0, 0}}, Pose{.translation = {1.14, 0, 0}}}) {
+    const auto depth = [&](double effort) {
+      const Manifold m = contacts(workspace, TreePair(a, b), {}, at_b, {.effort = effort});
+      EXPECT_EQ(m.answer, Answer::yes) << effort;
+      return m.depth;
+    };
+    const double none = depth(0);
+    EXPECT_EQ(depth(std::nan("")), none);
+    EXPECT_EQ(depth(-1), none);
+    EXPECT_EQ(depth(-infinity), none);
+    EXPECT_LE(depth(infinity), none * (1 + 1e-9));
+    EXPECT_LE(depth(infinity), 0.3) << "the tube is that thick";
+  }
+}
+
 TEST(Contacts, AreNoneWhereNothingTouchesAndGuessedWhereNothingIsKnown) {
   const auto tree = build_tree(box({-1, -1, -1}, {1, 1, 1}));
   auto spheres = tree;  // without triangles

@@ -39,6 +39,11 @@ inline constexpr std::array kImportanceMeasures{ImportanceMeasure::angle,   Impo
                                                 ImportanceMeasure::lambda,  ImportanceMeasure::scale,
                                                 ImportanceMeasure::erosion, ImportanceMeasure::geodesic};
 
+// Returns the name of a measure, which is that of its enumerator, such as "border_loss".
+const char* name_of(ImportanceMeasure measure);
+// Returns whether the values of a measure are lengths; if not, they are angles or factors.
+bool is_length(ImportanceMeasure measure);
+
 // Returns the importance of each vertex of an axis, built or imported: in radians for `angle`, a factor of at least 1
 // for `scale`, mesh units for the others. Throws InputError if the axis has no vertices. Deterministic; the work is
 // parallel. O(n log n) for n vertices, but for `geodesic`, which in addition visits a part of the surface for each

@@ -5,6 +5,7 @@
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/axis.h"
+#include "orchard/medial/importance.h"
 
 // Removes the insignificant parts of a medial axis, such as the spurs that noise on the surface causes.
 namespace orchard {
@@ -32,6 +33,14 @@ struct PruneOptions {
 // Throws InputError if an option is out of range. Deterministic. O(n log n), and the cost of importance().
 MedialAxis prune(const Surface& surface, const MedialAxis& axis, const PruneOptions& options,
                  const Progress& progress = {});
+
+// Does the same for one measure whose values are known: `values` are importance(surface, axis, measure), and `limit` is
+// in their unit. For several limits, the measure is thus computed once.
+MedialAxis prune(const Surface& surface, const MedialAxis& axis, ImportanceMeasure measure,
+                 const std::vector<double>& values, double limit);
+
+// Returns the member of `options` that belongs to a measure.
+double& limit_of(PruneOptions& options, ImportanceMeasure measure);
 
 // Returns the angle in radians at which the two points of a face or topology face are seen from its middle, but at most
 // the angle between the surface normals at the points and at most the largest angle of the face's vertices. The limits
