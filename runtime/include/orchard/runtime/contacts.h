@@ -47,10 +47,10 @@ struct ContactOptions {
   // The maximum number of directions that are tried from each initial direction; 0 computes only the depth of the first
   // normal. Higher values find smaller depths and take longer.
   std::uint32_t refinements = 12;
-  // The work that the search for the depth may take, as a multiple of the work of finding the contact; at least 0, which
-  // other values count as. Shallow contacts
-  // need less than the default. If bodies are deep in each other, the search ends with the best depth so far, or with
-  // the extents of the bodies (Manifold::complete). Infinity searches to the end, which may take 100 times as long.
+  // The work that the search for the depth may take, as a multiple of the work of finding the contact; at least 0,
+  // which other values count as. Shallow contacts need less than the default. If bodies are deep in each other, the
+  // search ends with the best depth so far, or with the extents of the bodies (Manifold::complete). Infinity searches
+  // to the end, which may take 100 times as long.
   double effort = 0.5;
   bool depth = true;  // False: points and a first normal only, at a fraction of the cost.
   // The largest distance, in world units, of surfaces that get a point before they touch. The point is the middle
