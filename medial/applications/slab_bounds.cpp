@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "slab_tree.h"
+
+namespace orchard::detail {
+namespace {
+
+using Lanes = SlabTree::Lanes;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMargin = 1e-12;  // of squared lengths: far more than their roundings
+
+// What the bounds of a child depend on.
+struct Seen {
+  Lanes squared;        // of the distance from the place to the child's centre
+  Lanes depth;          // of the centre below the tangent plane
+  Lanes along, cosine;  // components, along the child's normal, of the way from the centre to the place and of the
+                        // place's normal
+  Lanes max_depth;      // an upper bound on the depth of the child's places
+  Lanes excess;         // negative if the child is out of the cone or of the largest ball
+};
+
+// The depth is bounded in two ways: by the child's ball alone; and by its slab along the slab's normal and by its ball
+// across it. It is the slab that excludes the neighbourhood of p. The largest ball is tested against the flat disc in
+// which the child's ball and slab meet.
+Seen look_from(const TangentPlace& place, const SlabTree::Node& node, double radius) {
+  const Point& p = place.position;
+  const Vector& n = place.normal;
+  const auto& u = node.normal;
+  const Lanes &size = node.radius, x = p.x() - node.center[0], y = p.y() - node.center[1], z = p.z() - node.center[2];
+  Seen seen;
+  seen.squared = x * x + y * y + z * z;
+  seen.depth = n.x() * x + n.y() * y + n.z() * z;
+  seen.along = u[0] * x + u[1] * y + u[2] * z;
+  seen.cosine = n.x() * u[0] + n.y() * u[1] + n.z() * u[2];
+  const Lanes across2 = (n.x() - seen.cosine * u[0]).square() + (n.y() - seen.cosine * u[1]).square() +
+                        (n.z() - seen.cosine * u[2]).square();
+  const Lanes by_slab = across2.sqrt() * size - (seen.cosine * node.low).min(seen.cosine * node.high);
+  seen.max_depth = seen.depth + by_slab.min(size);
+  // In the cone, max_depth >= sine (distance of the centre - size).
+  const Lanes reach = seen.max_depth + place.sine * size;
+  const Lanes margin = kMargin * (seen.squared + radius * radius);
+  const Lanes in_cone = reach * reach.abs() - place.sine * place.sine * seen.squared;
+  // From the centre p - r n of the largest ball: the height above the slab, and the way beside the child's ball.
+  const Lanes height = seen.along - radius * seen.cosine,
+              apart2 = seen.squared - 2 * radius * seen.depth + radius * radius;
+  const Lanes above = (height - node.high).max(node.low - height).max(0.0);
+  const Lanes beside = ((apart2 - height.square()).max(0.0).sqrt() - size).max(0.0);
+  const Lanes in_disc = radius * radius - above.square() - beside.square();
+  const Lanes in_ball = (radius + size).square() - apart2;
+  seen.excess = in_cone.min(in_disc).min(in_ball) + margin;
+  return seen;
+}
+
+double min_touch_of(const Seen& seen, const SlabTree::Node& node, Index i) {
+  const double squared = seen.squared[i], size = node.radius[i], depth = seen.max_depth[i], cosine = seen.cosine[i];
+  if (!(depth > 0)) return kInfinity;
+  const double nearest = std::max(std::sqrt(squared) - size, 0.0);
+  double bound = nearest * nearest / (2 * depth);
+  if (nearest > 0) bound = std::max(bound, (squared - size * size) / (2 * (seen.depth[i] + size)));
+  if (seen.along[i] > node.high[i] && 1 + cosine > 0)
+    bound = std::max(bound, (seen.along[i] - node.high[i]) / (1 + cosine));
+  if (seen.along[i] < node.low[i] && 1 - cosine > 0)
+    bound = std::max(bound, (node.low[i] - seen.along[i]) / (1 - cosine));
+  return bound;
+}
+
+// Whether all triangles of a child have normals with a larger component than `limit` along the place's normal, by the
+// angles between both normals and that of the child.
+bool faces_away(double cosine, double spread, double limit) {
+  constexpr double kRounding = 1e-7;  // of sines from cosines
+  if (!(cosine > -spread)) return false;
+  const double sines = std::sqrt(std::max(1 - cosine * cosine, 0.0) * std::max(1 - spread * spread, 0.0));
+  return cosine * spread - sines > limit + kRounding;
+}
+
+}  // namespace
+
+SlabTree::Lanes SlabTree::min_touch(const Node& node, const TangentPlace& place, const Limits& limits) {
+  const Seen seen = look_from(place, node, limits.radius);
+  Lanes bounds = Lanes::Constant(kInfinity);
+  for (Index i = 0; i < node.count; ++i) {
+    if (seen.excess[i] < 0) continue;
+    if (limits.cosine < 1 && faces_away(seen.cosine[i], node.spread[i], limits.cosine)) continue;
+    bounds[i] = min_touch_of(seen, node, i);
+  }
+  return bounds;
+}
+
+SlabTree::Lanes SlabTree::min_ray(const Node& node, const TangentPlace& place, const Limits& limits) {
+  Lanes bounds = Lanes::Constant(kInfinity);
+  for (Index i = 0; i < node.count; ++i) {
+    const Vector way = place.position - Point(node.center[0][i], node.center[1][i], node.center[2][i]);
+    const double depth = place.normal.dot(way), squared = way.squaredNorm(), size2 = node.radius[i] * node.radius[i];
+    const double inside = depth * depth - squared + size2;
+    if (squared <= size2) bounds[i] = 0;
+    if (squared <= size2 || depth < 0 || inside < -kMargin * squared) continue;
+    const double bound = (depth - std::sqrt(std::max(inside, 0.0))) / 2;
+    if (bound < limits.radius) bounds[i] = bound;
+  }
+  return bounds;
+}
+
+}  // namespace orchard::detail
