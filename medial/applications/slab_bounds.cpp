@@ -18,13 +18,14 @@ struct Seen {
   Lanes depth;          // of the centre below the tangent plane
   Lanes along, cosine;  // components, along the child's normal, of the way from the centre to the place and of the
                         // place's normal
-  Lanes max_depth;      // an upper bound on the depth of the child's places
   Lanes excess;         // negative if the child is out of the cone or of the largest ball
 };
 
-// The depth is bounded in two ways: by the child's ball alone; and by its slab along the slab's normal and by its ball
-// across it. It is the slab that excludes the neighbourhood of p. The largest ball is tested against the flat disc in
-// which the child's ball and slab meet.
+// The child lies in the flat disc in which its ball and its slab meet, so this disc is tested:
+// - Against the cone: its places q have f(q) = n (p - q) - sine |p - q| >= 0. This function is concave, so its tangent
+//   at the disc's centre is above it, and the largest value of the tangent in the disc is an upper bound. It is the
+//   slab that excludes the neighbourhood of p.
+// - Against the largest ball, by the height of its centre p - r n above the slab and its way beside the child's ball.
 Seen look_from(const TangentPlace& place, const SlabTree::Node& node, double radius) {
   const Point& p = place.position;
   const Vector& n = place.normal;
@@ -35,27 +36,37 @@ Seen look_from(const TangentPlace& place, const SlabTree::Node& node, double rad
   seen.depth = n.x() * x + n.y() * y + n.z() * z;
   seen.along = u[0] * x + u[1] * y + u[2] * z;
   seen.cosine = n.x() * u[0] + n.y() * u[1] + n.z() * u[2];
-  const Lanes across2 = (n.x() - seen.cosine * u[0]).square() + (n.y() - seen.cosine * u[1]).square() +
-                        (n.z() - seen.cosine * u[2]).square();
-  const Lanes by_slab = across2.sqrt() * size - (seen.cosine * node.low).min(seen.cosine * node.high);
-  seen.max_depth = seen.depth + by_slab.min(size);
-  // In the cone, max_depth >= sine (distance of the centre - size).
-  const Lanes reach = seen.max_depth + place.sine * size;
-  const Lanes margin = kMargin * (seen.squared + radius * radius);
-  const Lanes in_cone = reach * reach.abs() - place.sine * place.sine * seen.squared;
-  // From the centre p - r n of the largest ball: the height above the slab, and the way beside the child's ball.
+
+  const Lanes distance = seen.squared.sqrt(), part = place.sine / distance.max(std::numeric_limits<double>::min());
+  const Lanes slope = part * seen.along - seen.cosine;
+  const Lanes across2 = (part * x - n.x() - slope * u[0]).square() + (part * y - n.y() - slope * u[1]).square() +
+                        (part * z - n.z() - slope * u[2]).square();
+  const Lanes rise = (slope * node.low).max(slope * node.high) + across2.sqrt() * size;
+  const Lanes in_cone = seen.depth - place.sine * distance + rise.min((across2 + slope.square()).sqrt() * size);
+
   const Lanes height = seen.along - radius * seen.cosine,
               apart2 = seen.squared - 2 * radius * seen.depth + radius * radius;
   const Lanes above = (height - node.high).max(node.low - height).max(0.0);
   const Lanes beside = ((apart2 - height.square()).max(0.0).sqrt() - size).max(0.0);
   const Lanes in_disc = radius * radius - above.square() - beside.square();
   const Lanes in_ball = (radius + size).square() - apart2;
-  seen.excess = in_cone.min(in_disc).min(in_ball) + margin;
+  const Lanes margin = kMargin * (seen.squared + radius * radius);
+  seen.excess = (in_disc.min(in_ball) + margin).min(in_cone + kMargin * (distance + size));
   return seen;
 }
 
-double min_touch_of(const Seen& seen, const SlabTree::Node& node, Index i) {
-  const double squared = seen.squared[i], size = node.radius[i], depth = seen.max_depth[i], cosine = seen.cosine[i];
+// An upper bound on the depth of the child's places below the tangent plane: by the child's ball alone, or by its slab
+// along the slab's normal and by its ball across it.
+double max_depth_of(const Seen& seen, const TangentPlace& place, const SlabTree::Node& node, Index i) {
+  const double cosine = seen.cosine[i];
+  const Vector across = place.normal - cosine * Vector(node.normal[0][i], node.normal[1][i], node.normal[2][i]);
+  const double by_slab = across.norm() * node.radius[i] - std::min(cosine * node.low[i], cosine * node.high[i]);
+  return seen.depth[i] + std::min(by_slab, node.radius[i]);
+}
+
+double min_touch_of(const Seen& seen, const TangentPlace& place, const SlabTree::Node& node, Index i) {
+  const double squared = seen.squared[i], size = node.radius[i], cosine = seen.cosine[i];
+  const double depth = max_depth_of(seen, place, node, i);
   if (!(depth > 0)) return kInfinity;
   const double nearest = std::max(std::sqrt(squared) - size, 0.0);
   double bound = nearest * nearest / (2 * depth);
@@ -84,7 +95,7 @@ SlabTree::Lanes SlabTree::min_touch(const Node& node, const TangentPlace& place,
   for (Index i = 0; i < node.count; ++i) {
     if (seen.excess[i] < 0) continue;
     if (limits.cosine < 1 && faces_away(seen.cosine[i], node.spread[i], limits.cosine)) continue;
-    bounds[i] = min_touch_of(seen, node, i);
+    bounds[i] = min_touch_of(seen, place, node, i);
   }
   return bounds;
 }
