@@ -10,6 +10,19 @@ namespace {
 
 constexpr auto kFanOut = static_cast<Index>(SlabTree::kWidth);
 
+// The centre of the smallest ball around a triangle.
+Point middle_of(const std::array<Point, 3>& corners) {
+  std::size_t i = 0;  // the longest edge is opposite this corner
+  double longest = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double squared = (corners[(k + 1) % 3] - corners[(k + 2) % 3]).squaredNorm();
+    if (squared > longest) i = k, longest = squared;
+  }
+  const Vector a = corners[(i + 1) % 3] - corners[i], b = corners[(i + 2) % 3] - corners[i], normal = a.cross(b);
+  if (!(a.dot(b) > 0) || !(normal.squaredNorm() > 0)) return (corners[(i + 1) % 3] + corners[(i + 2) % 3]) / 2;
+  return corners[i] + (a.squaredNorm() * b - b.squaredNorm() * a).cross(normal) / (2 * normal.squaredNorm());
+}
+
 }  // namespace
 
 SlabTree::SlabTree(const Surface& surface) : surface_(surface) {
@@ -64,7 +77,7 @@ void SlabTree::bound(Node& node, Index child, Index begin, Index end) const {
   };
   Box box;
   each_corner([&](const Point& corner) { box.extend(corner); });
-  const Point center = box.center();
+  const Point center = end - begin == 1 ? middle_of(surface_.corners(triangles_[begin])) : box.center();
   Vector normal = Vector::Zero();
   for (Index i = begin; i < end; ++i) normal += surface_.area(triangles_[i]) * surface_.normal(triangles_[i]);
   normal.normalize();  // stays zero if it is
