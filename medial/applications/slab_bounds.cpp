@@ -29,18 +29,19 @@ struct Seen {
 Seen look_from(const TangentPlace& place, const SlabTree::Node& node, double radius) {
   const Point& p = place.position;
   const Vector& n = place.normal;
-  const auto& u = node.normal;
-  const Lanes &size = node.radius, x = p.x() - node.center[0], y = p.y() - node.center[1], z = p.z() - node.center[2];
+  const auto ux = node.normal.col(0), uy = node.normal.col(1), uz = node.normal.col(2);
+  const Lanes x = p.x() - node.center.col(0), y = p.y() - node.center.col(1), z = p.z() - node.center.col(2);
+  const Lanes& size = node.radius;
   Seen seen;
   seen.squared = x * x + y * y + z * z;
   seen.depth = n.x() * x + n.y() * y + n.z() * z;
-  seen.along = u[0] * x + u[1] * y + u[2] * z;
-  seen.cosine = n.x() * u[0] + n.y() * u[1] + n.z() * u[2];
+  seen.along = ux * x + uy * y + uz * z;
+  seen.cosine = n.x() * ux + n.y() * uy + n.z() * uz;
 
   const Lanes distance = seen.squared.sqrt(), part = place.sine / distance.max(std::numeric_limits<double>::min());
   const Lanes slope = part * seen.along - seen.cosine;
-  const Lanes across2 = (part * x - n.x() - slope * u[0]).square() + (part * y - n.y() - slope * u[1]).square() +
-                        (part * z - n.z() - slope * u[2]).square();
+  const Lanes across2 = (part * x - n.x() - slope * ux).square() + (part * y - n.y() - slope * uy).square() +
+                        (part * z - n.z() - slope * uz).square();
   const Lanes rise = (slope * node.low).max(slope * node.high) + across2.sqrt() * size;
   const Lanes in_cone = seen.depth - place.sine * distance + rise.min((across2 + slope.square()).sqrt() * size);
 
@@ -59,7 +60,7 @@ Seen look_from(const TangentPlace& place, const SlabTree::Node& node, double rad
 // along the slab's normal and by its ball across it.
 double max_depth_of(const Seen& seen, const TangentPlace& place, const SlabTree::Node& node, Index i) {
   const double cosine = seen.cosine[i];
-  const Vector across = place.normal - cosine * Vector(node.normal[0][i], node.normal[1][i], node.normal[2][i]);
+  const Vector across = place.normal - cosine * Vector(node.normal.row(i));
   const double by_slab = across.norm() * node.radius[i] - std::min(cosine * node.low[i], cosine * node.high[i]);
   return seen.depth[i] + std::min(by_slab, node.radius[i]);
 }
@@ -103,7 +104,7 @@ SlabTree::Lanes SlabTree::min_touch(const Node& node, const TangentPlace& place,
 SlabTree::Lanes SlabTree::min_ray(const Node& node, const TangentPlace& place, const Limits& limits) {
   Lanes bounds = Lanes::Constant(kInfinity);
   for (Index i = 0; i < node.count; ++i) {
-    const Vector way = place.position - Point(node.center[0][i], node.center[1][i], node.center[2][i]);
+    const Vector way = place.position - Point(node.center.row(i));
     const double depth = place.normal.dot(way), squared = way.squaredNorm(), size2 = node.radius[i] * node.radius[i];
     const double inside = depth * depth - squared + size2;
     if (squared <= size2) bounds[i] = 0;

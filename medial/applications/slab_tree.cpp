@@ -47,7 +47,7 @@ Index SlabTree::fill(Index begin, Index end) {
   if (end - begin > 2 * full) halve(begin, begin + 2 * full, end);
   halve(begin, begin + full, std::min(begin + 2 * full, end));
   if (end - begin > 3 * full) halve(begin + 2 * full, begin + 3 * full, end);
-  Node node{};
+  Node node;
   node.is_leaf = full == 1;
   for (Index first = begin; first < end; first += full) {
     const Index last = std::min(first + full, end);
@@ -92,10 +92,8 @@ void SlabTree::bound(Node& node, Index child, Index begin, Index end) const {
     const Vector& other = surface_.normal(triangles_[i]);
     spread = other.isZero(0) ? -1 : std::min(spread, normal.dot(other));
   }
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    node.center[static_cast<std::size_t>(axis)][child] = center[axis];
-    node.normal[static_cast<std::size_t>(axis)][child] = normal[axis];
-  }
+  node.center.row(child) = center.transpose();
+  node.normal.row(child) = normal.transpose();
   node.radius[child] = std::sqrt(squared);
   node.low[child] = low, node.high[child] = high, node.spread[child] = spread;
 }

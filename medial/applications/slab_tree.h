@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "orchard/geometry/surface.h"
@@ -14,14 +13,17 @@ namespace orchard::detail {
 class SlabTree {
  public:
   static constexpr int kWidth = 4;
-  using Lanes = Eigen::Array<double, kWidth, 1>;  // one number for each child
+  // One number or one vector for each child.
+  using Lanes = Eigen::Array<double, kWidth, 1>;
+  using Vectors = Eigen::Array<double, kWidth, 3>;
 
   struct Node {
-    std::array<Lanes, 3> center, normal;
-    Lanes radius;
-    Lanes low, high;  // the slab is low <= normal (x - center) <= high
+    Vectors center = Vectors::Zero(), normal = Vectors::Zero();
+    Lanes radius = Lanes::Zero();
+    // The slab is low <= normal (x - center) <= high.
+    Lanes low = Lanes::Zero(), high = Lanes::Zero();
     // A lower bound on the cosine of the angle between the child's normal and those of its triangles.
-    Lanes spread;
+    Lanes spread = Lanes::Zero();
     std::array<Index, kWidth> children{};  // nodes; of a leaf, triangles
     Index count = 0;                       // of children
     bool is_leaf = false;
