@@ -189,7 +189,7 @@ TEST(RefineAxis, WhatStandsOutAlongARidgeFarFromTheAxisGetsNoSpikes) {
     outline.push_back({std::cos(angle), std::sin(angle)});
   }
   const Surface roller(test::extruded(outline, kLength));
-  for (const Index points : {2000, 8000}) {
+  for (const Index points : {2000u, 8000u}) {
     SCOPED_TRACE(points);
     MedialBuildOptions options = reaching(points, test::first_seed() + 1);
     const MedialBuild build = build_medial_axis(roller, options);
