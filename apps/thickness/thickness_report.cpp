@@ -19,7 +19,9 @@ constexpr std::size_t kPrinted = 10;  // regions that the table has; the report 
 
 // The least, the area-weighted quantiles and the largest of the values that are defined.
 struct Summary {
-  double min = NAN, tenth = NAN, median = NAN, max = NAN, max_error = 0;
+  double min = NAN, tenth = NAN, median = NAN, max = NAN;
+  double max_error = 0;       // of the decided places
+  double undecided_area = 0;  // where the search ended before it was known whether there is a thickness
 };
 
 Summary summary_of(const LocalThickness& thickness) {
@@ -27,15 +29,19 @@ Summary summary_of(const LocalThickness& thickness) {
   const std::vector<double>& values = thickness.at_triangles.thickness;
   std::vector<std::pair<double, double>> sorted;  // value, area
   double total = 0;
+  Summary summary;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isnan(values[i])) continue;
     const auto& [a, b, c] = mesh.triangles[i];
     const double area = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm() / 2;
+    const double error = thickness.at_triangles.error[i];
+    if (std::isinf(error))
+      summary.undecided_area += area;
+    else
+      summary.max_error = std::max(summary.max_error, error);
+    if (std::isnan(values[i])) continue;
     sorted.emplace_back(values[i], area);
     total += area;
   }
-  Summary summary;
-  for (const double error : thickness.at_triangles.error) summary.max_error = std::max(summary.max_error, error);
   if (sorted.empty()) return summary;
   std::sort(sorted.begin(), sorted.end());
   summary.min = sorted.front().first;
@@ -68,6 +74,7 @@ json to_json(const ThicknessReport& report) {
               {"triangles", report.thickness.mesh.triangles.size()},
               {"area", report.thin.total_area},
               {"defined_area", report.thin.defined_area},
+              {"undecided_area", summary.undecided_area},
               {"thickness",
                {{"min", number(summary.min)},
                 {"percentile10", number(summary.tenth)},
@@ -99,6 +106,9 @@ void print(const ThicknessReport& report) {
              summary.min, summary.tenth, summary.median, summary.max, unit);
   if (summary.max_error > 0)
     fmt::print("diameters are proven to be too large by at most {:.3g}{}\n", summary.max_error, unit);
+  if (summary.undecided_area > 0)
+    fmt::print("on {:.3g} % of the area the search ended before it was known whether there is a thickness\n",
+               100 * summary.undecided_area / report.thin.total_area);
   if (!report.below) return;
   const auto& regions = report.thin.regions;
   if (regions.empty()) {

@@ -134,6 +134,9 @@ double TangentBallSearch::turn_around(Index triangle) const {
 void TangentBallSearch::set_thickness(const SurfacePlace& place, ThicknessAt& at) {
   at.thickness = at.angle >= options_.facing - kSameAngle ? at.diameter : kNaN;
   if (!std::isnan(at.thickness) || options_.definition == ThicknessDefinition::ray) return;
+  // No thickness is below the diameter. If the diameter is uncertain, so is whether a thickness explains it.
+  const double low = at.diameter - at.error;
+  const bool certain = at.error == 0;
   double turn = 0;
   surface_.triangles_at(ended_, feature_at(surface_.corners(ended_), at.contact), around_end_);
   for (const Index triangle : around_end_) turn = std::max(turn, turn_around(triangle));
@@ -143,7 +146,12 @@ void TangentBallSearch::set_thickness(const SurfacePlace& place, ThicknessAt& at
   const TangentPlace tangent{place.position, at.normal, std::sin(options_.facing / 2)};
   run(facing_, tangent, {limit * (1 + kSame), -1});
   max_cosine_ = 1;
-  if (touched_ == kNone) return;
+  if (touched_ == kNone) {
+    // A search that ended early may have missed a facing contact.
+    if (!certain || low_ < found_.radius) at.error = std::numeric_limits<double>::infinity();
+    return;
+  }
+  at.error = 2 * found_.radius - (certain ? 2 * low_ : low);
   at.thickness = 2 * found_.radius;
   at.contact = found_.at;
   at.angle = seen_angle(tangent, found_.at);

@@ -245,21 +245,6 @@ TEST(Thickness, IsTheSameWhateverTheNumberOfThreads) {
   }
 }
 
-TEST(Thickness, SaysHowFarItMayBeOffWhereItsWorkEnded) {
-  const Surface surface(test::icosphere(2));
-  const LocalThickness exact = local_thickness(surface, {.samples = 1, .work = 1'000'000});
-  const LocalThickness found = local_thickness(surface, {.samples = 1, .work = 100});
-  double largest = 0;
-  for (std::size_t i = 0; i < found.at_triangles.error.size(); ++i) {
-    EXPECT_LE(exact.at_triangles.error[i], 1e-11);
-    const double excess = found.at_triangles.ball_diameter[i] - exact.at_triangles.ball_diameter[i];
-    EXPECT_GE(excess, -1e-12);
-    EXPECT_LE(excess, found.at_triangles.error[i] + 1e-12);
-    largest = std::max(largest, found.at_triangles.error[i]);
-  }
-  EXPECT_GT(largest, 0);
-}
-
 TEST(Thickness, RefusesOptionsOutOfRangeAndWhatIsNoSolid) {
   const Surface box(test::box(Point(0, 0, 0), Point(1, 1, 1)));
   EXPECT_THROW(local_thickness(box, {.facing = -1}), InputError);

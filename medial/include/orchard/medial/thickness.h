@@ -57,7 +57,8 @@ struct SurfacePlace {
 // normal (on degenerate triangles) and where there is no surface in front (on open surfaces).
 struct ThicknessAt {
   double diameter = 0;  // In mesh units.
-  // A proven bound: the diameter is too large by at most this. It is above 0 if options.work ended the search.
+  // A proven bound: `diameter`, and `thickness` where a complete search would define it, are too large by at most this.
+  // It is above 0 if options.work ended a search, and infinite if that leaves open whether there is a thickness.
   double error = 0;
   // The thickness, in mesh units; NaN if the place faces no contact. It is `diameter`, or a little more where facets
   // ended that ball too early (see ThicknessOptions::smooth).
