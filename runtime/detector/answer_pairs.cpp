@@ -68,7 +68,7 @@ void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Sc
     const bool tries = slow || record.touching;
     if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
-      record.along = query_of(scratch.workspace.narrow).apart_along();
+      record.along = query_of(scratch.workspace.narrow).known().apart_along;
     }
     scratch.work += kPairWork + verdict.work;
     if (verdict.answer == Answer::no) make_solid(verdict, pair);

@@ -91,7 +91,7 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, QueryPool::Scratch
     task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
-    narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     narrow.start(pair.a.pose(), pair.b.pose());
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
@@ -111,7 +111,7 @@ void PairScheduler::decide(Task& task, CachedPair& record, std::uint64_t most,
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
   } else {
-    narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
   }
   task.work = verdict.work;
@@ -203,14 +203,14 @@ void PairScheduler::refine_one(Task& task, const CachedPair& record, std::uint64
   answerer_.place(record, task.part_a, task.part_b, pair);
   PairQuery& query = *task.query;
   if (!task.started) {
-    query.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+    query.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     query.start(pair.a.pose(), pair.b.pose());
     task.started = true;
   }
   const double bound = task.verdict.separation_bound;
-  const std::uint64_t before = query.work();
+  const std::uint64_t before = query.known().work;
   query.refine_exactly({slice, time});
-  task.work = query.work() - before;
+  task.work = query.known().work - before;
   task.done = query.finished();
   task.verdict = verdict_of(query, pair);
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
