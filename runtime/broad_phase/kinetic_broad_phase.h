@@ -59,15 +59,8 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   void note_spheres();
   void append_loose(std::vector<BodyIndex>& bodies) const;
 
-  BodyPool& pool_;
-  const BroadPhaseOptions options_;
-  Changes changes_;
+  KineticState state_;
   std::vector<BodyIndex> gone_;  // since the last step, whatever has their indices now
-  Windows windows_;
-  BoxIndex boxes_;
-  TimingWheel wheel_;
-  OverlapList overlaps_;
-  InvalidBodies refusals_;
   Planner planner_;
   NearPairs pairs_;
   WindowUpdates updates_;

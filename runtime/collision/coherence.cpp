@@ -103,8 +103,7 @@ class Coherence {
       memory_.witness_count = 0;
     }
     const bool have_triangles = !pair_.a().tree.obb_nodes.empty() && !pair_.b().tree.obb_nodes.empty();
-    memory_.clearance =
-        answer == Answer::no && have_triangles ? narrow_.known().lower_bound / a_.scale : 0;
+    memory_.clearance = answer == Answer::no && have_triangles ? narrow_.known().lower_bound / a_.scale : 0;
     if (memory_.clearance > 0) memory_.relative = find_relative();
     return narrow_.verdict();
   }
@@ -153,8 +152,7 @@ class Coherence {
   bool place_for_triangles() noexcept {
     if (placed_) return true;
     narrow_.bind(pair_.a(), pair_.b());
-    placed_ = narrow_.has_last_level() && find_rigid() &&
-              direct_.place(a_, b_);
+    placed_ = narrow_.has_last_level() && find_rigid() && direct_.place(a_, b_);
     return placed_;
   }
 
@@ -198,9 +196,7 @@ class Coherence {
   }
 
   // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
-  bool witness_meets(std::size_t i) noexcept {
-    return direct_.test_two(place_of(memory_.witnesses[i]));
-  }
+  bool witness_meets(std::size_t i) noexcept { return direct_.test_two(place_of(memory_.witnesses[i])); }
 
   // Those that have not met for longer: bodies that go to and fro come back to them.
   bool older_meet() noexcept {

@@ -48,9 +48,7 @@ bool DistanceSearch::bind(const PreparedTree& a, const PreparedTree& b) noexcept
   return make_room();
 }
 
-bool DistanceSearch::make_room() noexcept {
-  return !trees_.have_triangles() || stack_.reserve(first(), second());
-}
+bool DistanceSearch::make_room() noexcept { return !trees_.have_triangles() || stack_.reserve(first(), second()); }
 
 void DistanceSearch::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
   tolerance_ = tolerance;
@@ -130,8 +128,8 @@ void DistanceSearch::leave_the_rest() noexcept {
 
 // Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
 bool DistanceSearch::surely_near(const Apart& pair) noexcept {
-  const double radii = double{slab_radius(first(), pair.a)} +
-                       double{slab_radius(second(), pair.b)} * double{trees_.placement().scale};
+  const double radii =
+      double{slab_radius(first(), pair.a)} + double{slab_radius(second(), pair.b)} * double{trees_.placement().scale};
   if (radii > limit_.enough) return false;
   const detail::NodeBox p = detail::node_box_at(first(), pair.a);
   const detail::NodeBox q = moved_box(trees_, pair.b);
@@ -224,8 +222,7 @@ void DistanceSearch::compare_leaves(const Apart& pair) noexcept {
 }
 
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
-void DistanceSearch::find_within(const Apart& pair, const TriangleBlock& lanes,
-                                 const TriangleBlock& rows) noexcept {
+void DistanceSearch::find_within(const Apart& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept {
   detail::Placement near = trees_.placement();
   near.margin = float_above((double{near.margin} + limit_.length) * (1 + 1e-6));
   const detail::NodeBox lane_box = detail::node_box_at(first(), pair.a);

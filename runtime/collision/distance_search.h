@@ -57,7 +57,7 @@ class DistanceSearch {
   std::size_t stack_size_ = 0;
   Tolerance tolerance_;
   struct Limit {
-    double length = std::numeric_limits<double>::infinity();   // what is farther is left out
+    double length = std::numeric_limits<double>::infinity();  // what is farther is left out
     float rounded_up = std::numeric_limits<float>::infinity();
     double enough = 0;  // so near: nothing nearer is looked for
   };

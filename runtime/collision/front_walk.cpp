@@ -203,11 +203,11 @@ void FrontWalk::expand(const NodePair& pair, const detail::Opened& opened) noexc
   BoxAxes axes;
   const float margin = placement_.box_margin;
   if (opened.second) {
-    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_), second_.obb_nodes[opened.block],
-                     &placement_, margin, axes);
+    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_),
+                     second_.obb_nodes[opened.block], &placement_, margin, axes);
   } else {
-    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.obb_nodes[opened.block], nullptr,
-                     margin, axes);
+    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.obb_nodes[opened.block],
+                     nullptr, margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
   const float sign = opened.second ? 1.0f : -1.0f;

@@ -59,9 +59,9 @@ class FrontWalk {
   std::size_t stack_size_ = 0;
   void note(float gap) noexcept { least_ = gap < least_ ? gap : least_; }
 
-  float least_ = std::numeric_limits<float>::infinity();        // of the gaps that are known now
-  float far_ = std::numeric_limits<float>::infinity();          // gaps above it are kept as one bound
-  float enough_ = 0;                                            // of a gap between leaves: as much as the last motion
+  float least_ = std::numeric_limits<float>::infinity();  // of the gaps that are known now
+  float far_ = std::numeric_limits<float>::infinity();    // gaps above it are kept as one bound
+  float enough_ = 0;                                      // of a gap between leaves: as much as the last motion
   struct Slots {
     std::array<std::uint16_t, PairFront::kRoom> slots;
     std::uint32_t count = 0;

@@ -79,7 +79,8 @@ void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& criti
     return (length_of(from) + double{slab.radius}) * (1 + 1e-5);
   };
   const double first_reach = reach(p, motion_.first.center), second_reach = reach(top.second, motion_.second.center);
-  const double fastest = length_of(motion_.velocity) + motion_.speed + (motion_.first.spin + motion_.first.turning) * first_reach +
+  const double fastest = length_of(motion_.velocity) + motion_.speed +
+                         (motion_.first.spin + motion_.first.turning) * first_reach +
                          (motion_.second.spin + motion_.second.turning) * second_reach;
   // Before that no gap closes, whatever its direction.
   const auto earliest = [&](float lower) {

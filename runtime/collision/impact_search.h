@@ -56,7 +56,12 @@ class ImpactSearch {
  public:
   ImpactSearch(Workspace& workspace, const TreePair& pair, const Travel& a, const Travel& b,
                const ImpactOptions& options) noexcept
-      : workspace_(workspace), trees_(query_of(workspace.narrow).trees()), pair_(pair), a_(a), b_(b), options_(options) {}
+      : workspace_(workspace),
+        trees_(query_of(workspace.narrow).trees()),
+        pair_(pair),
+        a_(a),
+        b_(b),
+        options_(options) {}
 
   Impact run() noexcept;
 

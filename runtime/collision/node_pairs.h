@@ -59,8 +59,8 @@ struct Opened {
 
 inline Opened larger_node(const TreeView& first, const TreeView& second, const NodePair& pair, float scale) noexcept {
   const std::uint32_t a = slab_child(first, pair.a), b = slab_child(second, pair.b);
-  const bool opens_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && slab_radius(first, pair.a) <
-                                                                               slab_radius(second, pair.b) * scale);
+  const bool opens_second =
+      (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && slab_radius(first, pair.a) < slab_radius(second, pair.b) * scale);
   return {opens_second, opens_second ? b : a};
 }
 

@@ -139,8 +139,7 @@ Answer PairQuery::probe(std::uint32_t level) noexcept {
 }
 
 void PairQuery::lower_separation_bound() noexcept {
-  known_.separation_bound =
-      std::min(known_.separation_bound, spheres_.least_bound() * trees_.first_pose().scale);
+  known_.separation_bound = std::min(known_.separation_bound, spheres_.least_bound() * trees_.first_pose().scale);
 }
 
 void PairQuery::finish(Answer answer) noexcept {
@@ -229,7 +228,8 @@ Vec3 PairQuery::triangle_normal() const noexcept {
     return n;
   };
   const auto of_first = normal_of(detail::points_of(trees_.first().tree, triangles_.found().first));
-  const auto of_second = rotate(trees_.relative(), normal_of(detail::points_of(trees_.second().tree, triangles_.found().second)));
+  const auto of_second =
+      rotate(trees_.relative(), normal_of(detail::points_of(trees_.second().tree, triangles_.found().second)));
   Vec3 way{};
   for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
   const double size = length(way);

@@ -86,9 +86,7 @@ class PlacedTrees {
 
   const PreparedTree& first() const noexcept { return trees_.first(); }
   const PreparedTree& second() const noexcept { return trees_.second(); }
-  bool have_triangles() const noexcept {
-    return !first().tree.obb_nodes.empty() && !second().tree.obb_nodes.empty();
-  }
+  bool have_triangles() const noexcept { return !first().tree.obb_nodes.empty() && !second().tree.obb_nodes.empty(); }
   // Precondition of what follows: place().
   bool exchanged() const noexcept { return exchanged_; }  // whether the first tree is that of `b`
   const Pose& first_pose() const noexcept { return first_pose_; }

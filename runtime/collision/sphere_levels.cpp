@@ -112,8 +112,7 @@ struct SphereLevels::Groups {
   // Up to eight rows and eight lanes from these on.
   BlockPair block(std::uint32_t outer, std::uint32_t inner) const noexcept {
     const std::uint32_t row = rows.first + inner, lane = lanes.first + outer;
-    BlockPair result{
-        &block_of(row_tree, row), &block_of(lane_tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
+    BlockPair result{&block_of(row_tree, row), &block_of(lane_tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
     result.lane_count = std::min(kBlockWidth, lanes.count - outer);
     result.row_end = std::min(kBlockWidth, result.row_begin + rows.count - inner);
     return result;

@@ -27,11 +27,11 @@ class SphereLevels {
   bool reserve(std::size_t pairs) noexcept;  // room for so many pairs per level; false if there is no memory
   void clear() noexcept;
   void reset_tests() noexcept { tests_ = 0; }
-  std::uint64_t tests() const noexcept { return tests_; }  // since then
-  void forget(double root_bound) noexcept;                 // what was found at other poses
-  bool begin(const PlacedTrees& trees) noexcept;           // with the roots; false if there is no room
+  std::uint64_t tests() const noexcept { return tests_; }              // since then
+  void forget(double root_bound) noexcept;                             // what was found at other poses
+  bool begin(const PlacedTrees& trees) noexcept;                       // with the roots; false if there is no room
   End refine(const PlacedTrees& trees, PairBudget& tracker) noexcept;  // to the end of a level
-  void give_up() noexcept;  // for lack of room: the bounds so far stay valid
+  void give_up() noexcept;                                             // for lack of room: the bounds so far stay valid
   // Whether any spheres meet at a level, by a search that ends at the first two. Precondition: nothing has begun.
   bool probe(const PlacedTrees& trees, std::uint32_t level) noexcept;
 

@@ -35,8 +35,7 @@ bool ImpactSearch::prepare() noexcept {
   Scratch* const scratch = workspace_.scratch();
   query_of(workspace_.narrow).bind(pair_.a(), pair_.b());
   const TreeView &a = pair_.a().tree, &b = pair_.b().tree;
-  return scratch != nullptr && !a.obb_nodes.empty() && !b.obb_nodes.empty() &&
-         scratch->timed.reserve(a, b);
+  return scratch != nullptr && !a.obb_nodes.empty() && !b.obb_nodes.empty() && scratch->timed.reserve(a, b);
 }
 
 // False where nothing can be said.
@@ -96,11 +95,12 @@ double ImpactSearch::without_turning() const noexcept {
   const auto &p = trees_.first(), &q = trees_.second();
   const bool exchanged = trees_.exchanged();
   const Vec3 center = minus((exchanged ? a_ : b_).center, q.tree.origin);
-  const double gap = distance * (1 - kImpactRounding) - reach_of(p, motion_.first.center) - scale * reach_of(q, center) -
-                     limits_.margin - limits_.error;
+  const double gap = distance * (1 - kImpactRounding) - reach_of(p, motion_.first.center) -
+                     scale * reach_of(q, center) - limits_.margin - limits_.error;
   if (!(gap > 0)) return 0;
   // The direction is fixed, so this holds for balls that pass each other, too.
-  const double rate = motion_.speed - dot(motion_.velocity, way) / distance + kImpactRounding * length_of(motion_.velocity);
+  const double rate =
+      motion_.speed - dot(motion_.velocity, way) / distance + kImpactRounding * length_of(motion_.velocity);
   return rate > 0 ? gap / rate : std::numeric_limits<double>::infinity();
 }
 

@@ -85,8 +85,8 @@ void TriangleSearch::start_near(const PlacedTrees& trees, const NodePair& leaves
   size_ = 0;
   for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
     const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, a), placement),
-                          second.obb_nodes[block_b], placement.scale, placement.box_margin, seconds);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, a), placement), second.obb_nodes[block_b],
+                          placement.scale, placement.box_margin, seconds);
     tests_.pairs += static_cast<std::uint64_t>(std::bit_width(seconds.used));
     for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));

@@ -66,8 +66,8 @@ struct Verdict {
 // The object is deterministic: the same trees, poses and room give the same answers, counts and bounds, however budgets
 // divide the calls of refine(), on every machine and for every vector width; exchanging a and b mirrors the results. It
 // throws nothing, and allocates nothing after construction and reserve(). If a level of spheres has more meeting pairs
-// than there is room for, it is abandoned: Progress::out_of_room becomes true, and the next step is the last level, which needs
-// only the memory of its stack. Without memory for that, "maybe" can be final, too.
+// than there is room for, it is abandoned: Progress::out_of_room becomes true, and the next step is the last level,
+// which needs only the memory of its stack. Without memory for that, "maybe" can be final, too.
 class NarrowPhase {
  public:
   static constexpr std::size_t kDefaultRoom = 1u << 13;
@@ -110,11 +110,11 @@ class NarrowPhase {
 
   // How far a query has come since start().
   struct Progress {
-    std::uint32_t level;          // Completed levels below the roots.
-    bool exact;                   // Whether the last level has begun.
-    bool out_of_room;             // Whether bounds are looser because room was missing.
-    std::size_t pairs;            // Pairs that met at the last completed level of spheres; 0 once the last has begun.
-    std::uint64_t pair_tests;     // Tests of spheres and ball slabs.
+    std::uint32_t level;       // Completed levels below the roots.
+    bool exact;                // Whether the last level has begun.
+    bool out_of_room;          // Whether bounds are looser because room was missing.
+    std::size_t pairs;         // Pairs that met at the last completed level of spheres; 0 once the last has begun.
+    std::uint64_t pair_tests;  // Tests of spheres and ball slabs.
     std::uint64_t triangle_tests;
     // In units of a budget. A query that a time budget cut short stops at the same place again if it gets this value as
     // its budget of work, so a trace of these values replays a run exactly.
