@@ -70,7 +70,7 @@ void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<Bod
   }
 }
 
-void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs) {
+void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs, GridCounts& counts) {
   if (fits_grid(box)) {
     boxes_[body] = PackedAabb(box);
     places_[body] = Place::inside;
@@ -79,8 +79,8 @@ void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<
     block.set(0, box);
     SweptGrid::Batch batch;
     grid_.encode(batch, {&body, 1}, block, 0);
-    grid_.insert(batch, boxes_, pairs, counts_);
-    ++counts_.bodies;
+    grid_.insert(batch, boxes_, pairs, counts);
+    ++counts.bodies;
     return meet_oversized({&body, 1}, pairs);
   }
   for (BodyIndex other = 0; other < places_.size(); ++other) {

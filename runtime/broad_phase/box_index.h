@@ -47,9 +47,7 @@ class BoxIndex {
   void include(const QuantizedAabb& extent) noexcept { extent_.include(extent); }
   void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) const;
   // All of that for one body, whether or not its box fits.
-  void insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs);
-  GridCounts& counts() noexcept { return counts_; }  // of insertions, for the plan
-  const GridCounts& counts() const noexcept { return counts_; }
+  void insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs, GridCounts& counts);
 
   // As in BroadPhaseAlgorithm, with the quantized grid of the step.
   Near near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
@@ -73,7 +71,6 @@ class BoxIndex {
   };
   std::vector<Oversized> oversized_;
   SweptGrid grid_;
-  GridCounts counts_;
   QuantizedAabb extent_ = kNoBox;  // around all boxes that are in the grid, or have been since it was rebuilt
 };
 

@@ -57,27 +57,27 @@ void KineticBroadPhase::note_cancelled(BodyIndex body, Step now) {
 void KineticBroadPhase::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
   // Then all bodies are new, each is noted at least once, and none has had a window.
-  if (first_ && state_.changes.size() == state_.pool.size()) return state_.changes.take_all(due_);
-  make_room(due_, state_.changes.size());
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kAhead < entries_.size()) {
-      const BodyIndex body = entries_[i + kAhead];
+  if (first_ && state_.changes.size() == state_.pool.size()) return state_.changes.take_all(due_.bodies);
+  make_room(due_.bodies, state_.changes.size());
+  for (std::size_t i = 0; i < due_.entries.size(); ++i) {
+    if (i + kAhead < due_.entries.size()) {
+      const BodyIndex body = due_.entries[i + kAhead];
       prefetch(&state_.windows[body]), prefetch(state_.boxes.at(body)), prefetch(state_.changes.at(body));
     }
-    Window& window = state_.windows[entries_[i]];
-    if (window.end != now || state_.changes.has(entries_[i])) continue;  // updated since
+    Window& window = state_.windows[due_.entries[i]];
+    if (window.end != now || state_.changes.has(due_.entries[i])) continue;  // updated since
     window.end = kUpdateDue;
     window.rely_longer();
-    due_.push_back(entries_[i]);
+    due_.bodies.push_back(due_.entries[i]);
   }
   const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
-  std::size_t count = due_.size();
-  due_.resize(count + state_.changes.size());
+  std::size_t count = due_.bodies.size();
+  due_.bodies.resize(count + state_.changes.size());
   state_.changes.take(load, [&](BodyIndex body) {
     note_cancelled(body, now);
-    due_[count++] = body;
+    due_.bodies[count++] = body;
   });
-  due_.resize(count);
+  due_.bodies.resize(count);
 }
 
 // After a step by sorting: all windows were of one step.
@@ -91,20 +91,20 @@ void KineticBroadPhase::collect_all(Step now) {
     } else {
       continue;
     }
-    due_.push_back(body);
+    due_.bodies.push_back(body);
   }
   state_.changes.forget_all();
 }
 
-// What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
+// What has not been updated for this step yet is in due_.bodies already; the rest changed since, or was added.
 void KineticBroadPhase::complete_due(Step now) {
   if (state_.changes.empty() && state_.pool.size() == state_.pool.slots()) return;  // nor is anybody gone
-  std::erase_if(due_, [&](BodyIndex body) { return !state_.pool.alive(body) || state_.changes.has(body); });
+  std::erase_if(due_.bodies, [&](BodyIndex body) { return !state_.pool.alive(body) || state_.changes.has(body); });
   const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
   state_.changes.take(load, [&](BodyIndex body) {
     state_.boxes.take_away(body);
     note_cancelled(body, now);
-    due_.push_back(body);
+    due_.bodies.push_back(body);
   });
 }
 
@@ -113,16 +113,16 @@ bool KineticBroadPhase::worth_a_rebuild(std::size_t due) const noexcept {
   const std::size_t n = state_.pool.size();
   if (state_.windows.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
   if (due == 0 || n == 0) return false;
-  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(state_.boxes.counts());
+  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(state_.counts);
 }
 
 // False if a budget interrupted it.
 bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
-  GridCounts counts = state_.boxes.counts();
+  GridCounts counts = state_.counts;
   if (sorting_) counts = {.bodies = state_.pool.size(), .pairs = sorted_.boxes_met()};
   const Planner::Outcome outcome = planner_.replan(now, counts, tracker);
   if (outcome == Planner::Outcome::interrupted) return false;
-  state_.boxes.counts() = {};
+  state_.counts = {};
   if (outcome == Planner::Outcome::same) return true;
   const Vec3* const surveyed = planner_.surveyed_middle();
   state_.grid.set(surveyed != nullptr ? *surveyed : state_.grid.at(now).origin(), planner_.velocity(),
@@ -132,12 +132,12 @@ bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
 }
 
 void KineticBroadPhase::all_are_due() {
-  if (due_.capacity() > 2 * state_.pool.size()) give_back(due_);
-  due_.resize(state_.pool.size());
-  if (state_.pool.size() == state_.pool.slots()) return std::iota(due_.begin(), due_.end(), BodyIndex{0});
+  if (due_.bodies.capacity() > 2 * state_.pool.size()) give_back(due_.bodies);
+  due_.bodies.resize(state_.pool.size());
+  if (state_.pool.size() == state_.pool.slots()) return std::iota(due_.bodies.begin(), due_.bodies.end(), BodyIndex{0});
   std::size_t count = 0;
-  for (BodyIndex body = 0; count < due_.size(); ++body) {
-    due_[count] = body;
+  for (BodyIndex body = 0; count < due_.bodies.size(); ++body) {
+    due_.bodies[count] = body;
     count += state_.pool.alive(body) ? 1 : 0;
   }
 }
@@ -164,12 +164,12 @@ void KineticBroadPhase::make_room_for_boxes() {
 // Everything that is due, and what a budget left over before.
 void KineticBroadPhase::step_in_full(Step now, bool completing) {
   if (!budgeted_.nothing_left()) {
-    for (const BodyIndex body : due_) budgeted_.leave(body);  // changed while it waited: one update is enough
-    budgeted_.take_all(due_, waiting_);
+    for (const BodyIndex body : due_.bodies) budgeted_.leave(body);  // changed while it waited: one update is enough
+    budgeted_.take_all(due_.bodies, due_.pairs);
   }
   bool rebuild_all = completing;
   if (!completing) {
-    rebuild_all = sorting_ || worth_a_rebuild(due_.size());
+    rebuild_all = sorting_ || worth_a_rebuild(due_.bodies.size());
     if (rebuild_all) {
       BudgetTracker unlimited;
       replan(now, unlimited);
@@ -178,7 +178,7 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
       state_.wheel.clear_events();  // updates of all windows void them
     } else {
       make_room_for_boxes();
-      state_.boxes.take_away(due_);
+      state_.boxes.take_away(due_.bodies);
     }
   }
   make_room_for_boxes();
@@ -186,14 +186,15 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
     state_.overlaps.start_over();
     note_spheres();
   }
-  rebuild_all ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
-  std::erase_if(waiting_, [&](const PairEvent& event) { return !state_.windows.valid(event); });
-  pairs_.test(now, waiting_);
+  rebuild_all ? updates_.update_all(now, now, due_.bodies) : updates_.update(now, now, due_.bodies);
+  std::erase_if(due_.pairs, [&](const PairEvent& event) { return !state_.windows.valid(event); });
+  pairs_.test(now, due_.pairs);
   pairs_.take_overlaps_ahead();
   if (!rebuild_all) return;
   const bool lasts = planner_.plan().window >= kMinStepsBeforeCommonExpiry;
-  const bool common = state_.pool.size() >= kMinBodiesAtCommonExpiry && 4 * state_.windows.votes() > state_.pool.size();
-  common_expiry_ = lasts && common ? state_.windows.voted() : kNeverStep;
+  const bool common =
+      state_.pool.size() >= kMinBodiesAtCommonExpiry && 4 * state_.windows.votes().votes() > state_.pool.size();
+  common_expiry_ = lasts && common ? state_.windows.votes().voted() : kNeverStep;
 }
 
 // A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
@@ -201,15 +202,15 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
 unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
   const bool has_to = sorting_ || state_.windows.rounds_run_out();
-  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
-  budgeted_.join(due_, waiting_);
-  due_.clear();
+  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.bodies.size()));
+  budgeted_.join(due_.bodies, due_.pairs);
+  due_.bodies.clear();
   if (rebuild) {
     if (!replan(now, tracker)) return state_.pool.next_class(0);
     place_all();
     state_.boxes.lines().empty_parts(state_.options.executor);
-    budgeted_.postpone(due_);
-    due_.clear();
+    budgeted_.postpone(due_.bodies);
+    due_.bodies.clear();
     common_expiry_ = kNeverStep;
   }
   make_room_for_boxes();
@@ -229,16 +230,16 @@ void KineticBroadPhase::begin_sorting() {
   pairs_.forget_all();
   pairs_.spheres().release();
   state_.boxes.rebuild(state_.pool.slots(), 0);
-  state_.boxes.counts() = {};
+  state_.counts = {};
 }
 
 void KineticBroadPhase::step_by_sorting(Step now) {
   if (!sorting_) begin_sorting();
   state_.windows.start_over();
   all_are_due();
-  sorted_.begin(due_.size(), state_.grid.at(now).origin(), planner_.spacing());
-  for (std::size_t done = 0; done < due_.size(); done += kBlock) {
-    auto block = std::span(due_).subspan(done, std::min(kBlock, due_.size() - done));
+  sorted_.begin(due_.bodies.size(), state_.grid.at(now).origin(), planner_.spacing());
+  for (std::size_t done = 0; done < due_.bodies.size(); done += kBlock) {
+    auto block = std::span(due_.bodies).subspan(done, std::min(kBlock, due_.bodies.size() - done));
     const std::span<const Motion> motions = updates_.ask_valid(now, block);
     for (const BodyIndex body : block) state_.windows.set(body, now, now + 1);
     planner_.note(motions);
@@ -273,10 +274,10 @@ bool KineticBroadPhase::prepare(Step now) {
   replan(now, unlimited);
   place_all();
   state_.wheel.clear_events();
-  const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.size()));
+  const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.bodies.size()));
   note_spheres();
-  updates_.update_all(now, from, std::span(due_).first(ahead));
-  due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
+  updates_.update_all(now, from, std::span(due_.bodies).first(ahead));
+  due_.bodies.erase(due_.bodies.begin(), due_.bodies.begin() + static_cast<std::ptrdiff_t>(ahead));
   pairs_.work_ahead(false);
   return true;
 }
@@ -287,7 +288,7 @@ void KineticBroadPhase::forget_all() noexcept {
   state_.overlaps.clear();
   pairs_.forget_all();
   state_.changes.forget_all();
-  due_.clear();
+  due_.bodies.clear();
   planner_.forget_survey();
   prepared_ = false;
   common_expiry_ = kNeverStep;
@@ -295,11 +296,11 @@ void KineticBroadPhase::forget_all() noexcept {
 
 void KineticBroadPhase::begin(Step now) {
   state_.windows.begin_round();
-  entries_.clear();
-  waiting_.clear();
-  state_.wheel.take(now, entries_, waiting_);
+  due_.entries.clear();
+  due_.pairs.clear();
+  state_.wheel.take(now, due_.entries, due_.pairs);
   if (prepared_) return complete_due(now);
-  due_.clear();
+  due_.bodies.clear();
   sorting_ ? collect_all(now) : collect_due(now);
   first_ = false;
 }
@@ -319,7 +320,7 @@ StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
     state_.overlaps.update(state_.pool.slots());
     return end(now, kNoClass, tracker);
   }
-  pairs_.take_overlaps_ahead(waiting_);
+  pairs_.take_overlaps_ahead(due_.pairs);
   const unsigned incomplete_from = step_within(now, tracker);
   if (incomplete_from != kNoClass) interrupted_at_ = now;
   pairs_.keep_doubtful();
@@ -358,7 +359,7 @@ std::size_t KineticBroadPhase::predict_load(Step now, std::span<StepsAhead> step
 void KineticBroadPhase::append_loose(std::vector<BodyIndex>& bodies) const {
   state_.changes.append_to(bodies);
   budgeted_.append_bodies(bodies);
-  if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
+  if (prepared_) bodies.insert(bodies.end(), due_.bodies.begin(), due_.bodies.end());
 }
 
 Near KineticBroadPhase::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
@@ -377,7 +378,7 @@ bool KineticBroadPhase::along(Step now, const Vec3& origin, const Vec3& way, dou
 std::size_t KineticBroadPhase::memory_bytes() const noexcept {
   return sizeof(*this) + state_.memory_bytes() + bytes_of(gone_) + planner_.memory_bytes() + pairs_.memory_bytes() +
          updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
-         bytes_of(due_, entries_, waiting_);
+         bytes_of(due_.bodies, due_.entries, due_.pairs);
 }
 
 std::unique_ptr<BroadPhaseAlgorithm> make_kinetic_broad_phase(BodyPool& pool, const BroadPhaseOptions& options) {

@@ -30,6 +30,7 @@ struct KineticState {
   Windows windows;
   MovingGrid grid;  // in which the boxes are
   BoxIndex boxes;
+  GridCounts counts;  // of their insertions, for the plan
   TimingWheel wheel;
   OverlapList overlaps;
 };

@@ -83,7 +83,7 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
   });
   state_.boxes.lines().all_parts_emptied();
   for (GridPart& part : shared_->parts) {
-    state_.boxes.counts() += part.counts;
+    state_.counts += part.counts;
     if (state_.pool.asks_user_filter()) {  // it is asked by one thread
       near_.insert(near_.end(), part.near.begin(), part.near.end());
     } else {

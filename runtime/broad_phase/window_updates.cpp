@@ -75,17 +75,21 @@ WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
                              std::span<const Motion> motions) const noexcept {
   const Windows& windows = state_.windows;
+  const WindowRule& rule = windows.rule();
   const auto duration = [&](Step end) {
     return end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
   };
-  const Step planned = windows.end_of(block.from, motions[0], block.last);
-  const Step common = windows.end_of(block.from, bodies[0], motions[0], block.last);
+  const auto end_of = [&](std::size_t i) {
+    return rule.end_of(block.from, windows[bodies[i]], state_.pool.is_static(bodies[i]), motions[i], block.last);
+  };
+  const Step planned = rule.end_of(block.from, motions[0], block.last);
+  const Step common = end_of(0);
   std::uint64_t other = 0;  // bits of expiries that differ
   for (const Motion& motion : motions) {
     other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
   }
   const bool alike = other == 0 && std::isfinite(motions[0].expiry);
-  if (alike && !state_.pool.any_static() && !windows.any_short()) {
+  if (alike && !state_.pool.any_static() && !rule.any_short) {
     if (block.common != common) {
       block.common = common;
       block.ends.fill(common);
@@ -95,17 +99,17 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   }
   block.common = kUpdateDue;
   // Whether one may rest and another not, or some may rest as long as they are cancelled again and again.
-  const bool may_rest = windows.may_never_end() && motions[0].expiry == std::numeric_limits<double>::infinity();
-  bool same = !state_.pool.any_static() && !(may_rest && windows.any_short());
+  const bool may_rest = !rule.all_end && motions[0].expiry == std::numeric_limits<double>::infinity();
+  bool same = !state_.pool.any_static() && !(may_rest && rule.any_short);
   for (std::size_t i = 0; may_rest && same && i < bodies.size(); ++i) same = rests(motions[i]) == rests(motions[0]);
   for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions[i].expiry == motions[0].expiry;
-  for (std::size_t i = 0; windows.any_short() && same && i < bodies.size(); ++i) {
+  for (std::size_t i = 0; rule.any_short && same && i < bodies.size(); ++i) {
     same = std::min(planned, block.from + windows[bodies[i]].lasting) == common;
   }
   block.ends.fill(common);
   block.durations.fill(duration(common));
   for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
-    block.ends[i] = windows.end_of(block.from, bodies[i], motions[i], block.last);
+    block.ends[i] = end_of(i);
     block.durations[i] = duration(block.ends[i]);
   }
   return same;
@@ -203,13 +207,13 @@ void WindowUpdates::fold(Chunk& chunk) {
   for (const Chunk::Run& run : chunk.runs) {
     if (run.end != kNeverStep && run.bodies == 1) state_.wheel.set_due(placed[0], run.end);
     if (run.end != kNeverStep && run.bodies > 1) state_.wheel.set_due(placed.first(run.bodies), run.end);
-    state_.windows.vote(run.end, run.bodies);
+    state_.windows.votes().vote(run.end, run.bodies);
     placed = placed.subspan(run.bodies);
   }
   for (const BodyIndex body : chunk.unknown) state_.changes.note(body);
   planner_.note_sample(chunk.sampled);
   state_.boxes.include(chunk.extent);
-  state_.boxes.counts().bodies += chunk.placed.size();
+  state_.counts.bodies += chunk.placed.size();
   state_.pool.count_asked(chunk.asked);
 }
 
@@ -253,10 +257,10 @@ void WindowUpdates::place_left(Chunk& chunk, Block& block) {
     }
     planner_.note_sample({&left.motion, 1});
     const QuantizedAabb box = shrink(block, state_.windows[left.body], left.motion);
-    state_.boxes.insert_one(left.body, box, near_);
+    state_.boxes.insert_one(left.body, box, near_, state_.counts);
     const Step end = state_.windows[left.body].end;
     if (end != kNeverStep) state_.wheel.set_due(left.body, end);
-    state_.windows.vote(end, 1);
+    state_.windows.votes().vote(end, 1);
   }
 }
 
@@ -273,7 +277,7 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
     for (std::size_t i = 0; i * SweptGrid::kBatch < chunk.placed.size(); ++i) {
       state_.boxes.lines().insert(batches[i], state_.boxes.packed(), near_, counts);
     }
-    state_.boxes.counts() += counts;
+    state_.counts += counts;
     if (!chunk.left.empty()) place_left(chunk, block);
     if (tested && near_.size() >= kNearAtOnce) test_near(now);
   }
@@ -300,7 +304,7 @@ std::span<const BodyPair> WindowUpdates::find_near(Step now, std::span<const Bod
 void WindowUpdates::drop_what_is_none() {
   const BodyPool& pool = state_.pool;
   const std::size_t dropped = std::erase_if(near_, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
-  std::uint64_t& counted = state_.boxes.counts().pairs;
+  std::uint64_t& counted = state_.counts.pairs;
   counted -= std::min<std::uint64_t>(dropped, counted);
 }
 

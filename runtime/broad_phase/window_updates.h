@@ -74,7 +74,7 @@ struct WindowUpdates::Block {
   std::array<Step, kBlock> ends;         // of the bodies' windows
   std::array<double, kBlock> durations;  // until then, of which the last step is not
   BoxBlock boxes;
-  Windows::LastEnd last;
+  WindowRule::LastEnd last;
   std::array<SweptGrid::Batch, kBlock / SweptGrid::kBatch>* batches =
       nullptr;  // to be inserted at once; null: scattered
 };

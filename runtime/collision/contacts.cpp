@@ -263,7 +263,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
     return result;
   }
   Workspace::Scratch* const scratch = workspace.scratch();
-  if (narrow.known().refused || !trees.have_triangles() || scratch == nullptr ||
+  if (narrow.known().refused || !have_triangles(trees) || scratch == nullptr ||
       !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
     return by_spheres(narrow);
   }

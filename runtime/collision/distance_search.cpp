@@ -48,7 +48,7 @@ bool DistanceSearch::bind(const PreparedTree& a, const PreparedTree& b) noexcept
   return make_room();
 }
 
-bool DistanceSearch::make_room() noexcept { return !trees_.have_triangles() || stack_.reserve(first(), second()); }
+bool DistanceSearch::make_room() noexcept { return !have_triangles(trees_) || stack_.reserve(first(), second()); }
 
 void DistanceSearch::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
   tolerance_ = tolerance;

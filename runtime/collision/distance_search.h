@@ -36,7 +36,7 @@ class DistanceSearch {
   };
 
   bool make_room() noexcept;
-  bool has_room() const noexcept { return trees_.have_triangles() && stack_.has_room(); }
+  bool has_room() const noexcept { return have_triangles(trees_) && stack_.has_room(); }
   const TreeView& first() const noexcept { return trees_.first().tree; }
   const TreeView& second() const noexcept { return trees_.second().tree; }
   void begin(const Pose& a, const Pose& b, double limit) noexcept;

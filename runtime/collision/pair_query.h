@@ -42,7 +42,7 @@ class PairQuery {
   Verdict verdict() const noexcept;
 
   PlacedTrees& trees() noexcept { return trees_; }
-  bool has_last_level() const noexcept { return trees_.have_triangles() && triangles_.has_room(); }
+  bool has_last_level() const noexcept { return have_triangles(trees_) && triangles_.has_room(); }
 
  private:
   friend class DirectSearch;

@@ -169,7 +169,7 @@ Roots::Answer PlacedTrees::test_roots(const Pose& a, const Pose& b, Roots& resul
   const double ball_gap = distance - radii - exact_error_;
   double gap = ball_gap;
   Vec3 along = way;
-  if (gap <= 0 && square > 0 && have_triangles()) {
+  if (gap <= 0 && square > 0 && have_triangles(*this)) {
     // How far the bodies' convex hulls are apart, at least: along the line through the roots' centres first.
     const auto reach = [](const PreparedTree& of, const Pose& pose, const Vec3& u) {
       const Vec3 direction = turned_back(pose, u);

@@ -86,7 +86,6 @@ class PlacedTrees {
 
   const PreparedTree& first() const noexcept { return trees_.first(); }
   const PreparedTree& second() const noexcept { return trees_.second(); }
-  bool have_triangles() const noexcept { return !first().tree.obb_nodes.empty() && !second().tree.obb_nodes.empty(); }
   // Precondition of what follows: place().
   bool exchanged() const noexcept { return exchanged_; }  // whether the first tree is that of `b`
   const Pose& first_pose() const noexcept { return first_pose_; }
@@ -110,6 +109,10 @@ class PlacedTrees {
   double exact_error_ = 0;
   detail::Placement placement_{};
 };
+
+inline bool have_triangles(const PlacedTrees& trees) noexcept {
+  return !trees.first().tree.obb_nodes.empty() && !trees.second().tree.obb_nodes.empty();
+}
 
 // A node of the second tree of triangles, in the first tree's frame.
 inline detail::NodeBox moved_box(const PlacedTrees& trees, std::uint32_t node) noexcept {

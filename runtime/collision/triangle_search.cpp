@@ -13,7 +13,7 @@ using detail::slab_child;
 bool TriangleSearch::reserve(const PlacedTrees& trees) noexcept {
   // Two expanded pairs leave up to eight each in their place; what lies below them is no deeper than they were, so that
   // no depth ever has more than these.
-  return !trees.have_triangles() ||
+  return !have_triangles(trees) ||
          stack_.reserve(trees.first().tree, trees.second().tree, 2 * std::size_t{kBlockWidth});
 }
 

@@ -19,8 +19,8 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   frame.pairs += matcher.pair_count();
   frame.certain += matcher.pair_count() - active.size();
   const std::uint64_t before = budget.spent();
-  const bool sweeps_or_ends = world.any_continuous || world.any_jumped;
-  world.any_jumped = false;
+  const bool sweeps_or_ends = world.any.continuous || world.any.jump;
+  world.any.jump = false;
   if (budget.limited()) {
     open_pairs(active, step);
     answer_within(active, step, watch, budget, frame);

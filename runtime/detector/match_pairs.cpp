@@ -13,13 +13,13 @@ void PairMatcher::gather(Step step, const Advance& now) {
 
 void PairMatcher::gather_half_spaces(Step step) {
   due_.clear();
-  world_.halves.due(step, due_);
+  world_.half_space_times.due(step, due_);
   if (due_.empty()) return;
   sampler_.sample(step, due_);
   due_motions_.clear();
   for (const BodyIndex body : due_) due_motions_.push_back(sampler_.given_motion(body, world_.clock.time(step)));
-  world_.halves.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
-                               world_.options.position_slack, pairs_.with_planes);
+  world_.half_space_times.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
+                                         world_.options.position_slack, pairs_.with_planes);
 }
 
 void PairMatcher::gather_left_out(Step step, const Advance& now) {

@@ -8,7 +8,7 @@ void PairScheduler::prepare() {
   const Executor& executor = world_.options.executor;
   queries_.prepare(world_.shapes, world_.shapes.size(),
                    executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * 4,
-                   world_.any_continuous);
+                   world_.any.continuous);
 }
 
 // The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
