@@ -5,15 +5,15 @@ namespace orchard::runtime::detail {
 void BudgetedWork::postpone(std::span<const BodyIndex> bodies) {
   for (const BodyIndex body : bodies) {
     state_.windows[body].end = kUpdateDue;
-    backlog_.wait(body, state_.pool.importance(body));
+    backlog_.wait(body, state_.pool.classes.of(body));
   }
 }
 
 void BudgetedWork::reclassified(BodyIndex body) {
   if (backlog_.waits(body)) {
-    backlog_.rank(state_.pool.importance(body));  // nothing throws after that
+    backlog_.rank(state_.pool.classes.of(body));  // nothing throws after that
     backlog_.leave(body);
-    backlog_.wait(body, state_.pool.importance(body));
+    backlog_.wait(body, state_.pool.classes.of(body));
   }
   reclassified_ = true;
 }
@@ -24,9 +24,9 @@ void BudgetedWork::sort_pairs_again() {
   tests_.clear();
   std::vector<BodyIndex> bodies;
   backlog_.take_all(bodies, tests_);
-  for (const BodyIndex body : bodies) backlog_.wait(body, state_.pool.importance(body));
+  for (const BodyIndex body : bodies) backlog_.wait(body, state_.pool.classes.of(body));
   for (const PairEvent& event : tests_) {
-    if (state_.windows.valid(event)) backlog_.rank(state_.pool.importance(event.pair)).due.push(event);
+    if (state_.windows.valid(event)) backlog_.rank(state_.pool.classes.of(event.pair)).due.push(event);
   }
 }
 
@@ -35,7 +35,7 @@ void BudgetedWork::join(std::span<const BodyIndex> due, std::span<const PairEven
   reclassified_ = false;
   postpone(due);
   const auto test_later = [&](const BodyPair& pair, Round created) {
-    PairQueue& queue = backlog_.rank(state_.pool.importance(pair)).due;
+    PairQueue& queue = backlog_.rank(state_.pool.classes.of(pair)).due;
     queue.push({pair, created});
     queue.tidy([&](const PairEvent& old) { return state_.windows.valid(old); });
   };
@@ -56,7 +56,7 @@ void BudgetedWork::join(std::span<const BodyIndex> due, std::span<const PairEven
 }
 
 unsigned BudgetedWork::work(Step now, BudgetTracker& tracker) {
-  for (unsigned rank = state_.pool.next_class(0); rank < kNoClass; rank = state_.pool.next_class(rank + 1)) {
+  for (unsigned rank = state_.pool.classes.next(0); rank < kNoClass; rank = state_.pool.classes.next(rank + 1)) {
     if (!work_through(now, rank, tracker)) return rank;
   }
   return kNoClass;
@@ -96,7 +96,7 @@ std::size_t BudgetedWork::update_waiting(Step now, unsigned importance, std::siz
   const std::span<const BodyPair> near = updates_.find_near(now, updated);
   tracker.count(count);
   for (const BodyPair& pair : near) {
-    const unsigned theirs = state_.pool.importance(pair);
+    const unsigned theirs = state_.pool.classes.of(pair);
     Backlog::Rank& rank = backlog_.rank(theirs);
     (theirs == importance ? rank.found : rank.due).push({pair, state_.windows.round()});
     if (theirs != importance) rank.due.tidy([&](const PairEvent& event) { return state_.windows.valid(event); });

@@ -206,7 +206,7 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   budgeted_.join(due_.bodies, due_.pairs);
   due_.bodies.clear();
   if (rebuild) {
-    if (!replan(now, tracker)) return state_.pool.next_class(0);
+    if (!replan(now, tracker)) return state_.pool.classes.next(0);
     place_all();
     state_.boxes.lines().empty_parts(state_.options.executor);
     budgeted_.postpone(due_.bodies);
@@ -220,7 +220,7 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
 // Static bodies have windows without end, which are worth keeping if there are many.
 bool KineticBroadPhase::worth_sorting(Step now) const noexcept {
   return planner_.plan().window == 1 && state_.pool.slots() > kFewBodies && now >= sorts_from_ &&
-         2 * state_.pool.statics() <= state_.pool.size();
+         2 * state_.pool.statics.count() <= state_.pool.size();
 }
 
 void KineticBroadPhase::begin_sorting() {

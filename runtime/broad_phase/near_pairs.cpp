@@ -10,7 +10,7 @@ constexpr double kEventResolution = 0.125;  // of a step: no need to know better
 }  // namespace
 
 void KineticState::refuse(BodyIndex body) {
-  pool.refuse(body);
+  pool.motions.refuse(body);
   boxes.take_away(body);
   windows[body].end = kUpdateDue;
   windows.void_events(body);
@@ -127,7 +127,8 @@ void NearPairs::test(Step now, std::span<PairEvent> events, Outcome& outcome) co
     const auto some = events.first(std::min(kTestsAtOnce, events.size()));
     const std::size_t count = 2 * some.size();
     for (std::size_t i = 0; i < some.size(); ++i) bodies[2 * i] = some[i].pair.a, bodies[2 * i + 1] = some[i].pair.b;
-    state_.pool.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count), outcome.answers);
+    state_.pool.motions.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count),
+                            outcome.answers);
     outcome.asked += count;
     settle_all(now, some, outcome);
     events = events.subspan(some.size());
@@ -175,7 +176,7 @@ void NearPairs::take(Outcome& outcome) {
   for (const BodyPair& pair : outcome.ahead) append(overlaps_ahead_, pair);
   doubtful_.insert(doubtful_.end(), outcome.doubtful.begin(), outcome.doubtful.end());
   for (const BodyIndex body : outcome.refused) state_.refuse(body);
-  state_.pool.count_asked(outcome.asked);
+  state_.pool.motions.count_asked(outcome.asked);
   spheres_.count(outcome.compared, outcome.settled);
   outcome.touching.clear(), outcome.parted.clear(), outcome.later.clear(), outcome.ahead.clear();
   outcome.doubtful.clear(), outcome.refused.clear();

@@ -32,7 +32,7 @@ class NearPairs {
     std::uint64_t asked = 0, compared = 0, settled = 0;
     std::vector<PairEvent> tests;  // and what the tests work with
     std::vector<Motion> motions;
-    BodyPool::Answers answers;
+    MotionQueries::Answers answers;
     std::size_t memory_bytes() const noexcept {
       return bytes_of(touching, parted, ahead, later, doubtful, refused, tests, motions) + answers.memory_bytes();
     }

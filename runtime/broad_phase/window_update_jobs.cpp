@@ -61,7 +61,7 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
     state_.boxes.lines().insert(chunk.visits[index].visits(), state_.boxes.packed(), part.near, part.counts);
   }
   const BodyPool& pool = state_.pool;
-  if (pool.asks_user_filter()) return;
+  if (pool.filters.has_function()) return;
   if (pool.filters_pairs()) {
     part.counts.pairs -= std::erase_if(part.near, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
   }
@@ -84,7 +84,7 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
   state_.boxes.lines().all_parts_emptied();
   for (GridPart& part : shared_->parts) {
     state_.counts += part.counts;
-    if (state_.pool.asks_user_filter()) {  // it is asked by one thread
+    if (state_.pool.filters.has_function()) {  // it is asked by one thread
       near_.insert(near_.end(), part.near.begin(), part.near.end());
     } else {
       pairs_.take(part.outcome);
@@ -106,7 +106,7 @@ bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
 }
 
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  if (!are_many(bodies.size()) || state_.pool.motion_bound_check() != nullptr) {
+  if (!are_many(bodies.size()) || state_.pool.motions.check() != nullptr) {
     state_.boxes.lines().empty_parts(state_.options.executor);
     return update(now, from, bodies);
   }

@@ -21,7 +21,7 @@ bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept
 std::span<Motion> WindowUpdates::ask(Step now, std::span<const BodyIndex> bodies) {
   if (motions_.size() < bodies.size()) motions_.resize(bodies.size());
   const auto motions = std::span(motions_).first(bodies.size());
-  state_.pool.ask(now, bodies, motions);
+  state_.pool.motions.ask(now, bodies, motions);
   return motions;
 }
 
@@ -31,7 +31,7 @@ std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std:
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double expiry = motions[i].expiry;
-    if (expiry != known && !state_.pool.is_static(bodies[i])) {
+    if (expiry != known && !state_.pool.statics.has(bodies[i])) {
       if (state_.pool.clock.last_before_expiry(expiry) < from) continue;
       known = expiry;
     }
@@ -80,7 +80,7 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
     return end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
   };
   const auto end_of = [&](std::size_t i) {
-    return rule.end_of(block.from, windows[bodies[i]], state_.pool.is_static(bodies[i]), motions[i], block.last);
+    return rule.end_of(block.from, windows[bodies[i]], state_.pool.statics.has(bodies[i]), motions[i], block.last);
   };
   const Step planned = rule.end_of(block.from, motions[0], block.last);
   const Step common = end_of(0);
@@ -89,7 +89,7 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
     other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
   }
   const bool alike = other == 0 && std::isfinite(motions[0].expiry);
-  if (alike && !state_.pool.any_static() && !rule.any_short) {
+  if (alike && !state_.pool.statics.any() && !rule.any_short) {
     if (block.common != common) {
       block.common = common;
       block.ends.fill(common);
@@ -100,7 +100,7 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   block.common = kUpdateDue;
   // Whether one may rest and another not, or some may rest as long as they are cancelled again and again.
   const bool may_rest = !rule.all_end && motions[0].expiry == std::numeric_limits<double>::infinity();
-  bool same = !state_.pool.any_static() && !(may_rest && rule.any_short);
+  bool same = !state_.pool.statics.any() && !(may_rest && rule.any_short);
   for (std::size_t i = 0; may_rest && same && i < bodies.size(); ++i) same = rests(motions[i]) == rests(motions[0]);
   for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions[i].expiry == motions[0].expiry;
   for (std::size_t i = 0; rule.any_short && same && i < bodies.size(); ++i) {
@@ -188,7 +188,7 @@ void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const Body
     auto known = std::span(ids).first(some.size());
     const auto motions = std::span(chunk.motions).first(some.size());
     std::copy(some.begin(), some.end(), known.begin());
-    state_.pool.ask(block.now, known, motions, chunk.answers);
+    state_.pool.motions.ask(block.now, known, motions, chunk.answers);
     chunk.asked += some.size();
     if (block.from > block.now) {
       const std::size_t front = known_at(block.from, known, motions);
@@ -214,7 +214,7 @@ void WindowUpdates::fold(Chunk& chunk) {
   planner_.note_sample(chunk.sampled);
   state_.boxes.include(chunk.extent);
   state_.counts.bodies += chunk.placed.size();
-  state_.pool.count_asked(chunk.asked);
+  state_.pool.motions.count_asked(chunk.asked);
 }
 
 // What is faster than the others is updated again sooner, so that its box takes few enough cells. One that is too large

@@ -96,7 +96,7 @@ struct WindowUpdates::Chunk {
   std::vector<Motion> sampled;     // for the plan
   std::vector<Motion> motions;     // of the block under way
   QuantizedAabb extent;
-  BodyPool::Answers answers;
+  MotionQueries::Answers answers;
   std::uint64_t asked;
 
   void note_run(Step end, std::size_t bodies) {

@@ -71,9 +71,9 @@ class Windows {
   const WindowRule& rule() const noexcept { return rule_; }
   WindowVotes& votes() noexcept { return votes_; }  // since start_over()
   void set(BodyIndex body, Step from, Step end) noexcept {
-    const std::uint8_t length = end != kNeverStep       ? static_cast<std::uint8_t>(end - from)
-                                : pool_.is_static(body) ? std::uint8_t{0}
-                                                        : kLastsAsEver;
+    const std::uint8_t length = end != kNeverStep         ? static_cast<std::uint8_t>(end - from)
+                                : pool_.statics.has(body) ? std::uint8_t{0}
+                                                          : kLastsAsEver;
     set(windows_[body], from, end, length, round_);
   }
   void set(std::span<const BodyIndex> bodies, Step from, std::span<const Step> ends) noexcept {

@@ -33,14 +33,14 @@ std::uint64_t PairScheduler::answer_all(PairCache& records, std::span<const std:
 }
 
 bool PairScheduler::sweeps(const PairCache& records, std::span<const std::uint32_t> open) noexcept {
-  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].swept; });
+  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].sweep.possible; });
 }
 
 void PairScheduler::sweep_all(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget) {
   sweeps_.clear();
   for (const std::uint32_t index : open) {
-    if (records[index].swept) sweeps_.push_back(index);
-    if (records[index].unseen) leave_open(records[index]);
+    if (records[index].sweep.possible) sweeps_.push_back(index);
+    if (records[index].sweep.unseen) leave_open(records[index]);
   }
   if (sweeps_.empty()) return;
   std::size_t done = 0;
