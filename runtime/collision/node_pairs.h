@@ -8,6 +8,7 @@
 #include "collision/kernels/node_box.h"
 #include "collision/kernels/obb_node_block.h"
 #include "orchard/runtime/packed_tree.h"
+#include "simd/vector_support.h"
 #include "tree/tree_nodes.h"
 
 // What the walks through the two trees of a pair share. They go depth first: a pair of nodes gives way to the pairs of
@@ -57,17 +58,22 @@ struct Opened {
   }
 };
 
-inline Opened larger_node(const TreeView& first, const TreeView& second, const NodePair& pair, float scale) noexcept {
-  const std::uint32_t a = slab_child(first, pair.a), b = slab_child(second, pair.b);
+// `a`, `b`: slab_child() of both.
+ORCHARD_INLINE Opened larger_node(const TreeView& first, const TreeView& second, const NodePair& pair, std::uint32_t a,
+                                  std::uint32_t b, float scale) noexcept {
   const bool opens_second =
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && slab_radius(first, pair.a) < slab_radius(second, pair.b) * scale);
   return {opens_second, opens_second ? b : a};
 }
+ORCHARD_INLINE Opened larger_node(const TreeView& first, const TreeView& second, const NodePair& pair,
+                                  float scale) noexcept {
+  return larger_node(first, second, pair, slab_child(first, pair.a), slab_child(second, pair.b), scale);
+}
 
 // The children against the other node of the pair, in the children's frame, by meeting_boxes() or box_gaps().
 template <auto compare>
-void compare_children(const TreeView& first, const TreeView& second, const Placement& placement, const NodePair& pair,
-                      const Opened& opened, float margin, BoxGaps& gaps) noexcept {
+ORCHARD_INLINE void compare_children(const TreeView& first, const TreeView& second, const Placement& placement,
+                                     const NodePair& pair, const Opened& opened, float margin, BoxGaps& gaps) noexcept {
   if (opened.second) {
     compare(moved_back(node_box_at(first, pair.a), placement), second.obb_nodes[opened.block], placement.scale, margin,
             gaps);
@@ -77,8 +83,9 @@ void compare_children(const TreeView& first, const TreeView& second, const Place
 }
 
 // Those that may meet it: where floats are too coarse, boxes that they do not separate are tested in double.
-inline void meeting_children(const TreeView& first, const TreeView& second, const Placement& placement,
-                             const Pose& relative, const NodePair& pair, const Opened& opened, BoxGaps& gaps) noexcept {
+ORCHARD_INLINE void meeting_children(const TreeView& first, const TreeView& second, const Placement& placement,
+                                     const Pose& relative, const NodePair& pair, const Opened& opened,
+                                     BoxGaps& gaps) noexcept {
   compare_children<meeting_boxes>(first, second, placement, pair, opened, placement.box_margin, gaps);
   if (!placement.coarse) return;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {

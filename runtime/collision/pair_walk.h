@@ -73,7 +73,7 @@ void walk_candidates(const PlacedPair& pair, WalkStack& room, Visit&& visit) noe
       }
       continue;
     }
-    const Opened opened = larger_node(first, second, top, pair.placement.scale);
+    const Opened opened = larger_node(first, second, top, a, b, pair.placement.scale);
     meeting_children(first, second, pair.placement, pair.relative, top, opened, gaps);
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
       stack[size++] = opened.pair(top, static_cast<std::uint32_t>(std::countr_zero(left)));

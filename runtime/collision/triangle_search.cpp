@@ -41,31 +41,30 @@ inline void TriangleSearch::push_children(const NodePair& pair, const detail::Op
 bool TriangleSearch::refine(const PlacedTrees& trees, PairBudget& tracker) noexcept {
   const TreeView &first = trees.first().tree, &second = trees.second().tree;
   const detail::Placement& placement = trees.placement();
-  const auto are_leaves = [&](const NodePair& pair) {
-    return (slab_child(first, pair.a) & slab_child(second, pair.b) & kLeafBit) != 0;
-  };
-  const auto open = [&](const NodePair& pair, BoxGaps& gaps) {
-    const detail::Opened opened = detail::larger_node(first, second, pair, placement.scale);
+  const auto open = [&](const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) ORCHARD_INLINE_LAMBDA {
+    const detail::Opened opened = detail::larger_node(first, second, pair, a, b, placement.scale);
     detail::meeting_children(first, second, placement, trees.relative(), pair, opened, gaps);
     return opened;
   };
   while (size_ > 0) {
     if (tracker.exhausted()) return false;
     const NodePair pair = stack_[--size_];
-    if (are_leaves(pair)) {
+    const std::uint32_t a = slab_child(first, pair.a), b = slab_child(second, pair.b);
+    if (a & b & kLeafBit) {
       const std::uint64_t before = tests_.triangles;
       const bool meet = test_leaves(trees, pair);
       tracker.spend((tests_.triangles - before) * kTriangleTestCost);
       if (meet) return true;
       continue;
     }
-    const bool two = size_ > 0 && !are_leaves(stack_[size_ - 1]);
+    const bool two =
+        size_ > 0 && (slab_child(first, stack_[size_ - 1].a) & slab_child(second, stack_[size_ - 1].b) & kLeafBit) == 0;
     const std::uint64_t before = tests_.pairs;
     BoxGaps gaps[2];
-    const detail::Opened opened = open(pair, gaps[0]);
+    const detail::Opened opened = open(pair, a, b, gaps[0]);
     if (two) {
       const NodePair other = stack_[--size_];
-      const detail::Opened other_opened = open(other, gaps[1]);
+      const detail::Opened other_opened = open(other, slab_child(first, other.a), slab_child(second, other.b), gaps[1]);
       push_children(other, other_opened, gaps[1]);
     }
     push_children(pair, opened, gaps[0]);
