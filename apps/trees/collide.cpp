@@ -91,7 +91,8 @@ json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Po
   levels.push_back(row(narrow, "0", microseconds));
   while (!narrow.finished()) {
     microseconds = timed([&] { narrow.refine(); });
-    levels.push_back(row(narrow, narrow.progress().exact ? "exact" : std::to_string(narrow.progress().level), microseconds));
+    levels.push_back(
+        row(narrow, narrow.progress().exact ? "exact" : std::to_string(narrow.progress().level), microseconds));
   }
   return levels;
 }

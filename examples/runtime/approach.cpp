@@ -36,7 +36,8 @@ int main(int argc, char** argv) {
         std::printf("%2d: no (%.3g apart or more)\n", step, query.lower_bound());
         break;
       case Answer::maybe:
-        std::printf("%2d: maybe, at most %.3g apart after level %u\n", step, query.separation_bound(), query.progress().level);
+        std::printf("%2d: maybe, at most %.3g apart after level %u\n", step, query.separation_bound(),
+                    query.progress().level);
         break;
       case Answer::yes: {
         const Contact contact = query.contact();

@@ -134,7 +134,8 @@ TEST(NarrowPhase, ReplaysATimedRunFromItsCount) {
       timed.refine({.time = std::chrono::nanoseconds(seed % 3 * 500)});
     }
     replayed.start(s.pose_a, s.pose_b);
-    while (replayed.progress().work < timed.progress().work) replayed.refine({.work = timed.progress().work - replayed.progress().work});
+    while (replayed.progress().work < timed.progress().work)
+      replayed.refine({.work = timed.progress().work - replayed.progress().work});
     ASSERT_EQ(outcome_of(timed), outcome_of(replayed)) << seed;
   }
 }
