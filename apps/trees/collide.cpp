@@ -67,9 +67,9 @@ const char* answer_name(Answer answer) {
 json row(const runtime::NarrowPhase& narrow, const std::string& level, double microseconds) {
   json entry{{"level", level},
              {"answer", answer_name(narrow.answer())},
-             {"pairs", narrow.pairs()},
-             {"sphere_tests", narrow.pair_tests()},
-             {"triangle_tests", narrow.triangle_tests()},
+             {"pairs", narrow.progress().pairs},
+             {"sphere_tests", narrow.progress().pair_tests},
+             {"triangle_tests", narrow.progress().triangle_tests},
              {"lower_bound", narrow.lower_bound()},
              {"microseconds", microseconds}};
   entry["separation_bound"] = std::isfinite(narrow.separation_bound()) ? json(narrow.separation_bound()) : json();
@@ -91,7 +91,8 @@ json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Po
   levels.push_back(row(narrow, "0", microseconds));
   while (!narrow.finished()) {
     microseconds = timed([&] { narrow.refine(); });
-    levels.push_back(row(narrow, narrow.exact() ? "exact" : std::to_string(narrow.level()), microseconds));
+    levels.push_back(
+        row(narrow, narrow.progress().exact ? "exact" : std::to_string(narrow.progress().level), microseconds));
   }
   return levels;
 }

@@ -53,7 +53,7 @@ PoseProfile profile_pose(runtime::NarrowPhase& pair, const PosePair& pose) {
     PoseProfile now;
     const auto begin = Clock::now();
     const auto keep = [&] {
-      return AtLevel{pair.answer(), pair.separation_bound(), pair.pair_tests(),
+      return AtLevel{pair.answer(), pair.separation_bound(), pair.progress().pair_tests,
                      std::chrono::duration<double, std::micro>(Clock::now() - begin).count()};
     };
     pair.start(pose.a, pose.b);
@@ -62,7 +62,7 @@ PoseProfile profile_pose(runtime::NarrowPhase& pair, const PosePair& pose) {
     while (!pair.finished()) {
       pair.refine();
       now.exact = keep();
-      if (!pair.exact()) now.levels.push_back(now.exact);
+      if (!pair.progress().exact) now.levels.push_back(now.exact);
     }
     now.separated = pair.answer() == Answer::no;
     if (pass <= 1) {

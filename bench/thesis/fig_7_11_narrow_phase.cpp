@@ -50,7 +50,8 @@ std::vector<AtLevel> descend(NarrowPhase& pair, const Query& call) {
   while (!pair.finished()) {
     pair.refine();
     const double time = microseconds_since(begin);
-    levels.push_back({pair.exact() ? kExact : pair.level(), pair.answer(), pair.separation_bound(), time});
+    levels.push_back(
+        {pair.progress().exact ? kExact : pair.progress().level, pair.answer(), pair.separation_bound(), time});
   }
   return levels;
 }

@@ -26,9 +26,9 @@ int main(int argc, char** argv) {
     const auto turned = pose_from_quaternion({1, 0.3, 0, 0}, {(2.5 - 0.1 * step) * radius, 0, 0});
     query.start(still, *turned);
     for (std::uint64_t left = 50'000; left > 0 && !query.finished();) {
-      const std::uint64_t before = query.pair_tests();
+      const std::uint64_t before = query.progress().pair_tests;
       query.refine({.work = left});  // to the next level, or until the budget is spent
-      const std::uint64_t spent = query.pair_tests() - before;
+      const std::uint64_t spent = query.progress().pair_tests - before;
       left -= spent < left ? spent : left;
     }
     switch (query.answer()) {
@@ -36,7 +36,8 @@ int main(int argc, char** argv) {
         std::printf("%2d: no (%.3g apart or more)\n", step, query.lower_bound());
         break;
       case Answer::maybe:
-        std::printf("%2d: maybe, at most %.3g apart after level %u\n", step, query.separation_bound(), query.level());
+        std::printf("%2d: maybe, at most %.3g apart after level %u\n", step, query.separation_bound(),
+                    query.progress().level);
         break;
       case Answer::yes: {
         const Contact contact = query.contact();

@@ -15,34 +15,14 @@ void forget_oversized(All& all, BodyIndex body) noexcept {
 void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
-  extent_ = kNothing;
-  in_order_ = true;
+  extent_ = kNoBox;
   if (lines == 0) {
     grid_.release();
     give_back(boxes_);
   } else {
     grid_.begin_reset(lines);
-    in_order_ = false;
     grow(boxes_, slots);
   }
-}
-
-void BoxIndex::empty(const Executor& executor) {
-  if (!in_order_) grid_.empty_parts(executor);
-  in_order_ = true;
-}
-
-void BoxIndex::set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
-                           Step now) noexcept {
-  quantized_grid_ = QuantizedGrid(origin, velocity, cell_size, slack);
-  lattice_from_ = now;
-  time_step_ = time_step;
-}
-
-QuantizedGrid BoxIndex::quantized_grid_at(Step now) const noexcept {
-  QuantizedGrid quantized_grid = quantized_grid_;
-  quantized_grid.move_to(static_cast<double>(now - lattice_from_) * time_step_);
-  return quantized_grid;
 }
 
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
@@ -65,14 +45,6 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
     load(begin + kAtOnce);
     grid_.remove(removals[begin / kAtOnce % 2]);
   }
-}
-
-bool BoxIndex::fits(const QuantizedAabb& box) noexcept {
-  bool fit = true;
-  for (std::size_t d = 0; d < 3; ++d) {
-    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMaxCellsPerAxis;
-  }
-  return fit;
 }
 
 void BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept {
@@ -98,18 +70,17 @@ void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<Bod
   }
 }
 
-void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs) {
-  if (fits(box)) {
+void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs, GridCounts& counts) {
+  if (fits_grid(box)) {
     boxes_[body] = PackedAabb(box);
     places_[body] = Place::inside;
     extent_.include(box);
     BoxBlock block;
     block.set(0, box);
-    Batch batch;
-    GridCounts counts{.bodies = 1};
-    encode(batch, {&body, 1}, block, 0);
-    insert(batch, pairs, counts);
-    count(counts);
+    SweptGrid::Batch batch;
+    grid_.encode(batch, {&body, 1}, block, 0);
+    grid_.insert(batch, boxes_, pairs, counts);
+    ++counts.bodies;
     return meet_oversized({&body, 1}, pairs);
   }
   for (BodyIndex other = 0; other < places_.size(); ++other) {

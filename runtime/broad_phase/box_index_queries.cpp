@@ -89,12 +89,12 @@ void BoxIndex::append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>&
 
 std::size_t BoxIndex::fewest_cells() const noexcept { return std::max(kFewCells, places_.size()); }
 
-Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
-  const QuantizedGrid quantized_grid = quantized_grid_at(now);
+Near BoxIndex::near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3& upper,
+                        std::vector<BodyIndex>& bodies) const {
   QuantizedAabb box{};
   for (std::size_t d = 0; d < 3; ++d) {
-    box.lower[d] = quantum_below(quantized_grid.quantum(lower[d], d));
-    box.upper[d] = quantum_above(quantized_grid.quantum(upper[d], d));
+    box.lower[d] = quantum_below(grid.quantum(lower[d], d));
+    box.upper[d] = quantum_above(grid.quantum(upper[d], d));
   }
   const QuantizedAabb inside = common(box, extent_);
   const double cells = cells_in(inside);
@@ -116,7 +116,7 @@ Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vec
 
 // Slab after slab of cells across the axis along which the ray is fastest: it crosses few cells in each. False if the
 // visitor has had enough.
-bool BoxIndex::walk_slabs(const QuantizedGrid& quantized_grid, const GridRay& ray, std::vector<BodyIndex>& portion,
+bool BoxIndex::walk_slabs(const QuantizedGrid& grid, const GridRay& ray, std::vector<BodyIndex>& portion,
                           PortionVisitor& visitor) const {
   const std::size_t m = ray.axis;
   const auto slab_at = [&](double t) {
@@ -139,18 +139,17 @@ bool BoxIndex::walk_slabs(const QuantizedGrid& quantized_grid, const GridRay& ra
     append_in_cells(box, portion);
     if (slab == last) break;
     if (portion.size() < kPortion) continue;
-    if (!visitor.visit(portion, time_at(far - spare) / quantized_grid.quanta(1))) return false;
+    if (!visitor.visit(portion, time_at(far - spare) / grid.quanta(1))) return false;
     portion.clear();
   }
   return true;
 }
 
-bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
-                     PortionVisitor& visitor) const {
-  const QuantizedGrid quantized_grid = quantized_grid_at(now);
-  GridRay ray{{}, way, 0, quantized_grid.quanta(length)};
+bool BoxIndex::along(const QuantizedGrid& grid, const Vec3& origin, const Vec3& way, double length,
+                     std::vector<BodyIndex>& portion, PortionVisitor& visitor) const {
+  GridRay ray{{}, way, 0, grid.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {
-    ray.origin[d] = quantized_grid.quantum(origin[d], d);
+    ray.origin[d] = grid.quantum(origin[d], d);
     if (!(std::fabs(ray.origin[d]) <= kFarOrigin)) return false;
     if (std::fabs(way[d]) > std::fabs(way[ray.axis])) ray.axis = d;
   }
@@ -162,7 +161,7 @@ bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double lengt
   if (any && ray.begin <= ray.end) {
     const double slabs = std::fabs(ray.at(ray.axis, ray.end) - ray.at(ray.axis, ray.begin)) / kQuanta;
     if (kCellsPerSlab * slabs <= static_cast<double>(fewest_cells())) {
-      if (!walk_slabs(quantized_grid, ray, portion, visitor)) return true;
+      if (!walk_slabs(grid, ray, portion, visitor)) return true;
     } else {
       for (BodyIndex body = 0; body < places_.size(); ++body) {
         if (places_[body] == Place::inside && ray.meets(boxes_[body].whole())) portion.push_back(body);

@@ -32,11 +32,10 @@ BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make) {
   const bool valid = is_valid(wanted);
   const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
-  state_ = std::make_unique<State>(
-      State{detail::BodyPool(std::move(source), detail::Clock{options.start, options.time_step}), nullptr});
+  state_ = std::make_unique<State>(std::move(source), detail::Clock{options.start, options.time_step});
   max_time_ = valid ? kMaxSteps * options.time_step : -1;
   state_->method = make(state_->pool, options);
-  if (options.validate) state_->pool.check_motion_bounds(options.broken, options.position_slack);
+  if (options.validate) state_->pool.motions.check_bounds(options.broken, options.position_slack);
   note_next_step();
   seen_time_ = -std::numeric_limits<double>::infinity();
 }
@@ -67,14 +66,13 @@ void BroadPhase::note_next_step() {
   const bool any = state_->next != kNeverStep;
   next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
   wake_time_ = any ? clock.earliest(state_->next) : next_time_;
-  if (state_->pool.motion_bound_check() != nullptr)
-    wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
+  if (state_->pool.motions.check() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
 }
 
 void BroadPhase::validate_up_to(Step step) {
   if (step <= state_->validated) return;
   state_->validated = step;
-  state_->pool.ask_all(step);
+  state_->pool.motions.ask_all(step);
 }
 
 bool BroadPhase::may_change() const noexcept { return valid() && !state_->busy; }
@@ -100,7 +98,7 @@ Advance BroadPhase::process(double t_now, const Budget* budget, std::uint64_t re
 Advance BroadPhase::process_steps(double t_now, const Budget* budget, std::uint64_t replay) {
   State& state = *state_;
   state.woken = false;
-  std::vector<BodyIndex>& bodies_refused = state.pool.refused();
+  std::vector<BodyIndex>& bodies_refused = state.pool.motions.refused();
   bodies_refused.clear();
   const auto refused = [&]() -> std::span<const BodyIndex> {
     std::sort(bodies_refused.begin(), bodies_refused.end());
@@ -109,7 +107,7 @@ Advance BroadPhase::process_steps(double t_now, const Budget* budget, std::uint6
   };
   const detail::Clock& clock = state.pool.clock;
   std::uint64_t work = 0;
-  const bool validating = state.pool.motion_bound_check() != nullptr;
+  const bool validating = state.pool.motions.check() != nullptr;
   while (state.next != kNeverStep && t_now >= clock.earliest(state.next)) {
     const Step now = state.next;
     if (validating) validate_up_to(now);
@@ -146,7 +144,7 @@ BodyId BroadPhase::add_body(std::uint8_t importance, const BodyFilter& filter, c
 }
 
 BodyId BroadPhase::add(std::uint8_t importance, const BodyFilter& filter) {
-  return may_change() && state_->pool.has_source() ? add_body(importance, filter, nullptr) : kNoBody;
+  return may_change() && state_->pool.motions.has_source() ? add_body(importance, filter, nullptr) : kNoBody;
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, const BodyFilter& filter) {
@@ -164,24 +162,24 @@ bool BroadPhase::remove(BodyId body) {
 bool BroadPhase::cancel(BodyId body) {
   if (!may_change() || !contains(body)) return false;
   state_->method->changed(body.index);
-  state_->pool.forget_motion_bound(body.index);
+  state_->pool.motions.forget_bound(body.index);
   wake_for_change();
   return true;
 }
 
 bool BroadPhase::move_static(BodyId body, const Motion& place) {
-  if (!may_change() || !contains(body) || !state_->pool.is_static(body.index) || !is_valid(place)) return false;
+  if (!may_change() || !contains(body) || !state_->pool.statics.has(body.index) || !is_valid(place)) return false;
   cancel(body);
-  state_->pool.move_static(body.index, place);
+  state_->pool.statics.move(body.index, place);
   return true;
 }
 
 bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   if (!may_change() || !contains(body)) return false;
   detail::BodyPool& pool = state_->pool;
-  const std::uint8_t before = pool.importance(body.index);
-  const auto undo = [&] { pool.set_importance(body.index, before); };
-  pool.set_importance(body.index, importance);
+  const std::uint8_t before = pool.classes.of(body.index);
+  const auto undo = [&] { pool.classes.change(body.index, before); };
+  pool.classes.change(body.index, importance);
   detail::UndoUnlessDone undone(undo);
   state_->method->reclassified(body.index);
   undone.done();
@@ -192,16 +190,16 @@ bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
 bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
   if (!may_change() || !contains(body)) return false;
   detail::BodyPool& pool = state_->pool;
-  if (pool.filter(body.index) == filter) return true;
-  pool.make_room_for_filters();
+  if (pool.filters.of(body.index) == filter) return true;
+  pool.filters.make_room(pool.slots());
   state_->method->changed(body.index);
   wake_for_change();
-  pool.set_filter(body.index, filter);
+  pool.filters.set(body.index, filter);
   return true;
 }
 
 BodyFilter BroadPhase::filter_of(BodyId body) const noexcept {
-  return contains(body) ? state_->pool.filter(body.index) : BodyFilter{};
+  return contains(body) ? state_->pool.filters.of(body.index) : BodyFilter{};
 }
 
 void BroadPhase::set_pair_filter(PairFilter filter) {
@@ -211,7 +209,7 @@ void BroadPhase::set_pair_filter(PairFilter filter) {
     if (pool.alive(body)) state_->method->changed(body);
   }
   wake_for_change();
-  pool.set_pair_filter(std::move(filter));
+  pool.filters.set_function(std::move(filter));
 }
 
 // What was due at the steps in between is void once each body has been asked for again.
@@ -237,9 +235,9 @@ std::size_t BroadPhase::predict_load(double time, std::span<StepsAhead> steps) c
 }
 
 std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }
-std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->pool.asked(); }
+std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->pool.motions.asked(); }
 std::uint64_t BroadPhase::motion_bound_violations() const noexcept {
-  const detail::MotionBoundCheck* const check = state_->pool.motion_bound_check();
+  const detail::MotionBoundCheck* const check = state_->pool.motions.check();
   return check == nullptr ? 0 : check->broken();
 }
 std::size_t BroadPhase::memory_bytes() const noexcept {

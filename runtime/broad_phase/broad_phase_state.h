@@ -4,6 +4,8 @@
 namespace orchard::runtime {
 
 struct BroadPhase::State {
+  State(MotionSource source, const detail::Clock& clock) : pool(std::move(source), clock) {}
+
   detail::BodyPool pool;
   std::unique_ptr<detail::BroadPhaseAlgorithm> method;
   detail::Step next = detail::kNeverStep;  // the next step with anything to do

@@ -108,7 +108,7 @@ std::span<const BodyIndex> BodyQueries::new_ones(std::span<const BodyIndex> bodi
   for (const BodyIndex body : bodies) {
     if (seen_[body] == query_ || !pool.alive(body)) continue;
     seen_[body] = query_;
-    if (admits(filter, pool.filter(body))) asked_.push_back(body);
+    if (admits(filter, pool.filters.of(body))) asked_.push_back(body);
   }
   return asked_;
 }
@@ -123,7 +123,7 @@ void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilt
     const std::size_t count = std::min(kAskedAtOnce, rest.size());
     {
       const BroadPhase::Busy busy(*world_->state_);
-      world_->state_->pool.ask(now, rest.first(count), std::span(motions_).first(count));
+      world_->state_->pool.motions.ask(now, rest.first(count), std::span(motions_).first(count));
     }
     refused_ = false;  // what the source has asked of this object was
     for (std::size_t i = 0; i < count; ++i) {

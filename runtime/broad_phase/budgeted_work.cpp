@@ -4,16 +4,16 @@ namespace orchard::runtime::detail {
 
 void BudgetedWork::postpone(std::span<const BodyIndex> bodies) {
   for (const BodyIndex body : bodies) {
-    parts_.windows[body].end = kUpdateDue;
-    backlog_.wait(body, parts_.pool.importance(body));
+    state_.windows[body].end = kUpdateDue;
+    backlog_.wait(body, state_.pool.classes.of(body));
   }
 }
 
 void BudgetedWork::reclassified(BodyIndex body) {
   if (backlog_.waits(body)) {
-    backlog_.rank(parts_.pool.importance(body));  // nothing throws after that
+    backlog_.rank(state_.pool.classes.of(body));  // nothing throws after that
     backlog_.leave(body);
-    backlog_.wait(body, parts_.pool.importance(body));
+    backlog_.wait(body, state_.pool.classes.of(body));
   }
   reclassified_ = true;
 }
@@ -24,9 +24,9 @@ void BudgetedWork::sort_pairs_again() {
   tests_.clear();
   std::vector<BodyIndex> bodies;
   backlog_.take_all(bodies, tests_);
-  for (const BodyIndex body : bodies) backlog_.wait(body, parts_.pool.importance(body));
+  for (const BodyIndex body : bodies) backlog_.wait(body, state_.pool.classes.of(body));
   for (const PairEvent& event : tests_) {
-    if (parts_.windows.valid(event)) backlog_.rank(parts_.pool.importance(event.pair)).due.push(event);
+    if (state_.windows.valid(event)) backlog_.rank(state_.pool.classes.of(event.pair)).due.push(event);
   }
 }
 
@@ -35,28 +35,28 @@ void BudgetedWork::join(std::span<const BodyIndex> due, std::span<const PairEven
   reclassified_ = false;
   postpone(due);
   const auto test_later = [&](const BodyPair& pair, Round created) {
-    PairQueue& queue = backlog_.rank(parts_.pool.importance(pair)).due;
+    PairQueue& queue = backlog_.rank(state_.pool.classes.of(pair)).due;
     queue.push({pair, created});
-    queue.tidy([&](const PairEvent& old) { return parts_.windows.valid(old); });
+    queue.tidy([&](const PairEvent& old) { return state_.windows.valid(old); });
   };
   for (const PairEvent& event : events) {
-    if (!parts_.windows.valid(event)) continue;
-    parts_.overlaps.drop(event.pair);  // unless it is tested at this step
+    if (!state_.windows.valid(event)) continue;
+    state_.overlaps.drop(event.pair);  // unless it is tested at this step
     test_later(event.pair, event.created);
   }
   if (backlog_.no_body_waits()) return;
   // No bound says any more that these overlap still.
   unsure_.clear();
-  parts_.overlaps.take_out([&](const BodyPair& pair) { return backlog_.waits(pair.a) || backlog_.waits(pair.b); },
+  state_.overlaps.take_out([&](const BodyPair& pair) { return backlog_.waits(pair.a) || backlog_.waits(pair.b); },
                            unsure_);
   for (const BodyPair& pair : unsure_) {
-    const PairEvent event{pair, parts_.windows.round()};
-    if (parts_.windows.valid(event)) test_later(pair, parts_.windows.round());
+    const PairEvent event{pair, state_.windows.round()};
+    if (state_.windows.valid(event)) test_later(pair, state_.windows.round());
   }
 }
 
 unsigned BudgetedWork::work(Step now, BudgetTracker& tracker) {
-  for (unsigned rank = parts_.pool.next_class(0); rank < kNoClass; rank = parts_.pool.next_class(rank + 1)) {
+  for (unsigned rank = state_.pool.classes.next(0); rank < kNoClass; rank = state_.pool.classes.next(rank + 1)) {
     if (!work_through(now, rank, tracker)) return rank;
   }
   return kNoClass;
@@ -66,7 +66,7 @@ unsigned BudgetedWork::work(Step now, BudgetTracker& tracker) {
 bool BudgetedWork::work_through(Step now, unsigned importance, BudgetTracker& tracker) {
   for (;;) {
     Backlog::Rank& rank = backlog_.rank(importance);
-    while (!rank.due.empty() && !parts_.windows.valid(rank.due.front())) rank.due.pop();
+    while (!rank.due.empty() && !state_.windows.valid(rank.due.front())) rank.due.pop();
     const bool updating = rank.updating(), testing = !rank.due.empty();
     if (!updating && !testing) {
       rank.lead = 0;
@@ -91,15 +91,15 @@ std::size_t BudgetedWork::update_waiting(Step now, unsigned importance, std::siz
   std::array<BodyIndex, kWorkPerClock> bodies;
   const std::size_t count = backlog_.take(importance, std::span(bodies).first(std::min(most, bodies.size())));
   const auto updated = std::span(bodies).first(count);
-  parts_.windows.begin_round();
-  for (const BodyIndex body : updated) parts_.boxes.take_away(body);
+  state_.windows.begin_round();
+  for (const BodyIndex body : updated) state_.boxes.take_away(body);
   const std::span<const BodyPair> near = updates_.find_near(now, updated);
   tracker.count(count);
   for (const BodyPair& pair : near) {
-    const unsigned theirs = parts_.pool.importance(pair);
+    const unsigned theirs = state_.pool.classes.of(pair);
     Backlog::Rank& rank = backlog_.rank(theirs);
-    (theirs == importance ? rank.found : rank.due).push({pair, parts_.windows.round()});
-    if (theirs != importance) rank.due.tidy([&](const PairEvent& event) { return parts_.windows.valid(event); });
+    (theirs == importance ? rank.found : rank.due).push({pair, state_.windows.round()});
+    if (theirs != importance) rank.due.tidy([&](const PairEvent& event) { return state_.windows.valid(event); });
   }
   return count;
 }
@@ -111,12 +111,12 @@ std::size_t BudgetedWork::test_waiting(Step now, PairQueue& queue, bool found, s
   const std::size_t pairs = std::clamp<std::size_t>(most / 2, 1, NearPairs::kTestsAtOnce);
   while (tests_.size() < pairs && !queue.empty()) {
     const PairEvent event = queue.pop();
-    if (!parts_.pool.alive(event.pair.a) || !parts_.pool.alive(event.pair.b)) continue;
-    if (!found && !parts_.windows.valid(event)) continue;
-    parts_.overlaps.drop(event.pair);
+    if (!state_.pool.alive(event.pair.a) || !state_.pool.alive(event.pair.b)) continue;
+    if (!found && !state_.windows.valid(event)) continue;
+    state_.overlaps.drop(event.pair);
     tests_.push_back(event);
   }
-  parts_.pairs.test(now, tests_);
+  pairs_.test(now, tests_);
   tracker.count(2 * tests_.size());
   return 2 * tests_.size();
 }

@@ -17,7 +17,8 @@ namespace orchard::runtime::detail {
 // would have to be within their windows at the same time to be found.
 class BudgetedWork {
  public:
-  BudgetedWork(const WindowUpdates::Parts& parts, WindowUpdates& updates) : parts_(parts), updates_(updates) {}
+  BudgetedWork(KineticState& state, NearPairs& pairs, WindowUpdates& updates)
+      : state_(state), pairs_(pairs), updates_(updates) {}
 
   // What is due waits from now on, behind what has been left over.
   void join(std::span<const BodyIndex> due, std::span<const PairEvent> events);
@@ -39,7 +40,8 @@ class BudgetedWork {
   std::size_t update_waiting(Step now, unsigned importance, std::size_t most, BudgetTracker& tracker);
   std::size_t test_waiting(Step now, PairQueue& queue, bool found, std::size_t most, BudgetTracker& tracker);
 
-  const WindowUpdates::Parts parts_;
+  KineticState& state_;
+  NearPairs& pairs_;
   WindowUpdates& updates_;
   Backlog backlog_;
   bool reclassified_ = false;  // some body, since the last step within a budget

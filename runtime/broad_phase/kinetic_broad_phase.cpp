@@ -15,209 +15,202 @@ constexpr Step kNotSorted = 256;                      // steps for which nothing
 }  // namespace
 
 KineticBroadPhase::KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& options)
-    : pool_(pool),
-      options_(options),
-      windows_(pool_, options_.window),
-      refusals_(pool_, windows_, boxes_, overlaps_, changes_),
-      planner_(pool_, options_),
-      pairs_(pool_, options_, windows_, wheel_, overlaps_, refusals_),
-      updates_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, options_),
-      budgeted_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, updates_) {}
+    : state_(pool, options),
+      planner_(pool, state_.options),
+      pairs_(state_),
+      updates_(state_, planner_, pairs_),
+      budgeted_(state_, pairs_, updates_) {}
 
 void KineticBroadPhase::changed(BodyIndex body) {
-  const std::size_t n = pool_.slots();
-  if (windows_.size() < n) {
-    boxes_.make_room(n);
-    changes_.make_room(n);
-    overlaps_.make_room(n);
-    windows_.make_room(n);  // last: it tells that there is room in all of them
-  }
-  changes_.note(body);
+  const std::size_t n = state_.pool.slots();
+  if (state_.windows.size() < n) state_.make_room(n);
+  state_.changes.note(body);
 }
 
 // Their boxes are all over memory: they are taken out together, at the next step.
 void KineticBroadPhase::removed(BodyIndex body) {
-  if (gone_.size() >= windows_.size()) take_away_gone();
+  if (gone_.size() >= state_.windows.size()) take_away_gone();
   append(gone_, body);
   budgeted_.leave(body);
-  changes_.forget(body);
-  overlaps_.mark(body, OverlapList::kUpdated);
+  state_.changes.forget(body);
+  state_.overlaps.mark(body, OverlapList::kUpdated);
 }
 
 void KineticBroadPhase::take_away_gone() noexcept {
   constexpr std::size_t kAhead = 16, kKept = 1024;
-  boxes_.take_away(gone_);
+  state_.boxes.take_away(gone_);
   for (std::size_t i = 0; i < gone_.size(); ++i) {
-    if (i + kAhead < gone_.size()) prefetch(&windows_[gone_[i + kAhead]]);
+    if (i + kAhead < gone_.size()) prefetch(&state_.windows[gone_[i + kAhead]]);
     const BodyIndex body = gone_[i];
-    if (windows_[body].length > 0) planner_.note_cancelled();
-    windows_[body] = {.end = kNeverStep};  // no next update, until the slot's next body
-    windows_.void_events(body);
+    if (state_.windows[body].length > 0) planner_.note_cancelled();
+    state_.windows[body] = {.end = kNeverStep};  // no next update, until the slot's next body
+    state_.windows.void_events(body);
   }
   gone_.clear();
   if (gone_.capacity() > kKept) give_back(gone_);
 }
 
 void KineticBroadPhase::note_cancelled(BodyIndex body, Step now) {
-  if (windows_.note_cancelled(body, now)) planner_.note_cancelled();
+  if (state_.windows.note_cancelled(body, now)) planner_.note_cancelled();
 }
 
 void KineticBroadPhase::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
   // Then all bodies are new, each is noted at least once, and none has had a window.
-  if (first_ && changes_.size() == pool_.size()) return changes_.take_all(due_);
-  make_room(due_, changes_.size());
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kAhead < entries_.size()) {
-      const BodyIndex body = entries_[i + kAhead];
-      prefetch(&windows_[body]), prefetch(boxes_.at(body)), prefetch(changes_.at(body));
+  if (first_ && state_.changes.size() == state_.pool.size()) return state_.changes.take_all(due_.bodies);
+  make_room(due_.bodies, state_.changes.size());
+  for (std::size_t i = 0; i < due_.entries.size(); ++i) {
+    if (i + kAhead < due_.entries.size()) {
+      const BodyIndex body = due_.entries[i + kAhead];
+      prefetch(&state_.windows[body]), prefetch(state_.boxes.at(body)), prefetch(state_.changes.at(body));
     }
-    Window& window = windows_[entries_[i]];
-    if (window.end != now || changes_.has(entries_[i])) continue;  // updated since
+    Window& window = state_.windows[due_.entries[i]];
+    if (window.end != now || state_.changes.has(due_.entries[i])) continue;  // updated since
     window.end = kUpdateDue;
     window.rely_longer();
-    due_.push_back(entries_[i]);
+    due_.bodies.push_back(due_.entries[i]);
   }
-  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
-  std::size_t count = due_.size();
-  due_.resize(count + changes_.size());
-  changes_.take(load, [&](BodyIndex body) {
+  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
+  std::size_t count = due_.bodies.size();
+  due_.bodies.resize(count + state_.changes.size());
+  state_.changes.take(load, [&](BodyIndex body) {
     note_cancelled(body, now);
-    due_[count++] = body;
+    due_.bodies[count++] = body;
   });
-  due_.resize(count);
+  due_.bodies.resize(count);
 }
 
 // After a step by sorting: all windows were of one step.
 void KineticBroadPhase::collect_all(Step now) {
-  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
-    if (changes_.has(body)) {
-      changes_.forget(body);
+  for (BodyIndex body = 0; body < state_.pool.slots(); ++body) {
+    if (state_.changes.has(body)) {
+      state_.changes.forget(body);
       note_cancelled(body, now);
-    } else if (windows_[body].end == now) {
-      windows_[body].rely_longer();
+    } else if (state_.windows[body].end == now) {
+      state_.windows[body].rely_longer();
     } else {
       continue;
     }
-    due_.push_back(body);
+    due_.bodies.push_back(body);
   }
-  changes_.forget_all();
+  state_.changes.forget_all();
 }
 
-// What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
+// What has not been updated for this step yet is in due_.bodies already; the rest changed since, or was added.
 void KineticBroadPhase::complete_due(Step now) {
-  if (changes_.empty() && pool_.size() == pool_.slots()) return;  // nor is anybody gone
-  std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
-  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
-  changes_.take(load, [&](BodyIndex body) {
-    boxes_.take_away(body);
+  if (state_.changes.empty() && state_.pool.size() == state_.pool.slots()) return;  // nor is anybody gone
+  std::erase_if(due_.bodies, [&](BodyIndex body) { return !state_.pool.alive(body) || state_.changes.has(body); });
+  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
+  state_.changes.take(load, [&](BodyIndex body) {
+    state_.boxes.take_away(body);
     note_cancelled(body, now);
-    due_.push_back(body);
+    due_.bodies.push_back(body);
   });
 }
 
 // When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
 bool KineticBroadPhase::worth_a_rebuild(std::size_t due) const noexcept {
-  const std::size_t n = pool_.size();
-  if (windows_.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
+  const std::size_t n = state_.pool.size();
+  if (state_.windows.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
   if (due == 0 || n == 0) return false;
-  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(boxes_.counts());
+  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(state_.counts);
 }
 
 // False if a budget interrupted it.
 bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
-  GridCounts counts = boxes_.counts();
-  if (sorting_) counts = {.bodies = pool_.size(), .pairs = sorted_.boxes_met()};
+  GridCounts counts = state_.counts;
+  if (sorting_) counts = {.bodies = state_.pool.size(), .pairs = sorted_.boxes_met()};
   const Planner::Outcome outcome = planner_.replan(now, counts, tracker);
   if (outcome == Planner::Outcome::interrupted) return false;
-  boxes_.begin_counts();
+  state_.counts = {};
   if (outcome == Planner::Outcome::same) return true;
   const Vec3* const surveyed = planner_.surveyed_middle();
-  boxes_.set_lattice(surveyed != nullptr ? *surveyed : boxes_.quantized_grid_at(now).origin(), planner_.velocity(),
-                     planner_.plan().cell_size, 2 * options_.position_slack, options_.time_step, now);
-  windows_.plan(planner_.plan().window, boxes_.moves());
+  state_.grid.set(surveyed != nullptr ? *surveyed : state_.grid.at(now).origin(), planner_.velocity(),
+                  planner_.plan().cell_size, 2 * state_.options.position_slack, state_.options.time_step, now);
+  state_.windows.plan(planner_.plan().window, state_.grid.moves());
   return true;
 }
 
 void KineticBroadPhase::all_are_due() {
-  if (due_.capacity() > 2 * pool_.size()) give_back(due_);
-  due_.resize(pool_.size());
-  if (pool_.size() == pool_.slots()) return std::iota(due_.begin(), due_.end(), BodyIndex{0});
+  if (due_.bodies.capacity() > 2 * state_.pool.size()) give_back(due_.bodies);
+  due_.bodies.resize(state_.pool.size());
+  if (state_.pool.size() == state_.pool.slots()) return std::iota(due_.bodies.begin(), due_.bodies.end(), BodyIndex{0});
   std::size_t count = 0;
-  for (BodyIndex body = 0; count < due_.size(); ++body) {
-    due_[count] = body;
-    count += pool_.alive(body) ? 1 : 0;
+  for (BodyIndex body = 0; count < due_.bodies.size(); ++body) {
+    due_.bodies[count] = body;
+    count += state_.pool.alive(body) ? 1 : 0;
   }
 }
 
 void KineticBroadPhase::place_all() {
   if (sorting_) sorted_.release();
   sorting_ = false;
-  wheel_.clear_bodies();
-  windows_.start_over();
-  boxes_.rebuild(pool_.slots(), planner_.plan().lines);
+  state_.wheel.clear_bodies();
+  state_.windows.start_over();
+  state_.boxes.rebuild(state_.pool.slots(), planner_.plan().lines);
   all_are_due();
 }
 
 void KineticBroadPhase::note_spheres() {
   const WindowPlan& plan = planner_.plan();
-  pairs_.note_spheres(plan.window == 1 || plan.pairs_per_body >= kManyPairs, pool_.slots());
+  pairs_.spheres().begin(plan.window == 1 || plan.pairs_per_body >= kManyPairs, state_.pool.slots());
 }
 
 void KineticBroadPhase::make_room_for_boxes() {
-  boxes_.make_room_for_boxes(pool_.slots());
-  pairs_.make_room_for_spheres(pool_.slots());
+  state_.boxes.make_room_for_boxes(state_.pool.slots());
+  pairs_.spheres().make_room(state_.pool.slots());
 }
 
 // Everything that is due, and what a budget left over before.
 void KineticBroadPhase::step_in_full(Step now, bool completing) {
   if (!budgeted_.nothing_left()) {
-    for (const BodyIndex body : due_) budgeted_.leave(body);  // changed while it waited: one update is enough
-    budgeted_.take_all(due_, waiting_);
+    for (const BodyIndex body : due_.bodies) budgeted_.leave(body);  // changed while it waited: one update is enough
+    budgeted_.take_all(due_.bodies, due_.pairs);
   }
   bool rebuild_all = completing;
   if (!completing) {
-    rebuild_all = sorting_ || worth_a_rebuild(due_.size());
+    rebuild_all = sorting_ || worth_a_rebuild(due_.bodies.size());
     if (rebuild_all) {
       BudgetTracker unlimited;
       replan(now, unlimited);
       if (worth_sorting(now)) return step_by_sorting(now);
       place_all();
-      wheel_.clear_events();  // updates of all windows void them
+      state_.wheel.clear_events();  // updates of all windows void them
     } else {
       make_room_for_boxes();
-      boxes_.take_away(due_);
+      state_.boxes.take_away(due_.bodies);
     }
   }
   make_room_for_boxes();
   if (rebuild_all) {
-    overlaps_.start_over();
+    state_.overlaps.start_over();
     note_spheres();
   }
-  rebuild_all ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
-  std::erase_if(waiting_, [&](const PairEvent& event) { return !windows_.valid(event); });
-  pairs_.test(now, waiting_);
+  rebuild_all ? updates_.update_all(now, now, due_.bodies) : updates_.update(now, now, due_.bodies);
+  std::erase_if(due_.pairs, [&](const PairEvent& event) { return !state_.windows.valid(event); });
+  pairs_.test(now, due_.pairs);
   pairs_.take_overlaps_ahead();
   if (!rebuild_all) return;
   const bool lasts = planner_.plan().window >= kMinStepsBeforeCommonExpiry;
-  const bool common = pool_.size() >= kMinBodiesAtCommonExpiry && 4 * windows_.votes() > pool_.size();
-  common_expiry_ = lasts && common ? windows_.voted() : kNeverStep;
+  const bool common =
+      state_.pool.size() >= kMinBodiesAtCommonExpiry && 4 * state_.windows.votes().votes() > state_.pool.size();
+  common_expiry_ = lasts && common ? state_.windows.votes().voted() : kNeverStep;
 }
 
 // A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
 // speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
 unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
-  const bool has_to = sorting_ || windows_.rounds_run_out();
-  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
-  budgeted_.join(due_, waiting_);
-  due_.clear();
+  const bool has_to = sorting_ || state_.windows.rounds_run_out();
+  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.bodies.size()));
+  budgeted_.join(due_.bodies, due_.pairs);
+  due_.bodies.clear();
   if (rebuild) {
-    if (!replan(now, tracker)) return pool_.next_class(0);
+    if (!replan(now, tracker)) return state_.pool.classes.next(0);
     place_all();
-    boxes_.empty(options_.executor);
-    budgeted_.postpone(due_);
-    due_.clear();
+    state_.boxes.lines().empty_parts(state_.options.executor);
+    budgeted_.postpone(due_.bodies);
+    due_.bodies.clear();
     common_expiry_ = kNeverStep;
   }
   make_room_for_boxes();
@@ -226,35 +219,36 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
 
 // Static bodies have windows without end, which are worth keeping if there are many.
 bool KineticBroadPhase::worth_sorting(Step now) const noexcept {
-  return planner_.plan().window == 1 && pool_.slots() > kFewBodies && now >= sorts_from_ &&
-         2 * pool_.statics() <= pool_.size();
+  return planner_.plan().window == 1 && state_.pool.slots() > kFewBodies && now >= sorts_from_ &&
+         2 * state_.pool.statics.count() <= state_.pool.size();
 }
 
 void KineticBroadPhase::begin_sorting() {
   sorting_ = true;
   common_expiry_ = kNeverStep;
-  wheel_.clear();
+  state_.wheel.clear();
   pairs_.forget_all();
-  pairs_.release_spheres();
-  boxes_.rebuild(pool_.slots(), 0);
-  boxes_.begin_counts();
+  pairs_.spheres().release();
+  state_.boxes.rebuild(state_.pool.slots(), 0);
+  state_.counts = {};
 }
 
 void KineticBroadPhase::step_by_sorting(Step now) {
   if (!sorting_) begin_sorting();
-  windows_.start_over();
+  state_.windows.start_over();
   all_are_due();
-  sorted_.begin(due_.size(), boxes_.quantized_grid_at(now).origin(), planner_.spacing());
-  for (std::size_t done = 0; done < due_.size(); done += kBlock) {
-    auto block = std::span(due_).subspan(done, std::min(kBlock, due_.size() - done));
+  sorted_.begin(due_.bodies.size(), state_.grid.at(now).origin(), planner_.spacing());
+  for (std::size_t done = 0; done < due_.bodies.size(); done += kBlock) {
+    auto block = std::span(due_.bodies).subspan(done, std::min(kBlock, due_.bodies.size() - done));
     const std::span<const Motion> motions = updates_.ask_valid(now, block);
-    for (const BodyIndex body : block) windows_.set(body, now, now + 1);
+    for (const BodyIndex body : block) state_.windows.set(body, now, now + 1);
     planner_.note(motions);
     sorted_.add(block, motions);
   }
   sorted_.find();
-  if (pool_.filters_pairs()) sorted_.drop_pairs([&](const BodyPair& pair) { return !pool_.may_pair(pair); });
-  overlaps_.assign(sorted_.pairs(), pool_.slots());
+  if (state_.pool.filters_pairs())
+    sorted_.drop_pairs([&](const BodyPair& pair) { return !state_.pool.may_pair(pair); });
+  state_.overlaps.assign(sorted_.pairs(), state_.pool.slots());
   if (!sorted_.suits()) sorts_from_ = now + kNotSorted;
 }
 
@@ -266,54 +260,54 @@ bool KineticBroadPhase::prepare(Step now) {
   common_expiry_ = kNeverStep;
   std::array<BodyIndex, kAskedAhead> sample;
   std::size_t count = 0;
-  const std::size_t stride = std::max<std::size_t>(1, pool_.slots() / kAskedAhead);
-  for (std::size_t body = 0; body < pool_.slots() && count < kAskedAhead; body += stride) {
-    if (pool_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
+  const std::size_t stride = std::max<std::size_t>(1, state_.pool.slots() / kAskedAhead);
+  for (std::size_t body = 0; body < state_.pool.slots() && count < kAskedAhead; body += stride) {
+    if (state_.pool.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
   }
   if (!updates_.know_mostly(now, from, std::span(sample).first(count))) return false;
 
   common_expiry_ = from;
   prepared_ = true;
   pairs_.work_ahead(true);
-  windows_.begin_round();
+  state_.windows.begin_round();
   BudgetTracker unlimited;
   replan(now, unlimited);
   place_all();
-  wheel_.clear_events();
-  const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.size()));
+  state_.wheel.clear_events();
+  const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.bodies.size()));
   note_spheres();
-  updates_.update_all(now, from, std::span(due_).first(ahead));
-  due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
+  updates_.update_all(now, from, std::span(due_.bodies).first(ahead));
+  due_.bodies.erase(due_.bodies.begin(), due_.bodies.begin() + static_cast<std::ptrdiff_t>(ahead));
   pairs_.work_ahead(false);
   return true;
 }
 
 // Nothing is left to plan for, nor to wake up for.
 void KineticBroadPhase::forget_all() noexcept {
-  wheel_.clear();
-  overlaps_.clear();
+  state_.wheel.clear();
+  state_.overlaps.clear();
   pairs_.forget_all();
-  changes_.forget_all();
-  due_.clear();
+  state_.changes.forget_all();
+  due_.bodies.clear();
   planner_.forget_survey();
   prepared_ = false;
   common_expiry_ = kNeverStep;
 }
 
 void KineticBroadPhase::begin(Step now) {
-  windows_.begin_round();
-  entries_.clear();
-  waiting_.clear();
-  wheel_.take(now, entries_, waiting_);
+  state_.windows.begin_round();
+  due_.entries.clear();
+  due_.pairs.clear();
+  state_.wheel.take(now, due_.entries, due_.pairs);
   if (prepared_) return complete_due(now);
-  due_.clear();
+  due_.bodies.clear();
   sorting_ ? collect_all(now) : collect_due(now);
   first_ = false;
 }
 
 StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
   take_away_gone();
-  if (pool_.size() == 0) {
+  if (state_.pool.size() == 0) {
     forget_all();
     return {kNeverStep, {}};
   }
@@ -323,39 +317,39 @@ StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
   prepared_ = false;
   if (!tracker.limited()) {
     step_in_full(now, completing);
-    overlaps_.update(pool_.slots());
+    state_.overlaps.update(state_.pool.slots());
     return end(now, kNoClass, tracker);
   }
-  pairs_.take_overlaps_ahead(waiting_);
+  pairs_.take_overlaps_ahead(due_.pairs);
   const unsigned incomplete_from = step_within(now, tracker);
   if (incomplete_from != kNoClass) interrupted_at_ = now;
   pairs_.keep_doubtful();
-  overlaps_.update(pool_.slots());
+  state_.overlaps.update(state_.pool.slots());
   return end(now, incomplete_from, tracker);
 }
 
 StepReport KineticBroadPhase::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
-  StepReport report{now + 1, overlaps_.pairs()};
+  StepReport report{now + 1, state_.overlaps.pairs()};
   if (incomplete_from != kNoClass) {
     report.incomplete_from = incomplete_from;
     report.left_over = budgeted_.left_over();
     return report;
   }
   if (now + 1 == common_expiry_ && !tracker.limited() && prepare(now)) return report;
-  if (!changes_.empty() || !report.pairs.empty() || sorting_) return report;
-  report.next = wheel_.next_after(now);
+  if (!state_.changes.empty() || !report.pairs.empty() || sorting_) return report;
+  report.next = state_.wheel.next_after(now);
   if (common_expiry_ != kNeverStep && common_expiry_ - 1 > now) report.next = std::min(report.next, common_expiry_ - 1);
   return report;
 }
 
 std::size_t KineticBroadPhase::predict_load(Step now, std::span<StepsAhead> steps) const noexcept {
   const std::size_t known = std::min<std::size_t>(steps.size(), kWheelSteps - 2);
-  if (sorting_ && known > 0) steps[0].updates += pool_.size();
+  if (sorting_ && known > 0) steps[0].updates += state_.pool.size();
   for (std::size_t i = 0; i < known; ++i) {
     const Step step = now + 1 + static_cast<Step>(i);
-    steps[i].updates += wheel_.bodies_due(step);
-    steps[i].meetings += wheel_.events_due(step);
-    steps[i].overlaps += overlaps_.pairs().size();
+    steps[i].updates += state_.wheel.bodies_due(step);
+    steps[i].meetings += state_.wheel.events_due(step);
+    steps[i].overlaps += state_.overlaps.pairs().size();
   }
   return known;
 }
@@ -363,14 +357,14 @@ std::size_t KineticBroadPhase::predict_load(Step now, std::span<StepsAhead> step
 // New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one: they
 // have no box, or an old one, and may be anywhere.
 void KineticBroadPhase::append_loose(std::vector<BodyIndex>& bodies) const {
-  changes_.append_to(bodies);
+  state_.changes.append_to(bodies);
   budgeted_.append_bodies(bodies);
-  if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
+  if (prepared_) bodies.insert(bodies.end(), due_.bodies.begin(), due_.bodies.end());
 }
 
 Near KineticBroadPhase::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
   append_loose(bodies);
-  if (!sorting_) return boxes_.near_box(now, lower, upper, bodies);
+  if (!sorting_) return state_.boxes.near_box(state_.grid.at(now), lower, upper, bodies);
   return sorted_.append_near(lower, upper, bodies) ? Near::some : Near::untold;
 }
 
@@ -378,14 +372,13 @@ bool KineticBroadPhase::along(Step now, const Vec3& origin, const Vec3& way, dou
                               std::vector<BodyIndex>& portion, PortionVisitor& visitor) const {
   portion.clear();
   append_loose(portion);
-  return !sorting_ && boxes_.along(now, origin, way, length, portion, visitor);
+  return !sorting_ && state_.boxes.along(state_.grid.at(now), origin, way, length, portion, visitor);
 }
 
 std::size_t KineticBroadPhase::memory_bytes() const noexcept {
-  return sizeof(*this) + changes_.memory_bytes() + bytes_of(gone_) + windows_.memory_bytes() + boxes_.memory_bytes() +
-         wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
-         pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
-         bytes_of(due_, entries_, waiting_);
+  return sizeof(*this) + state_.memory_bytes() + bytes_of(gone_) + planner_.memory_bytes() + pairs_.memory_bytes() +
+         updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
+         bytes_of(due_.bodies, due_.entries, due_.pairs);
 }
 
 std::unique_ptr<BroadPhaseAlgorithm> make_kinetic_broad_phase(BodyPool& pool, const BroadPhaseOptions& options) {

@@ -59,15 +59,8 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   void note_spheres();
   void append_loose(std::vector<BodyIndex>& bodies) const;
 
-  BodyPool& pool_;
-  const BroadPhaseOptions options_;
-  Changes changes_;
+  KineticState state_;
   std::vector<BodyIndex> gone_;  // since the last step, whatever has their indices now
-  Windows windows_;
-  BoxIndex boxes_;
-  TimingWheel wheel_;
-  OverlapList overlaps_;
-  InvalidBodies refusals_;
   Planner planner_;
   NearPairs pairs_;
   WindowUpdates updates_;
@@ -77,11 +70,14 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   bool first_ = true;                  // no step has been done
   bool sorting_ = false;               // the last step was done by sorting: there are no boxes, and all bodies are due
   Step sorts_from_ = kNeverStep / -2;  // at steps before, nothing is sorted
-  Step interrupted_at_ = kNeverStep / -2;  // by a budget
-  bool prepared_ = false;                  // half of the updates for the next step have been done ahead
-  Step common_expiry_ = kNeverStep;        // the step at which most windows end
-  std::vector<BodyIndex> due_, entries_;   // at the step under way, and what the wheel had for it
-  std::vector<PairEvent> waiting_;         // for their tests
+  Step interrupted_at_ = kNeverStep / -2;    // by a budget
+  bool prepared_ = false;                    // half of the updates for the next step have been done ahead
+  Step common_expiry_ = kNeverStep;          // the step at which most windows end
+  struct Due {                               // at the step under way
+    std::vector<BodyIndex> bodies, entries;  // entries: what the wheel had for it
+    std::vector<PairEvent> pairs;            // that wait for their tests
+  };
+  Due due_;
 };
 
 }  // namespace orchard::runtime::detail

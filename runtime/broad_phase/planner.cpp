@@ -71,7 +71,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
 // Static bodies have windows without end only where they stay in the same cells. Rounding stays below a
 // quantum where a window's way is within the quantized grid's range.
 Vec3 Planner::frame_velocity() const noexcept {
-  if (pool_.any_static()) return {};
+  if (pool_.statics.any()) return {};
   const Vec3 velocity = means_.crowd_velocity();
   const double way = std::sqrt(dot(velocity, velocity)) * kLongestWindow * options_.time_step;
   return way < kFarthestWay * spread_.spacing ? velocity : Vec3{};
@@ -110,7 +110,7 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
     }
     const std::size_t count = tracker.grant(sample.size());
     surveyed_.resize(surveyed_.size() + count);
-    pool_.ask(now, std::span(sample).first(count), std::span(surveyed_).last(count));
+    pool_.motions.ask(now, std::span(sample).first(count), std::span(surveyed_).last(count));
     tracker.count(count);
     sample.erase(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(count));
   }

@@ -41,6 +41,7 @@ struct alignas(16) PackedAabb {
 };
 inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
+inline constexpr QuantizedAabb kNoBox = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};  // around nothing
 
 inline constexpr std::size_t kBlock = 128;  // bodies that are worked on together, at most
 // Loops over a block go on to a multiple of eight: whole vectors.

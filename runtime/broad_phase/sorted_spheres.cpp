@@ -28,8 +28,9 @@ struct SortedSpheres::Plain {
   static std::uint32_t touching(const SortedSpheres& s, std::uint32_t at, std::uint32_t i) noexcept {
     std::uint32_t bits = 0;
     for (std::uint32_t k = 0; k < kWidth; ++k) {
-      const double dx = s.x_[at + k] - s.x_[i], dy = s.y_[at + k] - s.y_[i], dz = s.z_[at + k] - s.z_[i];
-      const double reach = s.radius_[at + k] + s.radius_[i];
+      const double dx = s.sorted_.x[at + k] - s.sorted_.x[i], dy = s.sorted_.y[at + k] - s.sorted_.y[i],
+                   dz = s.sorted_.z[at + k] - s.sorted_.z[i];
+      const double reach = s.sorted_.radius[at + k] + s.sorted_.radius[i];
       bits |= static_cast<std::uint32_t>(dx * dx + dy * dy + dz * dz <= reach * reach) << k;
     }
     return bits;
@@ -47,8 +48,9 @@ struct SortedSpheres::Four {
     return result;
   }
   ORCHARD_INLINE static std::uint32_t touching(const SortedSpheres& s, std::uint32_t first, std::uint32_t i) noexcept {
-    const Numbers dx = at(&s.x_[first]) - s.x_[i], dy = at(&s.y_[first]) - s.y_[i], dz = at(&s.z_[first]) - s.z_[i];
-    const Numbers reach = at(&s.radius_[first]) + s.radius_[i];
+    const Numbers dx = at(&s.sorted_.x[first]) - s.sorted_.x[i], dy = at(&s.sorted_.y[first]) - s.sorted_.y[i],
+                  dz = at(&s.sorted_.z[first]) - s.sorted_.z[i];
+    const Numbers reach = at(&s.sorted_.radius[first]) + s.sorted_.radius[i];
     const Words met = reinterpret_cast<Words>(dx * dx + dy * dy + dz * dz <= reach * reach) & Words{1, 2, 4, 8};
     return static_cast<std::uint32_t>((met[0] | met[1]) | (met[2] | met[3]));
   }
@@ -102,10 +104,10 @@ void SortedSpheres::add(std::span<const BodyIndex> bodies, std::span<const Motio
 
 // So that few are larger, and all from scratch.
 void SortedSpheres::choose_cell() {
-  x_.clear();
-  for (const Sphere& sphere : spheres_) x_.push_back(sphere.radius);
-  const auto nth = x_.end() - 1 - static_cast<std::ptrdiff_t>(x_.size() / kLargeShare);
-  std::nth_element(x_.begin(), nth, x_.end());
+  sorted_.x.clear();
+  for (const Sphere& sphere : spheres_) sorted_.x.push_back(sphere.radius);
+  const auto nth = sorted_.x.end() - 1 - static_cast<std::ptrdiff_t>(sorted_.x.size() / kLargeShare);
+  std::nth_element(sorted_.x.begin(), nth, sorted_.x.end());
   cell_ = std::max({2 * *nth * kCellSpare * kCellSpare, spacing_ / kCellsPerSpacing, 4 * kMinLength});
   per_length_ = 1 / cell_;
   std::fill(begins_.begin(), begins_.end(), 0);
@@ -118,25 +120,25 @@ void SortedSpheres::sort() {
   for (std::size_t line = 0; line < lines; ++line) begins_[line + 1] += begins_[line];
   const std::uint32_t count = begins_[lines], first = begins_[1], second = begins_[2];
   const std::size_t room = std::size_t{count} + second + kLanes;
-  for (std::vector<double>* numbers : {&x_, &y_, &z_, &radius_}) {
+  for (std::vector<double>* numbers : {&sorted_.x, &sorted_.y, &sorted_.z, &sorted_.radius}) {
     if (numbers->size() < room) numbers->resize(room);
   }
-  if (body_.size() < room) body_.resize(room);
+  if (sorted_.body.size() < room) sorted_.body.resize(room);
   for (const Sphere& sphere : spheres_) {
     if (sphere.line == kLarge) continue;
     const std::uint32_t place = begins_[sphere.line]++;
-    x_[place] = sphere.center[0], y_[place] = sphere.center[1], z_[place] = sphere.center[2];
-    radius_[place] = sphere.radius;
-    body_[place] = sphere.body;
+    sorted_.x[place] = sphere.center[0], sorted_.y[place] = sphere.center[1], sorted_.z[place] = sphere.center[2];
+    sorted_.radius[place] = sphere.radius;
+    sorted_.body[place] = sphere.body;
   }
   for (std::size_t line = lines; line > 0; --line) begins_[line] = begins_[line - 1];
   begins_[0] = 0;
   begins_[lines + 1] = count + first;
   begins_[lines + 2] = count + second;
   for (std::uint32_t k = 0; k < second; ++k) {
-    x_[count + k] = x_[k], y_[count + k] = y_[k], z_[count + k] = z_[k];
-    radius_[count + k] = radius_[k];
-    body_[count + k] = body_[k];
+    sorted_.x[count + k] = sorted_.x[k], sorted_.y[count + k] = sorted_.y[k], sorted_.z[count + k] = sorted_.z[k];
+    sorted_.radius[count + k] = sorted_.radius[k];
+    sorted_.body[count + k] = sorted_.body[k];
   }
 }
 
@@ -147,12 +149,12 @@ std::array<std::uint32_t, 4> SortedSpheres::neighbour_rows() const noexcept {
 
 template <typename Lanes>
 ORCHARD_INLINE void SortedSpheres::compare(std::uint32_t i, Run run) {
-  const BodyIndex body = body_[i];
+  const BodyIndex body = sorted_.body[i];
   for (std::uint32_t at = run.begin; at < run.end; at += Lanes::kWidth) {
     std::uint32_t bits = Lanes::touching(*this, at, i);
     if (run.end - at < Lanes::kWidth) bits &= (1u << (run.end - at)) - 1;
     for (; bits != 0; bits &= bits - 1) {
-      const BodyIndex other = body_[at + static_cast<std::uint32_t>(std::countr_zero(bits))];
+      const BodyIndex other = sorted_.body[at + static_cast<std::uint32_t>(std::countr_zero(bits))];
       pairs_.push_back({std::min(body, other), std::max(body, other)});
     }
   }
@@ -161,8 +163,9 @@ ORCHARD_INLINE void SortedSpheres::compare(std::uint32_t i, Run run) {
 void SortedSpheres::sample(std::uint32_t i, std::span<const Run> runs) noexcept {
   for (const Run& run : runs) {
     for (std::uint32_t k = run.begin; k < run.end; ++k) {
-      const double reach = radius_[k] + radius_[i];
-      const double off = std::max({std::fabs(x_[k] - x_[i]), std::fabs(y_[k] - y_[i]), std::fabs(z_[k] - z_[i])});
+      const double reach = sorted_.radius[k] + sorted_.radius[i];
+      const double off = std::max({std::fabs(sorted_.x[k] - sorted_.x[i]), std::fabs(sorted_.y[k] - sorted_.y[i]),
+                                   std::fabs(sorted_.z[k] - sorted_.z[i])});
       boxes_met_ += off <= reach ? kSampled : 0;
     }
   }
@@ -236,7 +239,7 @@ bool SortedSpheres::append_near(const Vec3& lower, const Vec3& upper, std::vecto
     for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
       for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
         const std::uint32_t line = (x + y * factors_[1] + z * factors_[2]) & mask_;
-        bodies.insert(bodies.end(), body_.begin() + begins_[line], body_.begin() + begins_[line + 1]);
+        bodies.insert(bodies.end(), sorted_.body.begin() + begins_[line], sorted_.body.begin() + begins_[line + 1]);
       }
     }
   }
@@ -247,7 +250,7 @@ bool SortedSpheres::append_near(const Vec3& lower, const Vec3& upper, std::vecto
 void SortedSpheres::release() { *this = {}; }
 
 std::size_t SortedSpheres::memory_bytes() const noexcept {
-  return bytes_of(spheres_, begins_, x_, y_, z_, radius_, body_, large_, pairs_);
+  return bytes_of(spheres_, begins_, sorted_.x, sorted_.y, sorted_.z, sorted_.radius, sorted_.body, large_, pairs_);
 }
 
 }  // namespace orchard::runtime::detail

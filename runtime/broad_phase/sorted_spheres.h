@@ -63,10 +63,13 @@ class SortedSpheres {
   double cell_ = 0, per_length_ = 0, spacing_ = 0;  // cell_ lasts from step to step
   std::uint32_t mask_ = 0;
   std::array<std::uint32_t, 3> factors_{};
-  std::vector<Sphere> spheres_;             // as they came
-  std::vector<std::uint32_t> begins_;       // by line, and two more: the first two follow the last one again
-  std::vector<double> x_, y_, z_, radius_;  // sorted, and room for a vector more
-  std::vector<BodyIndex> body_;
+  std::vector<Sphere> spheres_;        // as they came
+  std::vector<std::uint32_t> begins_;  // by line, and two more: the first two follow the last one again
+  struct Columns {                     // the spheres in order, and room for a vector more
+    std::vector<double> x, y, z, radius;
+    std::vector<BodyIndex> body;
+  };
+  Columns sorted_;
   std::vector<std::uint32_t> large_;  // in spheres_
   std::vector<BodyPair> pairs_;
   std::uint64_t boxes_met_ = 0, tests_ = 0;

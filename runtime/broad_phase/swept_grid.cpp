@@ -275,11 +275,4 @@ void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb
   insertion.hand_over();
 }
 
-void SweptGrid::count(const GridCounts& counts) noexcept {
-  counts_.bodies += counts.bodies;
-  counts_.entries += counts.entries;
-  counts_.lines_read += counts.lines_read;
-  counts_.pairs += counts.pairs;
-}
-
 }  // namespace orchard::runtime::detail

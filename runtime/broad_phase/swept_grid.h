@@ -1,5 +1,4 @@
 #pragma once
-#include <utility>
 
 #include "broad_phase/body_pool.h"
 #include "broad_phase/quantized_grid.h"
@@ -29,7 +28,22 @@ inline constexpr std::uint32_t kIdShift = 36;  // of the body in an entry, above
 
 struct GridCounts {
   std::uint64_t bodies = 0, entries = 0, lines_read = 0, pairs = 0;
+
+  GridCounts& operator+=(const GridCounts& more) noexcept {
+    bodies += more.bodies, entries += more.entries, lines_read += more.lines_read, pairs += more.pairs;
+    return *this;
+  }
 };
+
+// Whether a box, or all of these, take few enough cells for the grid.
+inline bool all_fit_grid(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }
+inline bool fits_grid(const QuantizedAabb& box) noexcept {
+  bool fit = true;
+  for (std::size_t d = 0; d < 3; ++d) {
+    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMaxCellsPerAxis;
+  }
+  return fit;
+}
 
 // The boxes of all bodies in a hashed uniform grid: cells far apart may share a line, which costs time only. A cell's
 // line is a sum of its coordinates times a factor each, so that flat and thin worlds, too, use all lines evenly.
@@ -67,9 +81,11 @@ class SweptGrid {
   // Makes room for at least `lines` lines, rounded up to a power of two. The lines are in memory as it is, until each
   // part has been emptied; nothing else happens to the part before that.
   void begin_reset(std::size_t lines);
-  void empty_part(std::size_t part) noexcept;
-  void empty_parts(const Executor& executor);
-  void release();  // its memory, too
+  bool in_order() const noexcept { return in_order_; }  // whether all parts have been emptied
+  void empty_part(std::size_t part) noexcept;           // unless they are in order
+  void all_parts_emptied() noexcept { in_order_ = true; }
+  void empty_parts(const Executor& executor);  // all of that
+  void release();                              // its memory, too
 
   // Boxes are added in two steps: it is encoded which visits bodies[i] with block's box first + i make, at most kBatch
   // bodies, whose lines begin to be loaded; then these are made, and the pairs whose boxes meet are appended, of each
@@ -78,7 +94,6 @@ class SweptGrid {
   static constexpr std::size_t kBatch = 64;
   struct Batch;
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block, std::size_t first) const noexcept;
-  void load(const Batch& batch) const noexcept;
   void insert(const Batch& batch, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs, GridCounts& counts);
   // The same for many bodies: the visits that block's bodies make, appended, at any number of threads; and visits to
   // one part, in the order in which they are to be made, at one thread for each part at most.
@@ -86,8 +101,7 @@ class SweptGrid {
                VisitsByPart& visits) const;
   void insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
               GridCounts& counts);
-  void count(const GridCounts& counts) noexcept;  // of such an insertion
-  class Removals;                                 // of a few bodies at a time
+  class Removals;  // of a few bodies at a time
   void prepare_removal(BodyIndex body, const QuantizedAabb& box, Removals& removals) const noexcept;  // starts loading
   void remove(Removals& removals) noexcept;
 
@@ -102,9 +116,6 @@ class SweptGrid {
     }
   }
 
-  const GridCounts& counts() const noexcept { return counts_; }  // of insertions, since they were taken
-  void discount_pairs(std::uint64_t pairs) noexcept { counts_.pairs -= std::min(pairs, counts_.pairs); }
-  GridCounts take_counts() noexcept { return std::exchange(counts_, {}); }
   std::size_t memory_bytes() const noexcept;
 
  private:
@@ -160,7 +171,7 @@ class SweptGrid {
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;
   std::array<std::uint32_t, 3> factors_{};
-  GridCounts counts_;
+  bool in_order_ = true;
 };
 
 // The visits of a block's bodies: one of each to its first cell, then those to the other cells of bodies that take two

@@ -44,6 +44,7 @@ std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
 }
 
 void SweptGrid::begin_reset(std::size_t lines) {
+  in_order_ = false;
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
   const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
@@ -60,18 +61,25 @@ void SweptGrid::begin_reset(std::size_t lines) {
 
 // All lines are written in order: those that have not been used for long come faster this way than one by one later.
 void SweptGrid::empty_part(std::size_t part) noexcept {
+  if (in_order_) return;
   const std::size_t size = lines_.size() / kParts;
   std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
 }
 
 void SweptGrid::empty_parts(const Executor& executor) {
   constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
-  if (lines_.size() < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
-  auto empty = [&](std::size_t part) { empty_part(part); };
-  run_jobs(executor, kParts, empty);
+  if (in_order_) return;
+  if (lines_.size() < kMinToShare) {
+    std::fill(lines_.begin(), lines_.end(), kEmptyLine);
+  } else {
+    auto empty = [&](std::size_t part) { empty_part(part); };
+    run_jobs(executor, kParts, empty);
+  }
+  in_order_ = true;
 }
 
 void SweptGrid::release() {
+  in_order_ = true;
   give_back(lines_);
   for (Overflow& more : overflow_) give_back(more.lines);
 }

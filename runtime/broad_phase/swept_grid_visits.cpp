@@ -141,9 +141,6 @@ void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> bodies, const Bo
                        std::size_t first) const noexcept {
   const Some some{bodies, block, first};
   per_machine([&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, some); });
-}
-
-void SweptGrid::load(const Batch& batch) const noexcept {
   for (std::size_t i = 0; i < batch.end; ++i) prefetch(&lines_[batch.lines[i]]);
 }
 

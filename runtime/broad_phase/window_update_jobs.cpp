@@ -23,8 +23,8 @@ struct WindowUpdates::Shared {
   std::array<GridPart, SweptGrid::kParts> parts;
 };
 
-WindowUpdates::WindowUpdates(const Parts& parts, const BroadPhaseOptions& options)
-    : parts_(parts), options_(options), chunk_(std::make_unique<Chunk>()) {}
+WindowUpdates::WindowUpdates(KineticState& state, Planner& planner, NearPairs& pairs)
+    : state_(state), planner_(planner), pairs_(pairs), chunk_(std::make_unique<Chunk>()) {}
 WindowUpdates::~WindowUpdates() = default;
 
 std::size_t WindowUpdates::memory_bytes() const noexcept {
@@ -39,13 +39,13 @@ std::size_t WindowUpdates::memory_bytes() const noexcept {
 // Nothing may be thrown through an executor: lack of memory is told when all jobs have ended.
 template <typename Job>
 void WindowUpdates::run_all(std::size_t count, const Job& job) {
-  if (options_.executor.run == nullptr) {
+  if (state_.options.executor.run == nullptr) {
     for (std::size_t i = 0; i < count; ++i) job(i);
     return;
   }
   std::array<bool, std::max(kChunks, 1 + SweptGrid::kParts)> done{};
   auto guarded_job = [&](std::size_t i) { done[i] = guarded([&] { return job(i), true; }, [] { return false; }); };
-  run_jobs(options_.executor, count, guarded_job);
+  run_jobs(state_.options.executor, count, guarded_job);
   if (std::all_of(done.begin(), done.begin() + static_cast<std::ptrdiff_t>(count), [](bool d) { return d; })) return;
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
   throw std::bad_alloc();
@@ -56,14 +56,16 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
   GridPart& part = shared_->parts[index];
   part.near.clear();
   part.counts = {};
-  if (!parts_.boxes.in_order()) parts_.boxes.empty_part(index);  // in the cache where it is used at once
-  for (const Chunk& chunk : shared_->chunks) parts_.boxes.insert(chunk.visits[index].visits(), part.near, part.counts);
-  const BodyPool& pool = parts_.pool;
-  if (pool.asks_user_filter()) return;
+  state_.boxes.lines().empty_part(index);  // in the cache where it is used at once
+  for (const Chunk& chunk : shared_->chunks) {
+    state_.boxes.lines().insert(chunk.visits[index].visits(), state_.boxes.packed(), part.near, part.counts);
+  }
+  const BodyPool& pool = state_.pool;
+  if (pool.filters.has_function()) return;
   if (pool.filters_pairs()) {
     part.counts.pairs -= std::erase_if(part.near, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
   }
-  parts_.pairs.test_near(now, part.near, part.outcome);
+  pairs_.test_near(now, part.near, part.outcome);
 }
 
 void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> bodies) {
@@ -79,13 +81,13 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
     if (i > 0) return find_in_part(now, i - 1);
     for (Chunk& chunk : shared_->chunks) fold(chunk);
   });
-  parts_.boxes.all_parts_emptied();
+  state_.boxes.lines().all_parts_emptied();
   for (GridPart& part : shared_->parts) {
-    parts_.boxes.count(part.counts);
-    if (parts_.pool.asks_user_filter()) {  // it is asked by one thread
+    state_.counts += part.counts;
+    if (state_.pool.filters.has_function()) {  // it is asked by one thread
       near_.insert(near_.end(), part.near.begin(), part.near.end());
     } else {
-      parts_.pairs.take(part.outcome);
+      pairs_.take(part.outcome);
     }
   }
   for (Chunk& chunk : shared_->chunks) place_left(chunk, update);
@@ -97,15 +99,15 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
 bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
   constexpr std::size_t kFewer = 4;
   constexpr double kPairsOfBody = 48;
-  const std::size_t least = options_.min_bodies_for_jobs;
-  const double pairs = parts_.planner.plan().pairs_per_body;
+  const std::size_t least = state_.options.min_bodies_for_jobs;
+  const double pairs = planner_.plan().pairs_per_body;
   const double work = static_cast<double>(bodies) * (1 + pairs / kPairsOfBody);
   return bodies > 0 && bodies >= least / kFewer && work >= static_cast<double>(least);
 }
 
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  if (!are_many(bodies.size()) || parts_.pool.motion_bound_check() != nullptr) {
-    parts_.boxes.empty(options_.executor);
+  if (!are_many(bodies.size()) || state_.pool.motions.check() != nullptr) {
+    state_.boxes.lines().empty_parts(state_.options.executor);
     return update(now, from, bodies);
   }
   if (!shared_) shared_ = std::make_unique<Shared>();

@@ -21,7 +21,7 @@ bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept
 std::span<Motion> WindowUpdates::ask(Step now, std::span<const BodyIndex> bodies) {
   if (motions_.size() < bodies.size()) motions_.resize(bodies.size());
   const auto motions = std::span(motions_).first(bodies.size());
-  parts_.pool.ask(now, bodies, motions);
+  state_.pool.motions.ask(now, bodies, motions);
   return motions;
 }
 
@@ -31,8 +31,8 @@ std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std:
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double expiry = motions[i].expiry;
-    if (expiry != known && !parts_.pool.is_static(bodies[i])) {
-      if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
+    if (expiry != known && !state_.pool.statics.has(bodies[i])) {
+      if (state_.pool.clock.last_before_expiry(expiry) < from) continue;
       known = expiry;
     }
     if (front < i) {
@@ -53,7 +53,7 @@ std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>&
   std::size_t front = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!is_valid(motions[i])) {
-      parts_.refusals.refuse(bodies[i]);
+      state_.refuse(bodies[i]);
       continue;
     }
     if (front < i) bodies[front] = bodies[i], motions[front] = motions[i];
@@ -67,25 +67,29 @@ WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept
   Block block;
   block.now = now;
   block.from = from;
-  block.quantized_grid = parts_.boxes.quantized_grid_at(now);
+  block.quantized_grid = state_.grid.at(now);
   return block;
 }
 
 // True if all windows end at the same step.
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
                              std::span<const Motion> motions) const noexcept {
-  const Windows& windows = parts_.windows;
+  const Windows& windows = state_.windows;
+  const WindowRule& rule = windows.rule();
   const auto duration = [&](Step end) {
-    return end == kNeverStep ? 0 : parts_.pool.clock.seconds_between(block.now, end - 1);
+    return end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
   };
-  const Step planned = windows.end_of(block.from, motions[0], block.last);
-  const Step common = windows.end_of(block.from, bodies[0], motions[0], block.last);
+  const auto end_of = [&](std::size_t i) {
+    return rule.end_of(block.from, windows[bodies[i]], state_.pool.statics.has(bodies[i]), motions[i], block.last);
+  };
+  const Step planned = rule.end_of(block.from, motions[0], block.last);
+  const Step common = end_of(0);
   std::uint64_t other = 0;  // bits of expiries that differ
   for (const Motion& motion : motions) {
     other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
   }
   const bool alike = other == 0 && std::isfinite(motions[0].expiry);
-  if (alike && !parts_.pool.any_static() && !windows.any_short()) {
+  if (alike && !state_.pool.statics.any() && !rule.any_short) {
     if (block.common != common) {
       block.common = common;
       block.ends.fill(common);
@@ -95,17 +99,17 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   }
   block.common = kUpdateDue;
   // Whether one may rest and another not, or some may rest as long as they are cancelled again and again.
-  const bool may_rest = windows.may_never_end() && motions[0].expiry == std::numeric_limits<double>::infinity();
-  bool same = !parts_.pool.any_static() && !(may_rest && windows.any_short());
+  const bool may_rest = !rule.all_end && motions[0].expiry == std::numeric_limits<double>::infinity();
+  bool same = !state_.pool.statics.any() && !(may_rest && rule.any_short);
   for (std::size_t i = 0; may_rest && same && i < bodies.size(); ++i) same = rests(motions[i]) == rests(motions[0]);
   for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions[i].expiry == motions[0].expiry;
-  for (std::size_t i = 0; windows.any_short() && same && i < bodies.size(); ++i) {
+  for (std::size_t i = 0; rule.any_short && same && i < bodies.size(); ++i) {
     same = std::min(planned, block.from + windows[bodies[i]].lasting) == common;
   }
   block.ends.fill(common);
   block.durations.fill(duration(common));
   for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
-    block.ends[i] = windows.end_of(block.from, bodies[i], motions[i], block.last);
+    block.ends[i] = end_of(i);
     block.durations[i] = duration(block.ends[i]);
   }
   return same;
@@ -140,29 +144,29 @@ void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodie
   for (bool fit = false; !fit && count > 0;) {
     same = set_ends(block, bodies.first(count), motions.first(count));
     const bool valid = make_boxes(block, motions.first(count), same);
-    fit = valid && BoxIndex::all_fit(block.boxes);
+    fit = valid && all_fit_grid(block.boxes);
     if (!valid) {
       leave_unless([&](std::size_t i) { return is_valid(motions[i]); });
     } else if (!fit) {
-      leave_unless([&](std::size_t i) { return BoxIndex::fits(block.boxes.get(i)); });
+      leave_unless([&](std::size_t i) { return fits_grid(block.boxes.get(i)); });
     }
   }
   if (count == 0) return;
   bodies = bodies.first(count);
-  parts_.boxes.note(bodies, block.boxes, chunk.extent);
-  for (std::size_t i = 0, first = 0; block.batches != nullptr && first < count; ++i, first += BoxIndex::kBatch) {
-    const std::size_t some = std::min(BoxIndex::kBatch, count - first);
-    parts_.boxes.encode((*block.batches)[i], bodies.subspan(first, some), block.boxes, first);
+  state_.boxes.note(bodies, block.boxes, chunk.extent);
+  for (std::size_t i = 0, first = 0; block.batches != nullptr && first < count; ++i, first += SweptGrid::kBatch) {
+    const std::size_t some = std::min(SweptGrid::kBatch, count - first);
+    state_.boxes.lines().encode((*block.batches)[i], bodies.subspan(first, some), block.boxes, first);
   }
-  if (block.batches == nullptr) parts_.boxes.scatter(bodies, block.boxes, chunk.visits);
+  if (block.batches == nullptr) state_.boxes.lines().scatter(bodies, block.boxes, state_.boxes.packed(), chunk.visits);
   const bool alike = same && block.ends[0] != kNeverStep;
   if (alike) {
-    parts_.windows.set_alike(bodies, block.from, block.ends[0]);
+    state_.windows.set_alike(bodies, block.from, block.ends[0]);
   } else {
-    parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
+    state_.windows.set(bodies, block.from, std::span(block.ends).first(count));
   }
-  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
-    parts_.pairs.note_sphere(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
+  for (std::size_t i = 0; pairs_.spheres().any() && i < count; ++i) {
+    pairs_.spheres().note(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
   }
   for (std::size_t i = 0; i < count;) {
     const std::size_t more = alike ? count : 1;
@@ -184,7 +188,7 @@ void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const Body
     auto known = std::span(ids).first(some.size());
     const auto motions = std::span(chunk.motions).first(some.size());
     std::copy(some.begin(), some.end(), known.begin());
-    parts_.pool.ask(block.now, known, motions, chunk.answers);
+    state_.pool.motions.ask(block.now, known, motions, chunk.answers);
     chunk.asked += some.size();
     if (block.from > block.now) {
       const std::size_t front = known_at(block.from, known, motions);
@@ -198,19 +202,19 @@ void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const Body
 // What one thread has to do for all.
 void WindowUpdates::fold(Chunk& chunk) {
   std::span<const BodyIndex> placed = chunk.placed;
-  parts_.overlaps.mark_updated(placed);
-  parts_.boxes.meet_oversized(placed, near_);
+  state_.overlaps.mark_updated(placed);
+  state_.boxes.meet_oversized(placed, near_);
   for (const Chunk::Run& run : chunk.runs) {
-    if (run.end != kNeverStep && run.bodies == 1) parts_.wheel.set_due(placed[0], run.end);
-    if (run.end != kNeverStep && run.bodies > 1) parts_.wheel.set_due(placed.first(run.bodies), run.end);
-    parts_.windows.vote(run.end, run.bodies);
+    if (run.end != kNeverStep && run.bodies == 1) state_.wheel.set_due(placed[0], run.end);
+    if (run.end != kNeverStep && run.bodies > 1) state_.wheel.set_due(placed.first(run.bodies), run.end);
+    state_.windows.votes().vote(run.end, run.bodies);
     placed = placed.subspan(run.bodies);
   }
-  for (const BodyIndex body : chunk.unknown) parts_.changes.note(body);
-  parts_.planner.note_sample(chunk.sampled);
-  parts_.boxes.include(chunk.extent);
-  parts_.boxes.count({.bodies = chunk.placed.size()});
-  parts_.pool.count_asked(chunk.asked);
+  for (const BodyIndex body : chunk.unknown) state_.changes.note(body);
+  planner_.note_sample(chunk.sampled);
+  state_.boxes.include(chunk.extent);
+  state_.counts.bodies += chunk.placed.size();
+  state_.pool.motions.count_asked(chunk.asked);
 }
 
 // What is faster than the others is updated again sooner, so that its box takes few enough cells. One that is too large
@@ -220,14 +224,14 @@ QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& 
   QuantizedAabb box = block.boxes.get(0);
   if (steps <= 1) return box;
   const auto box_for = [&](Step wanted) {
-    const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
+    const double duration = state_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
     BoxBlock made;
     block.quantized_grid.boxes({&motion, 1}, {&duration, 1}, made);
     return made.get(0);
   };
   const QuantizedAabb least = box_for(1);
-  const bool large = !BoxIndex::fits(least);
-  while (steps > 1 && !(large ? hardly_longer(box, least) : BoxIndex::fits(box))) {
+  const bool large = !fits_grid(least);
+  while (steps > 1 && !(large ? hardly_longer(box, least) : fits_grid(box))) {
     steps = (steps + 1) / 2;
     box = box_for(steps);
   }
@@ -241,47 +245,47 @@ void WindowUpdates::place_left(Chunk& chunk, Block& block) {
   for (const Chunk::Left& left : chunk.left) {
     const std::span<const BodyIndex> body(&left.body, 1);
     if (!is_valid(left.motion)) {
-      parts_.refusals.refuse(left.body);
+      state_.refuse(left.body);
       continue;
     }
     const bool same = set_ends(block, body, {&left.motion, 1});
     make_boxes(block, {&left.motion, 1}, same);
-    parts_.windows.set(left.body, block.from, block.ends[0]);
-    parts_.overlaps.mark_updated(body);
-    if (parts_.pairs.notes_spheres()) {
-      parts_.pairs.note_sphere(left.body, left.motion, block.quantized_grid, block.durations[0]);
+    state_.windows.set(left.body, block.from, block.ends[0]);
+    state_.overlaps.mark_updated(body);
+    if (pairs_.spheres().any()) {
+      pairs_.spheres().note(left.body, left.motion, block.quantized_grid, block.durations[0]);
     }
-    parts_.planner.note_sample({&left.motion, 1});
-    const QuantizedAabb box = shrink(block, parts_.windows[left.body], left.motion);
-    parts_.boxes.insert_one(left.body, box, near_);
-    const Step end = parts_.windows[left.body].end;
-    if (end != kNeverStep) parts_.wheel.set_due(left.body, end);
-    parts_.windows.vote(end, 1);
+    planner_.note_sample({&left.motion, 1});
+    const QuantizedAabb box = shrink(block, state_.windows[left.body], left.motion);
+    state_.boxes.insert_one(left.body, box, near_, state_.counts);
+    const Step end = state_.windows[left.body].end;
+    if (end != kNeverStep) state_.wheel.set_due(left.body, end);
+    state_.windows.votes().vote(end, 1);
   }
 }
 
 void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
   near_.clear();
   Block block = block_at(now, from);
-  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch> batches;
+  std::array<SweptGrid::Batch, kBlock / SweptGrid::kBatch> batches;
   block.batches = &batches;
   Chunk& chunk = *chunk_;
   for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
     place_chunk(chunk, block, bodies.subspan(done, std::min(kBlock, bodies.size() - done)));
     fold(chunk);
     GridCounts counts;
-    for (std::size_t i = 0; i * BoxIndex::kBatch < chunk.placed.size(); ++i) {
-      parts_.boxes.insert(batches[i], near_, counts);
+    for (std::size_t i = 0; i * SweptGrid::kBatch < chunk.placed.size(); ++i) {
+      state_.boxes.lines().insert(batches[i], state_.boxes.packed(), near_, counts);
     }
-    parts_.boxes.count(counts);
+    state_.counts += counts;
     if (!chunk.left.empty()) place_left(chunk, block);
     if (tested && near_.size() >= kNearAtOnce) test_near(now);
   }
 }
 
 void WindowUpdates::test_near(Step now) {
-  if (parts_.pool.filters_pairs()) drop_what_is_none();
-  parts_.pairs.test_near(now, near_);
+  if (state_.pool.filters_pairs()) drop_what_is_none();
+  pairs_.test_near(now, near_);
   near_.clear();
 }
 
@@ -292,14 +296,16 @@ void WindowUpdates::update(Step now, Step from, std::span<const BodyIndex> bodie
 
 std::span<const BodyPair> WindowUpdates::find_near(Step now, std::span<const BodyIndex> bodies) {
   find(now, now, bodies, false);
-  if (parts_.pool.filters_pairs()) drop_what_is_none();
+  if (state_.pool.filters_pairs()) drop_what_is_none();
   return near_;
 }
 
 // Pairs that the filters exclude. The plan does not count them: they cost next to nothing.
 void WindowUpdates::drop_what_is_none() {
-  const BodyPool& pool = parts_.pool;
-  parts_.boxes.discount_pairs(std::erase_if(near_, [&](const BodyPair& pair) { return !pool.may_pair(pair); }));
+  const BodyPool& pool = state_.pool;
+  const std::size_t dropped = std::erase_if(near_, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
+  std::uint64_t& counted = state_.counts.pairs;
+  counted -= std::min<std::uint64_t>(dropped, counted);
 }
 
 }  // namespace orchard::runtime::detail

@@ -16,19 +16,7 @@ namespace orchard::runtime::detail {
 // cache and a part of them does.
 class WindowUpdates {
  public:
-  // The parts that an update changes; they outlive this.
-  struct Parts {
-    BodyPool& pool;
-    Changes& changes;
-    Windows& windows;
-    BoxIndex& boxes;
-    TimingWheel& wheel;
-    OverlapList& overlaps;
-    InvalidBodies& refusals;
-    Planner& planner;
-    NearPairs& pairs;
-  };
-  WindowUpdates(const Parts& parts, const BroadPhaseOptions& options);
+  WindowUpdates(KineticState& state, Planner& planner, NearPairs& pairs);
   ~WindowUpdates();
 
   // The bodies' windows begin at `from`, from the motions at `now`. Where it is a later step, bodies whose bounds do
@@ -69,8 +57,9 @@ class WindowUpdates {
   template <typename Job>
   void run_all(std::size_t count, const Job& job);
 
-  const Parts parts_;
-  const BroadPhaseOptions& options_;
+  KineticState& state_;
+  Planner& planner_;
+  NearPairs& pairs_;
   std::vector<Motion> motions_;     // of the block under way
   std::vector<BodyPair> near_;      // untested yet
   std::unique_ptr<Chunk> chunk_;    // of the calling thread
@@ -85,8 +74,9 @@ struct WindowUpdates::Block {
   std::array<Step, kBlock> ends;         // of the bodies' windows
   std::array<double, kBlock> durations;  // until then, of which the last step is not
   BoxBlock boxes;
-  Windows::LastEnd last;
-  std::array<BoxIndex::Batch, kBlock / BoxIndex::kBatch>* batches = nullptr;  // to be inserted at once; null: scattered
+  WindowRule::LastEnd last;
+  std::array<SweptGrid::Batch, kBlock / SweptGrid::kBatch>* batches =
+      nullptr;  // to be inserted at once; null: scattered
 };
 
 struct WindowUpdates::Chunk {
@@ -106,7 +96,7 @@ struct WindowUpdates::Chunk {
   std::vector<Motion> sampled;     // for the plan
   std::vector<Motion> motions;     // of the block under way
   QuantizedAabb extent;
-  BodyPool::Answers answers;
+  MotionQueries::Answers answers;
   std::uint64_t asked;
 
   void note_run(Step end, std::size_t bodies) {
@@ -116,7 +106,7 @@ struct WindowUpdates::Chunk {
   void clear() noexcept {
     for (auto& part : visits) part.clear();
     placed.clear(), runs.clear(), unknown.clear(), left.clear(), sampled.clear();
-    extent = BoxIndex::nothing();
+    extent = kNoBox;
     asked = 0;
   }
   std::size_t memory_bytes() const noexcept {

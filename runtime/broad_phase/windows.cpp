@@ -10,34 +10,31 @@ constexpr std::uint8_t kPatience = 2;  // bounds that last for a step at most, o
 
 void Windows::start_over() noexcept {
   rebuilt_round_ = round_;
-  any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
-                                         [](const Window& window) { return window.lasting < kLastsAsEver; });
-  voted_ = kNeverStep;
-  votes_ = 0;
+  rule_.any_short = rule_.any_short && std::any_of(windows_.begin(), windows_.end(),
+                                                   [](const Window& window) { return window.lasting < kLastsAsEver; });
+  votes_ = {};
 }
 
 // Until a bound expires windows are equal parts.
-Step Windows::end_of(Step from, const Motion& motion, LastEnd& before) const noexcept {
+Step WindowRule::end_of(Step from, const Motion& motion, LastEnd& before) const noexcept {
   if (from == before.from && motion.expiry == before.expiry) return before.end;
-  const Step last = pool_.clock.last_before_expiry(motion.expiry);
-  Step window = planned_;
-  if (last < from + 64 * planned_) {
+  const Step last = clock.last_before_expiry(motion.expiry);
+  Step window = planned;
+  if (last < from + 64 * planned) {
     const double steps = static_cast<double>(std::max<Step>(0, last - from) + 1);
-    const double longer = fixed_ > 0 ? 0 : kLongerWindow;
-    const double parts = std::max(1.0, std::ceil(steps / static_cast<double>(planned_) - longer));
+    const double longer = fixed > 0 ? 0 : kLongerWindow;
+    const double parts = std::max(1.0, std::ceil(steps / static_cast<double>(planned) - longer));
     window = std::min(kLongestWindow - 1, static_cast<Step>(std::ceil(steps / parts)));
   }
   before = {from, from + window, motion.expiry};
   return before.end;
 }
 
-// The same for a body, whose bounds may have been cancelled again and again.
-Step Windows::end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept {
-  if (!all_end_ && (pool_.is_static(body) || (rests(motion) && windows_[body].lasting == kLastsAsEver))) {
-    return kNeverStep;
-  }
+Step WindowRule::end_of(Step from, const Window& window, bool is_static, const Motion& motion,
+                        LastEnd& last) const noexcept {
+  if (!all_end && (is_static || (rests(motion) && window.lasting == kLastsAsEver))) return kNeverStep;
   const Step end = end_of(from, motion, last);
-  return any_short_ ? std::min(end, from + windows_[body].lasting) : end;
+  return any_short ? std::min(end, from + window.lasting) : end;
 }
 
 // Its bounds have ended before their time. Now and then that says nothing of the next ones, which may hold for as long
@@ -50,11 +47,11 @@ void Windows::note_lasting(BodyIndex body, Step now) noexcept {
   if (lasted > 1) window.rely_longer();
   if (lasted < 0 || lasted > 1) return;
   window.lasting = window.lasting > kLastsAsEver - kPatience ? window.lasting - 1 : 1;
-  any_short_ = any_short_ || window.lasting == 1;
+  rule_.any_short = rule_.any_short || window.lasting == 1;
 }
 
 // The majority's vote, if there is one: what differs is paired off.
-void Windows::vote(Step end, std::size_t bodies) noexcept {
+void WindowVotes::vote(Step end, std::size_t bodies) noexcept {
   if (end == voted_) {
     votes_ += bodies;
   } else if (bodies > votes_) {

@@ -22,11 +22,40 @@ inline bool rests(const Motion& motion) noexcept {
          motion.acceleration == 0 && motion.drift == 0;
 }
 
+// How long windows are.
+struct WindowRule {
+  struct LastEnd {  // what was asked last is mostly asked again
+    Step from = -1, end = 1;
+    double expiry = 0;
+  };
+  // The first step at which the bound does not hold or which another update is due at.
+  Step end_of(Step from, const Motion& motion, LastEnd& last) const noexcept;
+  // The same for the window of a body, whose bounds may have been cancelled again and again.
+  Step end_of(Step from, const Window& window, bool is_static, const Motion& motion, LastEnd& last) const noexcept;
+
+  const Clock& clock;
+  Step fixed;              // 0, or the most steps that a window has
+  Step planned = 1;        // steps
+  bool all_end = false;    // also windows of bodies at rest; else these never do
+  bool any_short = false;  // of bodies whose bounds are cancelled again and again
+};
+
+// The step at which the most windows end, if these are many.
+class WindowVotes {
+ public:
+  void vote(Step end, std::size_t bodies) noexcept;
+  Step voted() const noexcept { return voted_; }
+  std::size_t votes() const noexcept { return votes_; }
+
+ private:
+  Step voted_ = kNeverStep;
+  std::size_t votes_ = 0;
+};
+
 // Of each body, up to when the bounds it was asked for are relied on, and the rounds in which windows are updated.
 class Windows {
  public:
-  // fixed: 0, or the most steps that a window has.
-  Windows(const BodyPool& pool, Step fixed) : pool_(pool), fixed_(fixed) {}
+  Windows(const BodyPool& pool, Step fixed) : pool_(pool), rule_{pool.clock, fixed} {}
 
   void make_room(std::size_t slots) { grow(windows_, slots); }
   std::size_t size() const noexcept { return windows_.size(); }
@@ -38,21 +67,13 @@ class Windows {
   void start_over() noexcept;  // all are updated in this round
   bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
 
-  // From now on, so many steps; windows of bodies at rest end, too, or never.
-  void plan(Step window, bool all_end) noexcept { planned_ = window, all_end_ = all_end; }
-  struct LastEnd {  // what was asked last is mostly asked again
-    Step from = -1, end = 1;
-    double expiry = 0;
-  };
-  // The first step at which the bound does not hold or which another update is due at.
-  Step end_of(Step from, const Motion& motion, LastEnd& last) const noexcept;
-  Step end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept;  // where some are short
-  bool any_short() const noexcept { return any_short_; }
-  bool may_never_end() const noexcept { return !all_end_; }
+  void plan(Step window, bool all_end) noexcept { rule_.planned = window, rule_.all_end = all_end; }  // from now on
+  const WindowRule& rule() const noexcept { return rule_; }
+  WindowVotes& votes() noexcept { return votes_; }  // since start_over()
   void set(BodyIndex body, Step from, Step end) noexcept {
-    const std::uint8_t length = end != kNeverStep       ? static_cast<std::uint8_t>(end - from)
-                                : pool_.is_static(body) ? std::uint8_t{0}
-                                                        : kLastsAsEver;
+    const std::uint8_t length = end != kNeverStep         ? static_cast<std::uint8_t>(end - from)
+                                : pool_.statics.has(body) ? std::uint8_t{0}
+                                                          : kLastsAsEver;
     set(windows_[body], from, end, length, round_);
   }
   void set(std::span<const BodyIndex> bodies, Step from, std::span<const Step> ends) noexcept {
@@ -85,11 +106,6 @@ class Windows {
     note_lasting(body, now);
     return true;
   }
-
-  // The step at which the most windows end, if these are many.
-  void vote(Step end, std::size_t bodies) noexcept;
-  Step voted() const noexcept { return voted_; }
-  std::size_t votes() const noexcept { return votes_; }
   std::size_t memory_bytes() const noexcept { return bytes_of(windows_); }
 
  private:
@@ -102,14 +118,10 @@ class Windows {
   void note_lasting(BodyIndex body, Step now) noexcept;
 
   const BodyPool& pool_;
-  const Step fixed_;
+  WindowRule rule_;
   std::vector<Window> windows_;  // by body
-  bool any_short_ = false;       // of bodies whose bounds are cancelled again and again
   Round round_ = 0, rebuilt_round_ = 0;
-  Step planned_ = 1;
-  bool all_end_ = false;
-  Step voted_ = kNeverStep;
-  std::size_t votes_ = 0;
+  WindowVotes votes_;
 };
 
 }  // namespace orchard::runtime::detail

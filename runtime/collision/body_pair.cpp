@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "collision/distance_search.h"
+#include "collision/pair_query.h"
 #include "collision/workspace_scratch.h"
 
 namespace orchard::runtime {

@@ -43,7 +43,7 @@ double slack(const PreparedTree& a, const PreparedTree& b, const Pose& pose_a, c
 class Coherence {
  public:
   Coherence(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept
-      : workspace_(workspace), pair_(pair), a_(a), b_(b) {}
+      : narrow_(query_of(workspace.narrow)), pair_(pair), a_(a), b_(b) {}
 
   static bool remembers(const TreePair& of) noexcept {
     return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
@@ -66,7 +66,7 @@ class Coherence {
       }
     }
     if (memory_.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
-    ::new (&verdict) Verdict(query_of(workspace_.narrow).verdict());
+    ::new (&verdict) Verdict(narrow_.verdict());
     return true;
   }
 
@@ -77,11 +77,11 @@ class Coherence {
     const bool tried = memory_.close && memory_.wait > 0;
     if (tried && place_narrow()) {
       --memory_.wait;
-      query_of(workspace_.narrow).search(budget);
+      direct_.search(budget);
       return remembered();
     }
     collide(budget);
-    memory_.close = query_of(workspace_.narrow).exact();
+    memory_.close = narrow_.progress().exact;
     memory_.in_vain = static_cast<std::uint8_t>(memory_.close ? std::min<int>(memory_.in_vain + 1, kInVain) : 0);
     memory_.wait = memory_.in_vain == kInVain ? kSearchesBeforeRoots : 0;
     return remembered();
@@ -89,24 +89,23 @@ class Coherence {
 
   // The query's verdict.
   Verdict remembered() noexcept {
-    const Answer answer = query_of(workspace_.narrow).answer();
+    const Answer answer = narrow_.known().answer;
     if (answer == Answer::yes) {
       const std::size_t kept = std::min<std::size_t>(memory_.witness_count, TreePair::kWitnesses - 1);
       std::copy_backward(memory_.witnesses.begin(), memory_.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
                          memory_.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
       memory_.witness_count = static_cast<std::uint8_t>(kept + 1);
-      const PairQuery::Place& place = query_of(workspace_.narrow).meeting();
-      memory_.witnesses[0] = query_of(workspace_.narrow).exchanged()
+      const MeetingTriangles::Place& place = direct_.found().place;
+      memory_.witnesses[0] = narrow_.trees().exchanged()
                                  ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
                                  : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
     } else {
       memory_.witness_count = 0;
     }
     const bool have_triangles = !pair_.a().tree.obb_nodes.empty() && !pair_.b().tree.obb_nodes.empty();
-    memory_.clearance =
-        answer == Answer::no && have_triangles ? query_of(workspace_.narrow).lower_bound() / a_.scale : 0;
+    memory_.clearance = answer == Answer::no && have_triangles ? narrow_.known().lower_bound / a_.scale : 0;
     if (memory_.clearance > 0) memory_.relative = find_relative();
-    return query_of(workspace_.narrow).verdict();
+    return narrow_.verdict();
   }
 
  private:
@@ -131,14 +130,12 @@ class Coherence {
   }
 
   void collide(const Budget& budget) noexcept {
-    PairQuery& narrow = query_of(workspace_.narrow);
-    narrow.bind_where(pair_.a(), pair_.b());
-    answer_exactly(narrow, a_, b_, budget);
+    narrow_.bind(pair_.a(), pair_.b());
+    answer_exactly(narrow_, a_, b_, budget);
   }
 
   // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
   Verdict search_after_yes(const Budget& budget) noexcept {
-    PairQuery& narrow = query_of(workspace_.narrow);
     if (!place_narrow()) {
       collide(budget);
       return remembered();
@@ -146,7 +143,7 @@ class Coherence {
     Budget rest = budget;
     if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
       if (pair_.front_ != nullptr) pair_.front_->clear();
-      narrow.search(rest);
+      direct_.search(rest);
     }
     memory_.close = true;
     return remembered();
@@ -154,29 +151,27 @@ class Coherence {
 
   bool place_for_triangles() noexcept {
     if (placed_) return true;
-    query_of(workspace_.narrow).bind_where(pair_.a(), pair_.b());
-    placed_ = query_of(workspace_.narrow).has_last_level() && find_rigid() &&
-              query_of(workspace_.narrow).place_for_triangles(a_, b_);
+    narrow_.bind(pair_.a(), pair_.b());
+    placed_ = narrow_.has_last_level() && find_rigid() && direct_.place(a_, b_);
     return placed_;
   }
 
   bool place_narrow() noexcept {
     if (!place_for_triangles()) return false;
-    query_of(workspace_.narrow).place();
+    narrow_.trees().place();
     return true;
   }
 
   // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
-    PairQuery& narrow = query_of(workspace_.narrow);
     const bool tried = memory_.close && memory_.wait > 0;
     if (tried ? !place_narrow() : !has_last_level()) {
       collide(budget);
       return remembered();
     }
     if (!tried && !ask_roots()) return remembered();
-    FrontWalk walk(*pair_.front_, narrow);
+    FrontWalk walk(*pair_.front_, direct_);
     if (!walk.resume()) {
       if (tried && !ask_roots()) return remembered();
       walk.begin();
@@ -187,24 +182,21 @@ class Coherence {
   }
 
   bool has_last_level() noexcept {
-    query_of(workspace_.narrow).bind_where(pair_.a(), pair_.b());
-    return query_of(workspace_.narrow).has_last_level();
+    narrow_.bind(pair_.a(), pair_.b());
+    return narrow_.has_last_level();
   }
 
   // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
   bool ask_roots() noexcept {
-    PairQuery& narrow = query_of(workspace_.narrow);
-    narrow.start(a_, b_);
-    memory_.close = !narrow.finished();
+    narrow_.start(a_, b_);
+    memory_.close = !narrow_.finished();
     memory_.wait = kSearchesBeforeRoots;
-    if (memory_.close) narrow.place();
+    if (memory_.close) narrow_.trees().place();
     return memory_.close;
   }
 
   // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
-  bool witness_meets(std::size_t i) noexcept {
-    return query_of(workspace_.narrow).test_two(place_of(memory_.witnesses[i]));
-  }
+  bool witness_meets(std::size_t i) noexcept { return direct_.test_two(place_of(memory_.witnesses[i])); }
 
   // Those that have not met for longer: bodies that go to and fro come back to them.
   bool older_meet() noexcept {
@@ -214,8 +206,8 @@ class Coherence {
     return false;
   }
 
-  PairQuery::Place place_of(const TreePair::Witness& w) const noexcept {
-    if (query_of(workspace_.narrow).exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
+  MeetingTriangles::Place place_of(const TreePair::Witness& w) const noexcept {
+    if (narrow_.trees().exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
     return {w.a, w.b, w.lane_a, w.lane_b};
   }
 
@@ -223,23 +215,24 @@ class Coherence {
   bool leaves_meet(std::uint64_t& left) noexcept {
     if (left == 0) return false;
     constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-    query_of(workspace_.narrow).add_work(tests);
+    direct_.add_work(tests);
     left -= std::min(left, tests);
-    const PairQuery::Place place = place_of(memory_.witnesses[0]);
-    return query_of(workspace_.narrow).test_leaves(place.first, place.second);
+    const MeetingTriangles::Place place = place_of(memory_.witnesses[0]);
+    return direct_.test_leaves({place.first, place.second});
   }
 
   // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
   bool near_meet(Budget& left) noexcept {
     if (left.time != Budget{}.time) return false;
-    const PairQuery::Place place = place_of(memory_.witnesses[0]);
-    const std::uint64_t before = query_of(workspace_.narrow).work();
-    const bool meet = query_of(workspace_.narrow).search_near(place.first, place.second, left);
-    left.work -= std::min(left.work, query_of(workspace_.narrow).work() - before);
+    const MeetingTriangles::Place place = place_of(memory_.witnesses[0]);
+    const std::uint64_t before = narrow_.known().work;
+    const bool meet = direct_.search_near({place.first, place.second}, left);
+    left.work -= std::min(left.work, narrow_.known().work - before);
     return meet;
   }
 
-  Workspace& workspace_;
+  PairQuery& narrow_;  // the workspace's
+  DirectSearch direct_{narrow_};
   TreePair& pair_;
   const Pose &a_, &b_;
   TreePair::Memory& memory_ = pair_.memory_;

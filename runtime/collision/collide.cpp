@@ -51,9 +51,9 @@ Verdict collide(PairQuery& pair, const Pose& a, const Pose& b, const Budget& bud
   }
   SharedBudget shared(budget);
   while (!pair.finished() && !shared.empty()) {
-    const std::uint64_t before = pair.work();
+    const std::uint64_t before = pair.known().work;
     pair.refine(shared.left());
-    shared.spend(pair.work() - before);
+    shared.spend(pair.known().work - before);
   }
   return pair.verdict();
 }

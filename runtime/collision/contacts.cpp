@@ -129,12 +129,12 @@ void first_directions(const MinimumTranslationSearch& search, Directions& direct
 }
 
 // Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
-double least_nudge(const PairQuery& narrow, double size) noexcept {
+double least_nudge(const PlacedTrees& trees, double size) noexcept {
   double places = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    places += std::fabs(narrow.first_pose().translation[i]) + std::fabs(narrow.second_pose().translation[i]);
+    places += std::fabs(trees.first_pose().translation[i]) + std::fabs(trees.second_pose().translation[i]);
   }
-  return 1e-12 * size + 2e-15 * places / narrow.first_pose().scale;
+  return 1e-12 * size + 2e-15 * places / trees.first_pose().scale;
 }
 
 // Where surfaces do not meet: a point of one that is inside a box, as the only point. False if there is none.
@@ -238,8 +238,8 @@ std::uint64_t search_work(double effort, double found) noexcept {
 Manifold by_spheres(PairQuery& narrow) noexcept {
   while (!narrow.finished()) narrow.refine();
   Manifold result;
-  result.answer = narrow.answer();
-  if (result.answer == Answer::no || narrow.refused()) return result;
+  result.answer = narrow.known().answer;
+  if (result.answer == Answer::no || narrow.known().refused) return result;
   const Contact contact = narrow.contact();
   result.count = 1;
   result.points[0] = {contact.center, contact.triangle_a, contact.triangle_b, 0};
@@ -257,24 +257,24 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   Manifold result;
   PairQuery& narrow = query_of(workspace.narrow);
   narrow.bind(pair.a(), pair.b());
-  narrow.start(a, b);
-  if (narrow.finished() && narrow.answer() == Answer::no) {
+  PlacedTrees& trees = narrow.trees();
+  if (narrow.start(a, b) == Answer::no) {
     result.answer = Answer::no;
     return result;
   }
   Workspace::Scratch* const scratch = workspace.scratch();
-  const bool placed = !narrow.refused() && narrow.place(a, b);
-  if (!placed || !narrow.has_triangles() || scratch == nullptr ||
+  if (narrow.known().refused || !have_triangles(trees) || scratch == nullptr ||
       !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
     return by_spheres(narrow);
   }
-  const PlacedPair both{narrow.first(), narrow.second(), narrow.relative(), narrow.placement()};
+  trees.place();
+  const PlacedPair both{trees.first(), trees.second(), trees.relative(), trees.placement()};
   const std::uint64_t before = scratch->walk.work();
   find_cuts(both, *scratch);
   const double found = static_cast<double>(scratch->walk.work() - before);
   const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
-  const Pose& world = narrow.first_pose();
-  const bool exchanged = narrow.exchanged();
+  const Pose& world = trees.first_pose();
+  const bool exchanged = trees.exchanged();
   std::array<SolidBox, 2> solids{};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     solids[i] = boxes[i];
@@ -286,7 +286,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
                                         cuts,
                                         std::span(solids.data(), boxes.size()),
                                         size,
-                                        least_nudge(narrow, size),
+                                        least_nudge(trees, size),
                                         scratch->walk.work() + search_work(options.effort, found)};
   if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
@@ -300,7 +300,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   result.complete = out.ended;
   result.depth = out.way * world.scale;
   result.normal = rotate(world, exchanged ? -out.direction : out.direction);
-  result.error = narrow.exact_error();
+  result.error = trees.exact_error();
   if (!cuts.empty()) add_points(cuts, both, out.direction, world, exchanged, result);
   if (options.depth && !out.clear) lengthen_until_free(workspace, pair, {a, b}, search.nudge * world.scale, result);
   if (!cuts.empty()) add_depths(both, out.direction, exchanged, result.depth, world.scale, result);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <new>
 
 #include "collision/kernels/farthest_first.h"
 #include "collision/kernels/node_box.h"
@@ -16,6 +15,7 @@
 namespace orchard::runtime {
 
 using detail::slab_child;
+using detail::slab_radius;
 
 namespace {
 
@@ -33,31 +33,22 @@ std::uint64_t ordered(float value) noexcept {
   return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
 }
 
-float radius_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.obb_nodes[node / kBlockWidth].radius[node % kBlockWidth];
-}
-
 }  // namespace
 
-DistanceSearch::DistanceSearch(const TreeView& a, const TreeView& b) noexcept : pair_(a, b, 1) { make_room(); }
+DistanceSearch::DistanceSearch(const TreeView& a, const TreeView& b) noexcept {
+  trees_.bind(a, b);
+  make_room();
+}
 
 bool DistanceSearch::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
-  const bool bound = pair_.bind(a, b);
+  trees_.bind(a, b);
   finished_ = true;
   lower_ = 0;
   upper_ = std::numeric_limits<double>::infinity();
-  return make_room() && bound;
+  return make_room();
 }
 
-bool DistanceSearch::make_room() noexcept {
-  const std::size_t deepest = std::size_t{kBlockWidth} * (pair_.first_->tree.triangle_tree_depth +
-                                                          pair_.second_->tree.triangle_tree_depth + 1) +
-                              1;
-  if (!pair_.has_triangles() || deepest <= stack_room_) return true;
-  stack_.reset(new (std::nothrow) ObbNodePair[deepest]);
-  stack_room_ = stack_ ? deepest : 0;
-  return stack_ != nullptr;
-}
+bool DistanceSearch::make_room() noexcept { return !have_triangles(trees_) || stack_.reserve(first(), second()); }
 
 void DistanceSearch::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
   tolerance_ = tolerance;
@@ -70,38 +61,35 @@ void DistanceSearch::start_within(const Pose& a, const Pose& b, double limit) no
 }
 
 void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept {
-  pair_.start(a, b);
-  lower_ = pair_.lower_bound();
+  Roots roots;
+  const Roots::Answer answer = trees_.test_roots(a, b, roots);
+  lower_ = roots.lower_bound;
   work_ = 0;
   stack_size_ = 0;
   nearest_.distance = min_lower_ = std::numeric_limits<double>::infinity();
   nearest_.direction = {};
   nearest_.triangle_first = nearest_.triangle_second = kNoTriangle;
   upper_ = std::numeric_limits<double>::infinity();
-  limit_ = std::numeric_limits<double>::infinity();
-  enough_ = 0;
-  finished_ = !has_room() || pair_.refused() || lower_ > limit;  // or the roots are enough
+  limit_ = {};
+  finished_ = !has_room() || answer == Roots::Answer::refused || lower_ > limit ||  // or the roots are enough
+              !trees_.place(a, b);
   if (finished_) return;
-  pair_.keep(a, b);  // which start() does not where the roots decide
-  finished_ = !pair_.in_range();
-  if (finished_) return;
-  pair_.place();
   if (limit < std::numeric_limits<double>::infinity()) {
     // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
-    const double error = pair_.exact_error_, scale = pair_.first_pose_.scale;
-    limit_ = (limit + 2 * error) / scale * (1 + 4 * kDistanceRounding);
-    reach_ = float_above(limit_);
-    enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kDistanceRounding));
+    const double error = trees_.exact_error(), scale = trees_.first_pose().scale;
+    limit_.length = (limit + 2 * error) / scale * (1 + 4 * kDistanceRounding);
+    limit_.rounded_up = float_above(limit_.length);
+    limit_.enough = std::max(0.0, (limit - error) / scale * (1 - 4 * kDistanceRounding));
   }
   find_cut();
-  stack_[stack_size_++] = {0, 0, 0};
+  stack_[stack_size_++] = {{0, 0}, 0};
 }
 
 // What is farther need not be looked at.
 void DistanceSearch::find_cut() noexcept {
-  const double absolute = tolerance_.absolute > 0 ? tolerance_.absolute / pair_.first_pose_.scale : 0;
-  cut_ = std::min(limit_, (nearest_.distance - absolute) / (1 + tolerance_.relative));
-  below_nearest_ = nearest_.distance <= limit_;
+  const double absolute = tolerance_.absolute > 0 ? tolerance_.absolute / trees_.first_pose().scale : 0;
+  cut_ = std::min(limit_.length, (nearest_.distance - absolute) / (1 + tolerance_.relative));
+  below_nearest_ = nearest_.distance <= limit_.length;
 }
 
 bool DistanceSearch::may_be_nearer(double lower) const noexcept {
@@ -111,26 +99,22 @@ bool DistanceSearch::may_be_nearer(double lower) const noexcept {
 void DistanceSearch::refine(const Budget& budget) noexcept {
   if (finished_ || budget.work == 0) return;
   PairBudget tracker(budget);
-  const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
-  while (stack_size_ > 0 && nearest_.distance > enough_ && !tracker.exhausted()) {
-    const ObbNodePair pair = stack_[--stack_size_];
+  while (stack_size_ > 0 && nearest_.distance > limit_.enough && !tracker.exhausted()) {
+    const Apart pair = stack_[--stack_size_];
     if (!may_be_nearer(double{pair.lower})) {
       min_lower_ = std::min(min_lower_, double{pair.lower});
       continue;
     }
-    if (limit_ < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
-    const std::uint32_t a = slab_child(first, pair.a), b = slab_child(second, pair.b);
-    if (a & b & kLeafBit) {
+    if (limit_.length < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
+    if (slab_child(first(), pair.a) & slab_child(second(), pair.b) & kLeafBit) {
       compare_leaves(pair);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
       continue;
     }
-    const float radius = radius_of(first, pair.a), other = radius_of(second, pair.b) * pair_.placement_.scale;
-    const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < other);
-    expand(pair, open_second ? b : a, open_second);
+    expand(pair, detail::larger_node(first(), second(), pair, trees_.placement().scale));
     tracker.spend(kBlockWidth);
   }
-  if (nearest_.distance <= enough_) leave_the_rest();
+  if (nearest_.distance <= limit_.enough) leave_the_rest();
   finished_ = stack_size_ == 0;
   work_ += tracker.spent();
   report();
@@ -143,35 +127,28 @@ void DistanceSearch::leave_the_rest() noexcept {
 }
 
 // Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
-bool DistanceSearch::surely_near(const ObbNodePair& pair) noexcept {
-  const double radii = double{radius_of(pair_.first_->tree, pair.a)} +
-                       double{radius_of(pair_.second_->tree, pair.b)} * double{pair_.placement_.scale};
-  if (radii > enough_) return false;
-  const detail::NodeBox p = detail::node_box_at(pair_.first_->tree, pair.a);
-  const detail::NodeBox q = pair_.moved_box(pair.b);
+bool DistanceSearch::surely_near(const Apart& pair) noexcept {
+  const double radii =
+      double{slab_radius(first(), pair.a)} + double{slab_radius(second(), pair.b)} * double{trees_.placement().scale};
+  if (radii > limit_.enough) return false;
+  const detail::NodeBox p = detail::node_box_at(first(), pair.a);
+  const detail::NodeBox q = moved_box(trees_, pair.b);
   const double x = double{q.center[0]} - double{p.center[0]}, y = double{q.center[1]} - double{p.center[1]},
                z = double{q.center[2]} - double{p.center[2]};
   const double farthest =
-      std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{pair_.placement_.margin};
-  if (farthest > enough_) return false;
+      std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{trees_.placement().margin};
+  if (farthest > limit_.enough) return false;
   nearest_.distance = std::min(nearest_.distance, farthest);
   min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
   return true;
 }
 
 // In place of a pair, those of its children that may be nearer than the best, the nearest last.
-void DistanceSearch::expand(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept {
-  const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
-  const detail::Placement& placement = pair_.placement_;
-  if (limit_ < double{kCoordinateLimit}) return expand_within(pair, block, second);
-  const float margin = placement.box_margin;
+void DistanceSearch::expand(const Apart& pair, const detail::Opened& opened) noexcept {
+  if (limit_.length < double{kCoordinateLimit}) return expand_within(pair, opened);
+  const detail::Placement& placement = trees_.placement();
   detail::BoxGaps gaps;
-  if (second) {
-    detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.obb_nodes[block],
-                     placement.scale, margin, gaps);
-  } else {
-    detail::box_gaps(pair_.moved_box(pair.b), first.obb_nodes[block], 1, margin, gaps);
-  }
+  detail::compare_children<detail::box_gaps>(first(), second(), placement, pair, opened, placement.box_margin, gaps);
   const std::size_t begin = stack_size_;
   for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -183,32 +160,24 @@ void DistanceSearch::expand(const ObbNodePair& pair, std::uint32_t block, bool s
     }
     std::size_t at = stack_size_++;
     for (; at > begin && stack_[at - 1].lower < lower; --at) stack_[at] = stack_[at - 1];
-    const std::uint32_t node = block * kBlockWidth + lane;
-    stack_[at] = second ? ObbNodePair{lower, pair.a, node} : ObbNodePair{lower, node, pair.b};
+    stack_[at] = {opened.pair(pair, lane), lower};
   }
 }
 
 // The same where there is a limit: those that may be within it, the nearest last.
-void DistanceSearch::expand_within(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept {
-  const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
-  const detail::Placement& placement = pair_.placement_;
-  const float margin = placement.box_margin + reach_;
+void DistanceSearch::expand_within(const Apart& pair, const detail::Opened& opened) noexcept {
+  const detail::Placement& placement = trees_.placement();
+  const float margin = placement.box_margin + limit_.rounded_up;
   detail::BoxGaps gaps;
-  if (second) {
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.obb_nodes[block],
-                          placement.scale, margin, gaps);
-  } else {
-    detail::meeting_boxes(pair_.moved_box(pair.b), first.obb_nodes[block], 1, margin, gaps);
-  }
-  if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
-  ObbNodePair found[kBlockWidth];
+  detail::compare_children<detail::meeting_boxes>(first(), second(), placement, pair, opened, margin, gaps);
+  if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_.length);
+  Apart found[kBlockWidth];
   detail::FarthestFirst order;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const float sum = gaps.gap[lane] + reach_, gap = sum - std::fabs(sum) * kSumRounding;
+    const float sum = gaps.gap[lane] + limit_.rounded_up, gap = sum - std::fabs(sum) * kSumRounding;
     const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
-    const std::uint32_t node = block * kBlockWidth + lane;
-    found[order.count] = second ? ObbNodePair{lower, pair.a, node} : ObbNodePair{lower, node, pair.b};
+    found[order.count] = {opened.pair(pair, lane), lower};
     order.add(lower);
   }
   for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = found[i];
@@ -216,15 +185,14 @@ void DistanceSearch::expand_within(const ObbNodePair& pair, std::uint32_t block,
 }
 
 // The nearest ones first: each found makes fewer of the others worth a test.
-void DistanceSearch::compare_leaves(const ObbNodePair& pair) noexcept {
-  const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
-  const TriangleBlock& lanes = first.triangle_blocks[slab_child(first, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second.triangle_blocks[slab_child(second, pair.b) & ~kLeafBit];
-  const float radii = radius_of(first, pair.a) + radius_of(second, pair.b) * pair_.placement_.scale;
-  if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
+void DistanceSearch::compare_leaves(const Apart& pair) noexcept {
+  const TriangleBlock& lanes = first().triangle_blocks[slab_child(first(), pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second().triangle_blocks[slab_child(second(), pair.b) & ~kLeafBit];
+  const float radii = slab_radius(first(), pair.a) + slab_radius(second(), pair.b) * trees_.placement().scale;
+  if (limit_.length < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
   detail::TriangleGaps gaps;
   const float reach = float_above(std::min(cut_, 1e30));
-  detail::triangle_gaps(lanes, rows, pair_.placement_, nearest_.direction, reach, gaps);
+  detail::triangle_gaps(lanes, rows, trees_.placement(), nearest_.direction, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
   float left_out = gaps.beyond;
   std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;  // triangles to be looked at
@@ -241,7 +209,7 @@ void DistanceSearch::compare_leaves(const ObbNodePair& pair) noexcept {
                lane = static_cast<std::uint32_t>(*nearest) % kBlockWidth;
     const float lower = gaps.lower[row][lane];
     // The rest of the pair is no nearer than this one and than its boxes.
-    if (nearest_.distance <= enough_ || !may_be_nearer(double{std::max(lower, least)})) {
+    if (nearest_.distance <= limit_.enough || !may_be_nearer(double{std::max(lower, least)})) {
       left_out = std::min(left_out, lower);
       break;
     }
@@ -254,13 +222,12 @@ void DistanceSearch::compare_leaves(const ObbNodePair& pair) noexcept {
 }
 
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
-void DistanceSearch::find_within(const ObbNodePair& pair, const TriangleBlock& lanes,
-                                 const TriangleBlock& rows) noexcept {
-  detail::Placement near = pair_.placement_;
-  near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
-  const detail::NodeBox lane_box = detail::node_box_at(pair_.first_->tree, pair.a);
-  const detail::NodeBox row_box = pair_.moved_box(pair.b);
-  min_lower_ = std::min(min_lower_, limit_);
+void DistanceSearch::find_within(const Apart& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept {
+  detail::Placement near = trees_.placement();
+  near.margin = float_above((double{near.margin} + limit_.length) * (1 + 1e-6));
+  const detail::NodeBox lane_box = detail::node_box_at(first(), pair.a);
+  const detail::NodeBox row_box = moved_box(trees_, pair.b);
+  min_lower_ = std::min(min_lower_, limit_.length);
   struct Leaves {
     DistanceSearch& self;
     const TriangleBlock &lanes, &rows;
@@ -269,7 +236,7 @@ void DistanceSearch::find_within(const ObbNodePair& pair, const TriangleBlock& l
     const auto& [self, lane_block, row_block] = *static_cast<Leaves*>(of);
     for (; left != 0; left &= left - 1) {
       self.compare_triangles(lane_block, static_cast<std::uint32_t>(std::countr_zero(left)), row_block, row, true);
-      if (self.nearest_.distance <= self.enough_) return true;
+      if (self.nearest_.distance <= self.limit_.enough) return true;
     }
     return false;
   };
@@ -281,7 +248,7 @@ void DistanceSearch::find_within(const ObbNodePair& pair, const TriangleBlock& l
 void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
                                        std::uint32_t row, bool may_meet) noexcept {
   const detail::TrianglePoints a = detail::points_of(lanes, lane),
-                               b = detail::moved_points_of(rows, row, pair_.relative_);
+                               b = detail::moved_points_of(rows, row, trees_.relative());
   Vec3 common{};
   const bool meet = may_meet && detail::triangles_intersect(a, b, &common);
   const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
@@ -302,7 +269,7 @@ void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t
 void DistanceSearch::report() noexcept {
   double least = std::min(min_lower_, nearest_.distance);
   for (std::size_t i = 0; i < stack_size_; ++i) least = std::min(least, double{stack_[i].lower});
-  const double scale = pair_.first_pose_.scale, error = pair_.exact_error_;
+  const double scale = trees_.first_pose().scale, error = trees_.exact_error();
   if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kDistanceRounding) - error);
   upper_ = std::min(upper_, nearest_.distance * scale * (1 + kDistanceRounding) + error);
   lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose ball slabs do not hold their triangles
@@ -312,11 +279,11 @@ DistanceSearch::Points DistanceSearch::points() const noexcept {
   Points result;
   if (nearest_.triangle_first == kNoTriangle) return result;
   const auto world = [this](std::array<double, 3> point) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] += pair_.first_->tree.origin[i];
-    return transform(pair_.first_pose_, point);
+    for (std::size_t i = 0; i < 3; ++i) point[i] += first().origin[i];
+    return transform(trees_.first_pose(), point);
   };
   result = {world(nearest_.on_first), world(nearest_.on_second), nearest_.triangle_first, nearest_.triangle_second};
-  if (pair_.exchanged_) {
+  if (trees_.exchanged()) {
     std::swap(result.on_a, result.on_b);
     std::swap(result.triangle_a, result.triangle_b);
   }

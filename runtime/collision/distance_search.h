@@ -1,9 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <limits>
-#include <memory>
 
-#include "collision/pair_query.h"
+#include "collision/node_pairs.h"
+#include "collision/pair_budget.h"
+#include "collision/placed_trees.h"
 #include "orchard/runtime/distance.h"
 
 namespace orchard::runtime {
@@ -14,7 +15,7 @@ class DistanceSearch {
   using Tolerance = DistanceQuery::Tolerance;
 
   DistanceSearch(const TreeView& a, const TreeView& b) noexcept;
-  DistanceSearch() noexcept : pair_(0) {}
+  DistanceSearch() noexcept = default;
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
@@ -30,36 +31,39 @@ class DistanceSearch {
   Points points() const noexcept;
 
  private:
-  struct ObbNodePair {
-    float lower;
-    std::uint32_t a, b;
+  struct Apart : NodePair {
+    float lower;  // bound on their distance
   };
 
   bool make_room() noexcept;
-  bool has_room() const noexcept { return pair_.has_triangles() && stack_; }
+  bool has_room() const noexcept { return have_triangles(trees_) && stack_.has_room(); }
+  const TreeView& first() const noexcept { return trees_.first().tree; }
+  const TreeView& second() const noexcept { return trees_.second().tree; }
   void begin(const Pose& a, const Pose& b, double limit) noexcept;
   void leave_the_rest() noexcept;
-  bool surely_near(const ObbNodePair& pair) noexcept;
+  bool surely_near(const Apart& pair) noexcept;
   bool may_be_nearer(double lower) const noexcept;
-  void expand(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept;
-  void expand_within(const ObbNodePair& pair, std::uint32_t block, bool second) noexcept;
-  void compare_leaves(const ObbNodePair& pair) noexcept;
-  void find_within(const ObbNodePair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
+  void expand(const Apart& pair, const detail::Opened& opened) noexcept;
+  void expand_within(const Apart& pair, const detail::Opened& opened) noexcept;
+  void compare_leaves(const Apart& pair) noexcept;
+  void find_within(const Apart& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
   void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
                          bool may_meet) noexcept;
   void find_cut() noexcept;
   void report() noexcept;
 
-  PairQuery pair_;  // the bodies' order and placement
-  std::unique_ptr<ObbNodePair[]> stack_;
+  PlacedTrees trees_;
+  detail::TreeStack<Apart> stack_;  // the nearest last
   std::size_t stack_size_ = 0;
-  std::size_t stack_room_ = 0;
   Tolerance tolerance_;
-  double limit_ = std::numeric_limits<double>::infinity();  // what is farther is left out
-  float reach_ = std::numeric_limits<float>::infinity();    // it, rounded up
-  double cut_ = std::numeric_limits<double>::infinity();    // from the nearest and limit_, with the tolerance
-  bool below_nearest_ = false;                              // what is as far is not looked at, either
-  double enough_ = 0;                                       // so near: nothing nearer is looked for
+  struct Limit {
+    double length = std::numeric_limits<double>::infinity();  // what is farther is left out
+    float rounded_up = std::numeric_limits<float>::infinity();
+    double enough = 0;  // so near: nothing nearer is looked for
+  };
+  Limit limit_;
+  double cut_ = std::numeric_limits<double>::infinity();  // from the nearest and the limit, with the tolerance
+  bool below_nearest_ = false;                            // what is as far is not looked at, either
   // In the first tree's units, of the stored triangles.
   struct Nearest {
     double distance = std::numeric_limits<double>::infinity();  // the least found

@@ -10,7 +10,7 @@
 
 // Rounding of gaps that close. A gap was certified, rounding included, for the second body as the double pose placed it
 // then. Since then a point x of it has moved by (turn x + by), which is known to within 20 u D for numbers rounded to
-// float, u = 2^-24 and D as in narrow_phase.cpp, now or then; vectors are of length 1 to within 1e-6; and taking the
+// float, u = 2^-24 and D as in placed_trees.cpp, now or then; vectors are of length 1 to within 1e-6; and taking the
 // sum from the gap costs u of it. Placement::margin is more than 96 u D of now, and D then is at most D now and the
 // motion.
 namespace orchard::runtime {
@@ -28,14 +28,14 @@ constexpr double kAxisError = 4e-6;      // of a motion
 
 }  // namespace
 
-FrontWalk::FrontWalk(PairFront& front, PairQuery& narrow) noexcept
+FrontWalk::FrontWalk(PairFront& front, DirectSearch& search) noexcept
     : front_(front),
-      narrow_(narrow),
-      first_(narrow.first().tree),
-      second_(narrow.second().tree),
-      placement_(narrow.placement()),
-      relative_(narrow.relative()),
-      stack_(narrow.stack()) {}
+      search_(search),
+      first_(search.trees().first().tree),
+      second_(search.trees().second().tree),
+      placement_(search.trees().placement()),
+      relative_(search.trees().relative()),
+      stack_(search.stack()) {}
 
 void FrontWalk::run(const Budget& budget) noexcept {
   PairBudget tracker(budget);
@@ -43,28 +43,28 @@ void FrontWalk::run(const Budget& budget) noexcept {
   Outcome outcome = settle_leaves();
   if (outcome == Outcome::apart) outcome = settle_nodes();
   tracker_ = nullptr;
-  narrow_.add_work(tracker.spent());
+  search_.add_work(tracker.spent());
   if (outcome != Outcome::apart) return;
-  const double scale = narrow_.first_pose().scale;
+  const double scale = search_.trees().first_pose().scale;
   const double least = std::min(front_.rest_, double{least_});
-  narrow_.say_no(std::max(0.0, least * scale * (1 - 1e-12) - narrow_.exact_error()));
+  search_.say_no(std::max(0.0, least * scale * (1 - 1e-12) - search_.trees().exact_error()));
 }
 
 bool FrontWalk::fits() const noexcept {
   return front_.first_ == first_.obb_nodes.data() && front_.second_ == second_.obb_nodes.data() &&
-         front_.fingerprints_[0] == narrow_.first().fingerprint &&
-         front_.fingerprints_[1] == narrow_.second().fingerprint;
+         front_.fingerprints_[0] == search_.trees().first().fingerprint &&
+         front_.fingerprints_[1] == search_.trees().second().fingerprint;
 }
 
 void FrontWalk::begin() noexcept {
   front_.first_ = first_.obb_nodes.data(), front_.second_ = second_.obb_nodes.data();
-  front_.fingerprints_[0] = narrow_.first().fingerprint;
-  front_.fingerprints_[1] = narrow_.second().fingerprint;
+  front_.fingerprints_[0] = search_.trees().first().fingerprint;
+  front_.fingerprints_[1] = search_.trees().second().fingerprint;
   front_.relative_ = relative_;
   front_.rest_ = std::numeric_limits<double>::infinity();
   front_.used_ = front_.free_count_ = 0;
   if (front_.crowded_ && enough_ > 0) far_ = kFarSteps * enough_;
-  leaf_count_ = node_count_ = 0;
+  leaves_.count = nodes_.count = 0;
   add(0, 0, kUnknown, {1, 0, 0});
   least_ = std::numeric_limits<float>::infinity();
   see_to(0);
@@ -72,7 +72,7 @@ void FrontWalk::begin() noexcept {
 
 // Takes from all gaps what the motion since may have closed. False: nothing worth a look is left of the front.
 bool FrontWalk::advance() noexcept {
-  leaf_count_ = node_count_ = 0;
+  leaves_.count = nodes_.count = 0;
   const Pose& before = front_.relative_;
   detail::Shift shift{};
   double square = 0;
@@ -109,14 +109,14 @@ bool FrontWalk::advance() noexcept {
       see_to(from + static_cast<std::uint32_t>(std::countr_zero(left)));
     }
   }
-  return leaf_count_ + node_count_ <= kMostOpen;
+  return leaves_.count + nodes_.count <= kMostOpen;
 }
 
 FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
-  for (std::uint32_t i = 0; i < leaf_count_; ++i) {
+  for (std::uint32_t i = 0; i < leaves_.count; ++i) {
     if (tracker_->exhausted()) return Outcome::interrupted;
-    detail::FrontBlock& block = front_.blocks_[leaves_[i] / kBlockWidth];
-    const std::uint32_t lane = leaves_[i] % kBlockWidth;
+    detail::FrontBlock& block = front_.blocks_[leaves_.slots[i] / kBlockWidth];
+    const std::uint32_t lane = leaves_.slots[i] % kBlockWidth;
     LeafAxis axis = {0, {block.ux[lane], block.uy[lane], block.uz[lane]}};
     const std::array<float, 3> last = axis.u;
     if (leaves_meet({block.a[lane], block.b[lane]}, &last, axis)) return Outcome::meeting;
@@ -131,10 +131,10 @@ FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
 FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
   ObbNodeBlock firsts, seconds;
   BoxAxes axes;
-  for (std::uint32_t from = 0; from < node_count_; from += kBlockWidth) {
-    const std::uint32_t count = std::min(node_count_ - from, kBlockWidth);
+  for (std::uint32_t from = 0; from < nodes_.count; from += kBlockWidth) {
+    const std::uint32_t count = std::min(nodes_.count - from, kBlockWidth);
     for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-      const std::uint32_t slot = nodes_[from + (i < count ? i : 0)];
+      const std::uint32_t slot = nodes_.slots[from + (i < count ? i : 0)];
       const detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
       const auto copy = [i](ObbNodeBlock& to, const TreeView& tree, std::uint32_t node) {
         const ObbNodeBlock& of = tree.obb_nodes[node / kBlockWidth];
@@ -151,7 +151,7 @@ FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
     detail::box_pair_axes(firsts, seconds, placement_, placement_.box_margin, axes);
     tracker_->spend(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t slot = nodes_[from + i], lane = slot % kBlockWidth;
+      const std::uint32_t slot = nodes_.slots[from + i], lane = slot % kBlockWidth;
       detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
       if ((axes.meeting >> i & 1) == 0) {
         block.gap[lane] = axes.gap[i];
@@ -174,24 +174,21 @@ FrontWalk::Outcome FrontWalk::walk(const NodePair& from) noexcept {
   while (stack_size_ > 0) {
     if (tracker_->exhausted()) return keep_stack(), Outcome::interrupted;
     const NodePair pair = stack_[--stack_size_];
-    const std::uint32_t a = detail::obb_node_child(first_, pair.a), b = detail::obb_node_child(second_, pair.b);
-    if (a & b & kLeafBit) {
+    if (is_leaf_pair(pair.a, pair.b)) {
       LeafAxis axis;
       const bool meet = leaves_meet(pair, nullptr, axis);
       add(pair.a, pair.b, axis.gap, axis.u);
       if (meet) return keep_stack(), Outcome::meeting;
       continue;
     }
-    const float radius = first_.obb_nodes[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
-    const float other = second_.obb_nodes[pair.b / kBlockWidth].radius[pair.b % kBlockWidth] * placement_.scale;
-    expand(pair, (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < other));
+    expand(pair, detail::larger_node(first_, second_, pair, placement_.scale));
   }
   return Outcome::apart;
 }
 
 bool FrontWalk::leaves_meet(const NodePair& pair, const Axis* last, LeafAxis& axis) noexcept {
-  const TriangleBlock& lanes = first_.triangle_blocks[detail::obb_node_child(first_, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second_.triangle_blocks[detail::obb_node_child(second_, pair.b) & ~kLeafBit];
+  const TriangleBlock& lanes = first_.triangle_blocks[detail::slab_child(first_, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second_.triangle_blocks[detail::slab_child(second_, pair.b) & ~kLeafBit];
   const detail::NodeBox lane_box = detail::node_box_at(first_, pair.a),
                         row_box = detail::moved(detail::node_box_at(second_, pair.b), placement_);
   const detail::LeafPair leaves = {lanes, rows, lane_box, row_box};
@@ -199,38 +196,34 @@ bool FrontWalk::leaves_meet(const NodePair& pair, const Axis* last, LeafAxis& ax
   tracker_->spend(kBlockWidth);
   if (axis.gap > 0) return false;
   tracker_->spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
-  return narrow_.test_leaves(pair.a, pair.b);
+  return search_.test_leaves(pair);
 }
 
-void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
-  const std::uint32_t block = detail::obb_node_child(open_second ? second_ : first_, open_second ? pair.b : pair.a);
+void FrontWalk::expand(const NodePair& pair, const detail::Opened& opened) noexcept {
   BoxAxes axes;
   const float margin = placement_.box_margin;
-  if (open_second) {
-    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_), second_.obb_nodes[block],
-                     &placement_, margin, axes);
+  if (opened.second) {
+    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_),
+                     second_.obb_nodes[opened.block], &placement_, margin, axes);
   } else {
-    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.obb_nodes[block], nullptr,
-                     margin, axes);
+    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.obb_nodes[opened.block],
+                     nullptr, margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
-  const float sign = open_second ? 1.0f : -1.0f;
+  const float sign = opened.second ? 1.0f : -1.0f;
   for (std::uint32_t left = axes.used & ~axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const std::uint32_t node = block * kBlockWidth + lane;  // vectors point from the single one to the eight
-    add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
-        {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
+    const NodePair child = opened.pair(pair, lane);  // vectors point from the single one to the eight
+    add(child.a, child.b, axes.gap[lane], {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
   }
-  std::uint32_t nodes[kBlockWidth];
+  NodePair children[kBlockWidth];
   detail::FarthestFirst order;
   for (std::uint32_t left = axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    nodes[order.count] = block * kBlockWidth + lane;
+    children[order.count] = opened.pair(pair, lane);
     order.add(axes.gap[lane]);
   }
-  for (std::uint32_t i = 0; i < order.count; ++i) {
-    stack_[stack_size_ + order.place[i]] = open_second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
-  }
+  for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = children[i];
   stack_size_ += order.count;
 }
 

@@ -17,18 +17,19 @@ constexpr double kEnough = 0.5;  // of the earliest time found: what may meet la
 // critical.time then holds for what was left, too.
 bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexcept {
   Scratch& scratch = *workspace_.scratch();
-  Scratch::TimedPair* const stack = scratch.timed.get();
+  Scratch::TimedPair* const stack = scratch.timed.data();
   std::size_t size = 0;
-  stack[size++] = {0, 0, 0, moved(obb_node_at(second().obb_nodes[0], 0), narrow_.placement())};
+  stack[size++] = {0, 0, 0, moved(obb_node_at(second().obb_nodes[0], 0), trees_.placement())};
   while (size > 0) {
     if (tracker.exhausted()) {
-      for (std::size_t i = 0; i < size; ++i)
+      for (std::size_t i = 0; i < size; ++i) {
         critical.time = std::min(critical.time, std::max(0.0, double{stack[i].time}));
+      }
       return false;
     }
     const Scratch::TimedPair top = stack[--size];
     if (critical.leaves(double{top.time})) continue;
-    const std::uint32_t a = obb_node_child(first(), top.a), b = obb_node_child(second(), top.b);
+    const std::uint32_t a = slab_child(first(), top.a), b = slab_child(second(), top.b);
     if (a & b & kLeafBit) {
       compare_leaves(top, critical);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
@@ -42,9 +43,9 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
 
 // In place of a pair, those of its children that may meet in time, the earliest last.
 void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept {
-  Scratch::TimedPair* const stack = workspace_.scratch()->timed.get();
-  const Placement& placement = narrow_.placement();
-  const std::uint32_t a = obb_node_child(first(), top.a), b = obb_node_child(second(), top.b);
+  Scratch::TimedPair* const stack = workspace_.scratch()->timed.data();
+  const Placement& placement = trees_.placement();
+  const std::uint32_t a = slab_child(first(), top.a), b = slab_child(second(), top.b);
   const ObbNodeBlock& own = first().obb_nodes[top.a / kBlockWidth];
   const std::uint32_t own_lane = top.a % kBlockWidth;
   const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[own_lane] < top.second.radius);
@@ -52,9 +53,9 @@ void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Crit
   const auto margin = static_cast<float>((double{placement.margin} + limits_.margin) * (1 + 1e-6));
   ObbNodeTimes times;
   if (open_second) {
-    obb_node_times(obb_node_at(own, own_lane), second().obb_nodes[block], &placement, closing_, margin, times);
+    obb_node_times(obb_node_at(own, own_lane), second().obb_nodes[block], &placement, motion_.closing, margin, times);
   } else {
-    obb_node_times(top.second, first().obb_nodes[block], nullptr, closing_, margin, times);
+    obb_node_times(top.second, first().obb_nodes[block], nullptr, motion_.closing, margin, times);
   }
   const std::size_t begin = size;
   for (std::uint32_t left = times.used; left != 0; left &= left - 1) {
@@ -70,16 +71,17 @@ void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Crit
 }
 
 void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept {
-  const TriangleBlock& lanes = first().triangle_blocks[obb_node_child(first(), top.a) & ~kLeafBit];
-  const TriangleBlock& rows = second().triangle_blocks[obb_node_child(second(), top.b) & ~kLeafBit];
+  const TriangleBlock& lanes = first().triangle_blocks[slab_child(first(), top.a) & ~kLeafBit];
+  const TriangleBlock& rows = second().triangle_blocks[slab_child(second(), top.b) & ~kLeafBit];
   const ObbNode p = obb_node_at(first().obb_nodes[top.a / kBlockWidth], top.a % kBlockWidth);
   const auto reach = [](const ObbNode& slab, const Vec3& center) {
     const Vec3 from = minus({slab.x, slab.y, slab.z}, center);
     return (length_of(from) + double{slab.radius}) * (1 + 1e-5);
   };
-  const double first_reach = reach(p, first_turn_.center), second_reach = reach(top.second, second_turn_.center);
-  const double fastest = length_of(velocity_) + speed_ + (first_turn_.spin + first_turn_.turning) * first_reach +
-                         (second_turn_.spin + second_turn_.turning) * second_reach;
+  const double first_reach = reach(p, motion_.first.center), second_reach = reach(top.second, motion_.second.center);
+  const double fastest = length_of(motion_.velocity) + motion_.speed +
+                         (motion_.first.spin + motion_.first.turning) * first_reach +
+                         (motion_.second.spin + motion_.second.turning) * second_reach;
   // Before that no gap closes, whatever its direction.
   const auto earliest = [&](float lower) {
     const double gap = double{lower} - limits_.margin;
@@ -87,7 +89,7 @@ void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& criti
   };
   const double reach_in_time = fastest * (1 + kImpactRounding) * critical.cut + limits_.margin;
   TriangleGaps gaps;
-  triangle_gaps(lanes, rows, narrow_.placement(), direction_,
+  triangle_gaps(lanes, rows, trees_.placement(), direction_,
                 static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
   // The nearest first: each makes fewer of the others worth a look.
   std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
@@ -110,7 +112,7 @@ void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& criti
 
 void ImpactSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
                                      std::uint32_t row, const Speeds& speeds, Critical& critical) noexcept {
-  const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, narrow_.relative());
+  const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, trees_.relative());
   const NearestPoints nearest = nearest_points(a, b);
   const Vec3 way = minus(nearest.on_b, nearest.on_a);
   const double size = length_of(way);
@@ -120,8 +122,8 @@ void ImpactSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t l
     const auto [low, high] = std::pair(std::min({dot(u, b[0]), dot(u, b[1]), dot(u, b[2])}),
                                        std::max({dot(u, a[0]), dot(u, a[1]), dot(u, a[2])}));
     gap = low - high - limits_.margin - limits_.error;
-    rate = speed_ - dot(velocity_, u) + first_turn_.rate(u, speeds.first_reach) +
-           second_turn_.rate(u, speeds.second_reach) + kImpactRounding * speeds.fastest;
+    rate = motion_.speed - dot(motion_.velocity, u) + motion_.first.rate(u, speeds.first_reach) +
+           motion_.second.rate(u, speeds.second_reach) + kImpactRounding * speeds.fastest;
   }
   const double time = gap > 0 ? (rate > 0 ? gap / rate : std::numeric_limits<double>::infinity()) : 0;
   if (time >= critical.time) return;

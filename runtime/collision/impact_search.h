@@ -56,7 +56,12 @@ class ImpactSearch {
  public:
   ImpactSearch(Workspace& workspace, const TreePair& pair, const Travel& a, const Travel& b,
                const ImpactOptions& options) noexcept
-      : workspace_(workspace), narrow_(query_of(workspace.narrow)), pair_(pair), a_(a), b_(b), options_(options) {}
+      : workspace_(workspace),
+        trees_(query_of(workspace.narrow).trees()),
+        pair_(pair),
+        a_(a),
+        b_(b),
+        options_(options) {}
 
   Impact run() noexcept;
 
@@ -78,21 +83,23 @@ class ImpactSearch {
   void find_contact(PairBudget& tracker) noexcept;
   bool advance(PairBudget& tracker) noexcept;
   bool touching(PairBudget& tracker, double time) noexcept;
-  const TreeView& first() const noexcept { return narrow_.first().tree; }
-  const TreeView& second() const noexcept { return narrow_.second().tree; }
+  const TreeView& first() const noexcept { return trees_.first().tree; }
+  const TreeView& second() const noexcept { return trees_.second().tree; }
 
   Workspace& workspace_;
-  PairQuery& narrow_;
+  PlacedTrees& trees_;  // of the workspace's query
   const TreePair& pair_;
   const Travel &a_, &b_;
   const ImpactOptions& options_;
   Impact result_;
 
-  // At the time under way, in the first tree's units.
-  Vec3 velocity_{};  // of the second one's centre less the first one's
-  double speed_ = 0;
-  Turn first_turn_, second_turn_;
-  Closing closing_;
+  struct Motion {      // of both bodies at the time under way, in the first tree's units
+    Vec3 velocity{};   // of the second one's centre less the first one's
+    double speed = 0;  // and what is not known of it, at most
+    Turn first, second;
+    Closing closing;  // the same in float
+  };
+  Motion motion_;
   struct Limits {  // lengths
     double margin = 0, tolerance = 0, finest = 0, error = 0;
   };

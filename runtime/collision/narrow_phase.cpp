@@ -34,18 +34,12 @@ Answer NarrowPhase::refine_exactly(const Budget& budget) noexcept { return query
 Answer NarrowPhase::probe(std::uint32_t level) noexcept { return query().probe(level); }
 
 Verdict NarrowPhase::verdict() const noexcept { return query().verdict(); }
-Answer NarrowPhase::answer() const noexcept { return query().answer(); }
+Answer NarrowPhase::answer() const noexcept { return query().known().answer; }
 bool NarrowPhase::finished() const noexcept { return query().finished(); }
-bool NarrowPhase::refused() const noexcept { return query().refused(); }
-bool NarrowPhase::out_of_room() const noexcept { return query().out_of_room(); }
-bool NarrowPhase::exact() const noexcept { return query().exact(); }
-std::uint32_t NarrowPhase::level() const noexcept { return query().level(); }
-std::size_t NarrowPhase::pairs() const noexcept { return query().pairs(); }
-std::uint64_t NarrowPhase::pair_tests() const noexcept { return query().pair_tests(); }
-std::uint64_t NarrowPhase::triangle_tests() const noexcept { return query().triangle_tests(); }
-std::uint64_t NarrowPhase::work() const noexcept { return query().work(); }
-double NarrowPhase::separation_bound() const noexcept { return query().separation_bound(); }
-double NarrowPhase::lower_bound() const noexcept { return query().lower_bound(); }
+bool NarrowPhase::refused() const noexcept { return query().known().refused; }
+NarrowPhase::Progress NarrowPhase::progress() const noexcept { return query().progress(); }
+double NarrowPhase::separation_bound() const noexcept { return query().known().separation_bound; }
+double NarrowPhase::lower_bound() const noexcept { return query().known().lower_bound; }
 Contact NarrowPhase::contact() const noexcept { return query().contact(); }
 
 }  // namespace orchard::runtime

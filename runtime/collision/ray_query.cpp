@@ -111,6 +111,7 @@ class Caster {
   // What is before the walk for several rays at once.
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const noexcept {
     RayStarts starts;
+    std::array<int, RayStarts::kCount> powers;
     std::size_t first = 0;
     for (; first + RayStarts::kCount <= rays.size(); first += RayStarts::kCount) {
       for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
@@ -119,11 +120,11 @@ class Caster {
         for (std::size_t k = 0; k < 3; ++k) {
           starts.origin[k][i] = ray.origin[k], starts.way[k][i] = direction.way[k];
         }
-        starts.steps[i] = direction.steps(ray.longest), starts.power[i] = direction.power;
+        starts.steps[i] = direction.steps(ray.longest), powers[i] = direction.power;
       }
       find_starts(frame_, ball_, starts);
       for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
-        const Direction direction(frame_.pose.scale, starts.power[i]);
+        const Direction direction(frame_.pose.scale, powers[i]);
         hits[first + i] = cast(rays[first + i], direction, starts.at_lane(i));
       }
     }

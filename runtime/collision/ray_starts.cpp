@@ -13,12 +13,13 @@ ORCHARD_INLINE void make_all(const Frame& given, const Ball& ball, RayStarts& st
                                     {starts.way[0][i], starts.way[1][i], starts.way[2][i]}, starts.steps[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       starts.from[k][i] = start.from[k], starts.to[k][i] = start.to[k], starts.step[k][i] = start.step[k];
-      starts.line_origin[k][i] = start.line.ray.origin[k], starts.direction[k][i] = start.line.ray.direction[k];
+      starts.lines.origin[k][i] = start.line.ray.origin[k], starts.lines.direction[k][i] = start.line.ray.direction[k];
     }
     starts.speed[i] = start.speed, starts.slowness[i] = start.slowness, starts.end[i] = start.end;
-    starts.at[i] = start.line.at, starts.margin[i] = start.line.ray.margin;
-    starts.line_begin[i] = start.line.begin, starts.line_end[i] = start.line.end;
-    starts.misses[i] = start.line.misses ? 1.0f : 0.0f, starts.in_float[i] = start.line.in_float ? 1.0f : 0.0f;
+    starts.lines.at[i] = start.line.at, starts.lines.margin[i] = start.line.ray.margin;
+    starts.lines.begin[i] = start.line.begin, starts.lines.end[i] = start.line.end;
+    starts.lines.misses[i] = start.line.misses ? 1.0f : 0.0f,
+    starts.lines.in_float[i] = start.line.in_float ? 1.0f : 0.0f;
   }
 }
 

@@ -120,22 +120,25 @@ struct RayStarts {
 
   std::array<Row, 3> origin, way;  // what is given
   Row steps;
-  std::array<int, kCount> power;
   std::array<Row, 3> from, to, step;  // and what is made of it
-  Row speed, slowness, end, at;
-  std::array<FloatRow, 3> line_origin, direction;
-  FloatRow margin, line_begin, line_end, misses, in_float;
+  Row speed, slowness, end;
+  struct Lines {
+    Row at;
+    std::array<FloatRow, 3> origin, direction;
+    FloatRow margin, begin, end, misses, in_float;
+  };
+  Lines lines;
 
   RayStart at_lane(std::size_t i) const noexcept {
     RayStart start;
     for (std::size_t k = 0; k < 3; ++k) {
       start.from[k] = from[k][i], start.to[k] = to[k][i], start.step[k] = step[k][i];
-      start.line.ray.origin[k] = line_origin[k][i], start.line.ray.direction[k] = direction[k][i];
+      start.line.ray.origin[k] = lines.origin[k][i], start.line.ray.direction[k] = lines.direction[k][i];
     }
     start.speed = speed[i], start.slowness = slowness[i], start.end = end[i];
-    start.line.at = at[i], start.line.ray.margin = margin[i];
-    start.line.begin = line_begin[i], start.line.end = line_end[i];
-    start.line.misses = misses[i] != 0, start.line.in_float = in_float[i] != 0;
+    start.line.at = lines.at[i], start.line.ray.margin = lines.margin[i];
+    start.line.begin = lines.begin[i], start.line.end = lines.end[i];
+    start.line.misses = lines.misses[i] != 0, start.line.in_float = lines.in_float[i] != 0;
     return start;
   }
 };

@@ -33,18 +33,19 @@ double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
 
 bool ImpactSearch::prepare() noexcept {
   Scratch* const scratch = workspace_.scratch();
-  narrow_.bind(pair_.a(), pair_.b());
+  query_of(workspace_.narrow).bind(pair_.a(), pair_.b());
   const TreeView &a = pair_.a().tree, &b = pair_.b().tree;
-  return scratch != nullptr && !a.obb_nodes.empty() && !b.obb_nodes.empty() &&
-         scratch->reserve_timed(pair_.a(), pair_.b());
+  return scratch != nullptr && !a.obb_nodes.empty() && !b.obb_nodes.empty() && scratch->timed.reserve(a, b);
 }
 
 // False where nothing can be said.
 bool ImpactSearch::place(double time) noexcept {
-  if (!narrow_.place(a_.at(time), b_.at(time))) return false;
-  const bool exchanged = narrow_.exchanged();
+  const Pose pose_a = a_.at(time), pose_b = b_.at(time);
+  Roots roots;
+  if (trees_.test_roots(pose_a, pose_b, roots) == Roots::Answer::refused || !trees_.place(pose_a, pose_b)) return false;
+  const bool exchanged = trees_.exchanged();
   const Travel &first = exchanged ? b_ : a_, &second = exchanged ? a_ : b_;
-  const Pose& frame = narrow_.first_pose();
+  const Pose& frame = trees_.first_pose();
   const double shrink = 1 / frame.scale;
   const auto turn_of = [&](const Travel& travel) {
     Turn turn;
@@ -61,55 +62,56 @@ bool ImpactSearch::place(double time) noexcept {
     return travel.pose_at != nullptr ? Vec3{} : along({0, 0, 0}, turned_back(frame, travel.velocity), shrink);
   };
   const auto speed_of = [&](const Travel& travel) { return travel.pose_at != nullptr ? travel.speed * shrink : 0.0; };
-  first_turn_ = turn_of(first), second_turn_ = turn_of(second);
-  first_turn_.center = minus(first.center, this->first().origin);
-  second_turn_.center = transform(narrow_.relative(), minus(second.center, this->second().origin));
-  velocity_ = minus(velocity_of(second), velocity_of(first));
-  speed_ = speed_of(first) + speed_of(second);
+  motion_.first = turn_of(first), motion_.second = turn_of(second);
+  motion_.first.center = minus(first.center, this->first().origin);
+  motion_.second.center = transform(trees_.relative(), minus(second.center, this->second().origin));
+  motion_.velocity = minus(velocity_of(second), velocity_of(first));
+  motion_.speed = speed_of(first) + speed_of(second);
 
-  const PreparedTree &p = narrow_.first(), &q = narrow_.second();
-  const double scale = narrow_.relative().scale, size = p.extent + q.extent * scale;
+  const PreparedTree &p = trees_.first(), &q = trees_.second();
+  const double scale = trees_.relative().scale, size = p.extent + q.extent * scale;
   const double reach =
-      reach_of(p, first_turn_.center) + scale * reach_of(q, minus(second.center, this->second().origin));
-  const double fastest = length_of(velocity_) + speed_ +
-                         (first_turn_.spin + first_turn_.turning + second_turn_.spin + second_turn_.turning);
+      reach_of(p, motion_.first.center) + scale * reach_of(q, minus(second.center, this->second().origin));
+  const double fastest = length_of(motion_.velocity) + motion_.speed +
+                         (motion_.first.spin + motion_.first.turning + motion_.second.spin + motion_.second.turning);
   if (!(fastest <= kMaxQuantity && reach <= kMaxQuantity && fastest * reach <= kMaxQuantity * kMaxQuantity))
     return false;
-  if (!(speed_ >= 0 && first_turn_.turning >= 0 && second_turn_.turning >= 0)) return false;
-  limits_.error = narrow_.exact_error() * shrink + kImpactRounding * size;
+  if (!(motion_.speed >= 0 && motion_.first.turning >= 0 && motion_.second.turning >= 0)) return false;
+  limits_.error = trees_.exact_error() * shrink + kImpactRounding * size;
   limits_.margin = options_.margin * shrink;
   limits_.finest = std::max(kMinTolerance * size, 4 * limits_.error);
   limits_.tolerance = std::max(options_.tolerance * shrink, limits_.finest);
-  for (std::size_t i = 0; i < 3; ++i) closing_.velocity[i] = static_cast<float>(velocity_[i]);
-  closing_.speed = static_cast<float>((speed_ + 1e-6 * length_of(velocity_)) * (1 + 1e-6));
-  closing_.first = first_turn_.in_float(), closing_.second = second_turn_.in_float();
+  for (std::size_t i = 0; i < 3; ++i) motion_.closing.velocity[i] = static_cast<float>(motion_.velocity[i]);
+  motion_.closing.speed = static_cast<float>((motion_.speed + 1e-6 * length_of(motion_.velocity)) * (1 + 1e-6));
+  motion_.closing.first = motion_.first.in_float(), motion_.closing.second = motion_.second.in_float();
   return true;
 }
 
 // Until when the balls in which the bodies turn, whatever way, do not meet.
 double ImpactSearch::without_turning() const noexcept {
-  const double scale = narrow_.relative().scale;
-  const Vec3 way = minus(second_turn_.center, first_turn_.center);
+  const double scale = trees_.relative().scale;
+  const Vec3 way = minus(motion_.second.center, motion_.first.center);
   const double distance = length_of(way);
-  const auto &p = narrow_.first(), &q = narrow_.second();
-  const bool exchanged = narrow_.exchanged();
+  const auto &p = trees_.first(), &q = trees_.second();
+  const bool exchanged = trees_.exchanged();
   const Vec3 center = minus((exchanged ? a_ : b_).center, q.tree.origin);
-  const double gap = distance * (1 - kImpactRounding) - reach_of(p, first_turn_.center) - scale * reach_of(q, center) -
-                     limits_.margin - limits_.error;
+  const double gap = distance * (1 - kImpactRounding) - reach_of(p, motion_.first.center) -
+                     scale * reach_of(q, center) - limits_.margin - limits_.error;
   if (!(gap > 0)) return 0;
   // The direction is fixed, so this holds for balls that pass each other, too.
-  const double rate = speed_ - dot(velocity_, way) / distance + kImpactRounding * length_of(velocity_);
+  const double rate =
+      motion_.speed - dot(motion_.velocity, way) / distance + kImpactRounding * length_of(motion_.velocity);
   return rate > 0 ? gap / rate : std::numeric_limits<double>::infinity();
 }
 
 void ImpactSearch::report(const Critical& critical) noexcept {
   if (critical.triangle_first == kNoTriangle) return;
-  const Pose& frame = narrow_.first_pose();
+  const Pose& frame = trees_.first_pose();
   const auto world = [&](const Vec3& p) { return transform(frame, along(p, first().origin, 1)); };
-  result_.distance = critical.distance * frame.scale * (1 + kImpactRounding) + narrow_.exact_error();
+  result_.distance = critical.distance * frame.scale * (1 + kImpactRounding) + trees_.exact_error();
   result_.on_a = world(critical.on_first), result_.on_b = world(critical.on_second);
   result_.triangle_a = critical.triangle_first, result_.triangle_b = critical.triangle_second;
-  if (!narrow_.exchanged()) return;
+  if (!trees_.exchanged()) return;
   std::swap(result_.on_a, result_.on_b);
   std::swap(result_.triangle_a, result_.triangle_b);
 }
@@ -119,7 +121,7 @@ bool ImpactSearch::touching(PairBudget& tracker, double time) noexcept {
   if (tracker.exhausted()) return false;
   const std::uint64_t left = options_.budget.work - tracker.spent();
   const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
-  tracker.spend(options_.margin > 0 ? workspace_.distance.work() : query_of(workspace_.narrow).work());
+  tracker.spend(options_.margin > 0 ? workspace_.distance.work() : query_of(workspace_.narrow).known().work);
   return answer == Answer::yes;
 }
 

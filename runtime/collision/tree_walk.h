@@ -174,6 +174,16 @@ inline std::uint32_t lanes_in_use(const TriangleBlock& block) noexcept {
   return (1u << count) - 1;
 }
 
+// The first of the nearest of these lanes, at least one.
+inline std::uint32_t nearest_lane(const std::array<float, kBlockWidth>& gaps, std::uint32_t lanes) noexcept {
+  auto nearest = static_cast<std::uint32_t>(std::countr_zero(lanes));
+  for (std::uint32_t rest = lanes & (lanes - 1); rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+    if (gaps[lane] < gaps[nearest]) nearest = lane;
+  }
+  return nearest;
+}
+
 // Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
 // the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false. Returns how
 // far from the segment all others are, at least, if it has not returned false.
@@ -207,11 +217,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
       leave_out(some.beyond);  // lanes without a triangle repeat the first one
       std::uint32_t left = some.lanes & lanes_in_use(block);
       while (left != 0) {
-        auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
-        for (std::uint32_t rest = left & (left - 1); rest != 0; rest &= rest - 1) {
-          const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-          if (row[lane] < row[nearest]) nearest = lane;
-        }
+        const std::uint32_t nearest = nearest_lane(row, left);
         left &= ~(1u << nearest);
         if (double{row[nearest]} > limit()) {
           leave_out(row[nearest]);

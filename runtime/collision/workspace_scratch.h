@@ -1,8 +1,6 @@
 #pragma once
 #include <array>
 #include <cstddef>
-#include <memory>
-#include <new>
 
 #include "collision/pair_walk.h"
 #include "collision/triangle_cut.h"
@@ -31,18 +29,7 @@ struct Workspace::Scratch {
     std::uint32_t a, b;
     detail::ObbNode second;
   };
-  std::unique_ptr<TimedPair[]> timed;
-  std::size_t timed_room = 0;
-  // For time_of_impact() of these, and of what is no deeper. False: there is no memory.
-  bool reserve_timed(const PreparedTree& a, const PreparedTree& b) noexcept {
-    const std::size_t deepest =
-        std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
-    if (deepest > timed_room) {
-      timed.reset(new (std::nothrow) TimedPair[deepest]);
-      timed_room = timed ? deepest : 0;
-    }
-    return timed != nullptr;
-  }
+  detail::TreeStack<TimedPair> timed;
 };
 
 struct PosePair {

@@ -17,8 +17,8 @@ void forget_answer(CachedPair& record) noexcept {
   record.verdict = Verdict{};
   record.verdict.answer = Answer::no;
   record.verdict.separation_bound = record.verdict.lower_bound = std::numeric_limits<double>::infinity();
-  record.part_a = record.part_b = 0;
-  record.impact = false;
+  record.parts = {};
+  record.sweep.impact = false;
 }
 
 void add(CachedPair& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept {
@@ -27,7 +27,7 @@ void add(CachedPair& record, const Verdict& verdict, std::uint32_t part_a, std::
   const std::uint64_t work = record.verdict.work + verdict.work;
   if (decides(verdict, record.verdict)) {
     record.verdict = verdict;
-    record.part_a = part_a, record.part_b = part_b;
+    record.parts = {part_a, part_b};
   }
   record.verdict.separation_bound = upper;
   record.verdict.lower_bound = record.verdict.answer == Answer::yes ? 0 : lower;
@@ -43,32 +43,32 @@ void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::ui
 
 // Unless they pass each other so fast that looking for what lasts would not pay.
 bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept {
-  const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart_by;
-  const bool first = record.apart_at < 0;
+  const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart.by;
+  const bool first = record.apart.at < 0;
   const double slow =
-      kSlow * std::min(pair.a.reach, pair.b.reach) * static_cast<double>(std::max<Step>(1, now - record.apart_at));
-  record.apart_by = way;
-  record.apart_at = now;
+      kSlow * std::min(pair.a.reach, pair.b.reach) * static_cast<double>(std::max<Step>(1, now - record.apart.at));
+  record.apart.by = way;
+  record.apart.at = now;
   return first || dot(change, change) <= slow * slow;
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
 void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
-  record.part_a = record.part_b = 0;
-  record.impact = false;
+  record.parts = {};
+  record.sweep.impact = false;
   Verdict& verdict = record.verdict;
   PartPair pair;
   place(record, 0, 0, pair);
   const std::uint64_t before = scratch.work++;
   const bool slow = is_slow(record, pair, now);
-  const double apart = length(record.apart_by), reach = pair.a.reach + pair.b.reach;
+  const double apart = length(record.apart.by), reach = pair.a.reach + pair.b.reach;
   if (!(apart <= reach)) verdict = unasked(pair);
   if (apart <= reach || verdict.answer != Answer::no) {
     const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
     const bool tries = slow || record.touching;
     if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
-      record.along = query_of(scratch.workspace.narrow).apart_along();
+      record.apart.along = query_of(scratch.workspace.narrow).known().apart_along;
     }
     scratch.work += kPairWork + verdict.work;
     if (verdict.answer == Answer::no) make_solid(verdict, pair);
@@ -85,8 +85,8 @@ void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scr
   place(record, 0, 0, pair);
   const std::uint32_t guess = nearest_triangle(verdict, pair);
   const std::uint64_t before = scratch.work++;
-  record.part_a = record.part_b = 0;
-  record.impact = false;
+  record.parts = {};
+  record.sweep.impact = false;
   if (spheres_part(pair)) {
     verdict = unasked(pair);
   } else {
@@ -176,7 +176,7 @@ void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch
   PartIndices touched;
   std::uint32_t guess = kNoTriangle;
   if (record.verdict.answer == Answer::yes) {
-    touched = {record.part_a, record.part_b};
+    touched = {record.parts[0], record.parts[1]};
     place(record, touched.a, touched.b, pair);
     guess = nearest_triangle(record.verdict, pair);
   }
@@ -223,13 +223,13 @@ void PairAnswerer::sweep(CachedPair& record, Step now, QueryPool::Scratch& scrat
       const bool better = swept.answer != first.answer ? swept.answer > first.answer : swept.from < first.from;
       if (!better) continue;
       first = swept;
-      record.part_a = i, record.part_b = j;
+      record.parts = {i, j};
     }
   }
   if (first.answer == Answer::no) return;
-  record.impact = true;
-  record.impact_from = earliest;
-  record.impact_to = first.answer == Answer::yes ? first.to : std::numeric_limits<double>::quiet_NaN();
+  record.sweep.impact = true;
+  record.sweep.impact_from = earliest;
+  record.sweep.impact_to = first.answer == Answer::yes ? first.to : std::numeric_limits<double>::quiet_NaN();
   if (record.verdict.answer == Answer::yes) return;
   if (first.answer == Answer::yes) {
     record.verdict = first.verdict;

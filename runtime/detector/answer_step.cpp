@@ -19,15 +19,15 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   frame.pairs += matcher.pair_count();
   frame.certain += matcher.pair_count() - active.size();
   const std::uint64_t before = budget.spent();
-  const bool sweeps_or_ends = world.any_continuous || world.any_jumped;
-  world.any_jumped = false;
+  const bool sweeps_or_ends = world.any.continuous || world.any.jump;
+  world.any.jump = false;
   if (budget.limited()) {
     open_pairs(active, step);
     answer_within(active, step, watch, budget, frame);
   } else if (sweeps_or_ends) {
     open_pairs(active, step);
-    budget.spend(scheduler.answer_all(matcher.cache(), open, step));
-    scheduler.sweep_all(matcher.cache(), open, step, budget);
+    budget.spend(scheduler.answer_all(matcher.cache(), open.pairs, step));
+    scheduler.sweep_all(matcher.cache(), open.pairs, step, budget);
     reporter.conclude_all(active);
     reporter.report(active, step, frame);
   } else {
@@ -46,16 +46,16 @@ void Detector::State::answer_within(const ActivePairs& active, Step step, const 
   const std::size_t known = cache.size();
   const StepBudget::Part report_time{0, load_model.time_to_report(known)};
   if (budget.timed()) budget.set_aside(report_time);
-  scheduler.begin_within(cache, open, step);
+  scheduler.begin_within(cache, open.pairs, step);
   const double begun = watch.passed();
-  const StepBudget::Part for_sweeps = scheduler.sweeps(cache, open) ? budget.half() : StepBudget::Part{};
+  const StepBudget::Part for_sweeps = scheduler.sweeps(cache, open.pairs) ? budget.half() : StepBudget::Part{};
   budget.set_aside(for_sweeps);
   scheduler.answer_within(cache, budget);
   budget.give_back(for_sweeps);
   const StepBudget::Stopwatch rest(budget.timed());
-  scheduler.fold(cache, open, step);
+  scheduler.fold(cache, open.pairs, step);
   const double folded = rest.passed();
-  scheduler.sweep_all(cache, open, step, budget);
+  scheduler.sweep_all(cache, open.pairs, step, budget);
   const double swept = rest.passed();
   reporter.conclude_all(active);
   reporter.report(active, step, frame);
@@ -73,8 +73,8 @@ void Detector::State::ask_filter(const ActivePairs& active) {
 void Detector::State::open_pairs(const ActivePairs& active, Step step) {
   constexpr std::size_t kPerJob = 512;
   enum : std::uint8_t { kOpens = 1, kOver = 2 };
-  open.clear();
-  detail::grow(marks, active.size());
+  open.pairs.clear();
+  detail::grow(open.marks, active.size());
   ask_filter(active);
   auto look_at_some = [&](std::size_t job) {
     const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
@@ -84,13 +84,13 @@ void Detector::State::open_pairs(const ActivePairs& active, Step step) {
       matcher.allowed(pair);
       bool over = false;
       const bool asked = skipper.needs_answer(pair, step, interrupted, over);
-      marks[i] = static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0));
+      open.marks[i] = static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0));
     }
   };
   run_jobs(world.options.executor, (active.size() + kPerJob - 1) / kPerJob, look_at_some);
   for (std::size_t i = 0; i < active.size(); ++i) {
-    if ((marks[i] & kOver) != 0) reporter.end_by_teleport(active.cached(i), step);
-    if ((marks[i] & kOpens) != 0) open.push_back(active.known(i).record);
+    if ((open.marks[i] & kOver) != 0) reporter.end_by_teleport(active.cached(i), step);
+    if ((open.marks[i] & kOpens) != 0) open.pairs.push_back(active.known(i).record);
   }
 }
 

@@ -36,12 +36,12 @@ Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const Bod
   ++world.body_count;
   ++world.changes;
   body.set_filter(with.filter);
-  world.any_filters = world.any_filters || detail::PartPairs::broad_filter(body) != BodyFilter{};
+  world.any.own_filter = world.any.own_filter || detail::PartPairs::broad_filter(body) != BodyFilter{};
   body.importance = with.importance;
   body.suggest = with.suggest;
   body.continuous_speed = with.continuous_speed;
-  if (with.continuous_speed > 0 && !world.any_continuous) {
-    world.any_continuous = true;
+  if (with.continuous_speed > 0 && !world.any.continuous) {
+    world.any.continuous = true;
     world.bodies.keep_before();
     rely_on_origins();
   }
@@ -54,7 +54,7 @@ Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const Bod
   world.bodies.parts_changed(id.index);
   body.since = world.answered + 1;
   body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
-  if (!world.any_continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
+  if (!world.any.continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
   changed(body);
   body.moved = -1;
   return body;
@@ -82,7 +82,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
     s.add(id, parts, options);
     if (s.world.kept_states) s.world.kept_states->put(id.index, s.world.time_of_last_step(), {});
     if (s.sampler.watches()) s.sampler.monitor().begin(id.index);
-    s.world.halves.update_again(id.index);
+    s.world.half_space_times.update_again(id.index);
     return id;
   });
 }
@@ -107,9 +107,9 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
     body.moved = s.world.answered + 1;
     s.world.bodies.state(id.index).pose = pose;
     s.world.bodies.moved(id.index, pose);
-    s.world.halves.forget(id.index);
+    s.world.half_space_times.forget(id.index);
     if (s.broad.move_static(id, s.place_of(body))) {
-      s.world.any_static = true;
+      s.world.any.static_body = true;
       s.part_pairs.static_changed(id.index);
       return id;
     }
@@ -130,7 +130,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   return s.or_fail([&] {
     const BodyIndex index = s.world.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
     s.world.halves.body(index).moved = s.world.answered + 1;
-    s.world.halves.update_all(s.world.bodies.slots());
+    s.world.half_space_times.update_all(s.world.bodies.slots());
     ++s.world.body_count;
     ++s.world.changes;
     return s.world.halves.body(index).id;
@@ -159,7 +159,7 @@ bool Detector::remove(BodyId body) {
   s.part_pairs.gone(s.world.bodies[body.index]);
   s.world.bodies.leave(body.index);
   return s.or_fail([&] {
-    s.world.halves.forget(body.index);
+    s.world.half_space_times.forget(body.index);
     return s.broad.remove(body);
   });
 }
@@ -177,7 +177,7 @@ bool Detector::teleport(BodyId body) {
   found->frozen = false;
   found->asked = found->known_before = detail::kNotAsked;
   ++found->jumps;
-  state_->world.any_jumped = true;
+  state_->world.any.jump = true;
   state_->sampler.monitor().forget(body.index);
   state_->cancel(*found);
   return true;
@@ -218,7 +218,7 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
     found->reach = reach_before, found->middle_reach = middle_before;
     return false;
   }
-  if (s.world.any_continuous) {
+  if (s.world.any.continuous) {
     found->parts_before.resize(found->parts.size());
     detail::PartBefore& before = found->parts_before[part];
     if (before.until != s.world.answered) before = {record, s.world.answered};
@@ -246,7 +246,7 @@ bool Detector::set_filter(BodyId body, const BodyFilter& filter) {
   if (found == nullptr) return false;
   found->set_filter(filter);
   ++found->filters;
-  state_->world.any_filters = true;
+  state_->world.any.own_filter = true;
   if (is_half_space(body.index)) return true;
   return state_->or_fail([&] { return state_->broad.set_filter(body, detail::PartPairs::broad_filter(*found)); });
 }

@@ -107,10 +107,10 @@ std::size_t Detector::memory_bytes() const noexcept {
   const State& s = *state_;
   const detail::World& world = s.world;
   return sizeof(State) + (world.kept_states ? world.kept_states->memory_bytes() : 0) + world.shapes.memory_bytes() +
-         world.bodies.memory_bytes() + world.halves.memory_bytes() + s.broad.memory_bytes() + s.sampler.memory_bytes() +
-         s.part_pairs.memory_bytes() + s.matcher.memory_bytes() + s.skipper.memory_bytes() +
-         s.scheduler.memory_bytes() + s.reporter.memory_bytes() + s.queries.memory_bytes() + detail::bytes_of(s.open) +
-         detail::bytes_of(s.marks);
+         world.bodies.memory_bytes() + world.halves.memory_bytes() + world.half_space_times.memory_bytes() +
+         s.broad.memory_bytes() + s.sampler.memory_bytes() + s.part_pairs.memory_bytes() + s.matcher.memory_bytes() +
+         s.skipper.memory_bytes() + s.scheduler.memory_bytes() + s.reporter.memory_bytes() + s.queries.memory_bytes() +
+         detail::bytes_of(s.open.pairs, s.open.marks);
 }
 
 }  // namespace orchard::runtime

@@ -36,25 +36,12 @@ struct Detector::State {
   detail::Body& add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
   detail::Body* find(BodyId body) noexcept;  // to change it; null if it cannot be changed now
   void cancel(detail::Body& body);           // its bounds do not hold any more
-  void rely_on_origins();
   void changed(detail::Body& body) noexcept { body.moved = world.answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
   void keep_state(const detail::Body& body, BodyState state);
 
   // detector_step.cpp: a step from its beginning to its end
   void run(double time, const Budget& budget, const StepOptions& with, Frame& frame);
-  void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
-  Advance advance(Step stop, detail::StepBudget& share);
-  void leave_out_before(Step end, Frame& frame);
-  double next_time(bool steps_left) const noexcept;
-
-  // answer_step.cpp: the pairs of a step, matched, answered and reported
-  void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
-  void answer_within(const detail::ActivePairs& active, Step step, const detail::StepBudget::Stopwatch& watch,
-                     detail::StepBudget& budget, Frame& frame);
-  std::uint64_t answer_one_by_one(const detail::ActivePairs& active, Step step);
-  void open_pairs(const detail::ActivePairs& active, Step step);
-  void ask_filter(const detail::ActivePairs& active);
 
   Manifold manifold(const PairEvent& event, const ContactOptions& with) noexcept;  // manifold.cpp
 
@@ -68,12 +55,32 @@ struct Detector::State {
   detail::EventReporter reporter;
   detail::LoadModel load_model;
   detail::WorldQueries queries;
-  bool valid;                       // the options are
-  bool stepping = false;            // step() is under way, from within which the application's functions are called
-  bool failed = false;              // out of memory
-  bool interrupted = false;         // the broad phase, at the step before
-  std::vector<std::uint32_t> open;  // pairs to be asked about, of the step under way
-  std::vector<std::uint8_t> marks;  // of active pairs, while `open` is made
+  bool valid;                          // the options are
+  bool stepping = false;               // step() is under way, from within which the application's functions are called
+  bool failed = false;                 // out of memory
+  bool interrupted = false;            // the broad phase, at the step before
+  struct Open {                        // of the step under way
+    std::vector<std::uint32_t> pairs;  // to be asked about
+    std::vector<std::uint8_t> marks;   // of active pairs, while `pairs` is made
+  };
+  Open open;
+
+ private:
+  void rely_on_origins();  // change_bodies.cpp
+
+  // detector_step.cpp
+  void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
+  Advance advance(Step stop, detail::StepBudget& share);
+  void leave_out_before(Step end, Frame& frame);
+  double next_time(bool steps_left) const noexcept;
+
+  // answer_step.cpp: the pairs of a step, matched, answered and reported
+  void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
+  void answer_within(const detail::ActivePairs& active, Step step, const detail::StepBudget::Stopwatch& watch,
+                     detail::StepBudget& budget, Frame& frame);
+  std::uint64_t answer_one_by_one(const detail::ActivePairs& active, Step step);
+  void open_pairs(const detail::ActivePairs& active, Step step);
+  void ask_filter(const detail::ActivePairs& active);
 };
 
 }  // namespace orchard::runtime

@@ -63,11 +63,12 @@ void Detector::State::run(double time, const Budget& given, const StepOptions& w
   frame.work = budget.spent();
   frame.time = world.time_of_last_step();
   frame.next_time = next_time(frame.steps_left > 0);
-  frame.events = reporter.events(), frame.refused = sampler.refused(), frame.broken = sampler.broken();
+  const detail::StateSampler::Faults faults = sampler.faults();
+  frame.events = reporter.events(), frame.refused = faults.refused, frame.broken = faults.broken;
 }
 
 double Detector::State::next_time(bool steps_left) const noexcept {
-  const Step answered = world.answered, next = matcher.idle() ? world.halves.next() : answered + 1;
+  const Step answered = world.answered, next = matcher.idle() ? world.half_space_times.next() : answered + 1;
   if (sampler.watches() || steps_left) return world.clock.time(answered + 1);
   return std::min(broad.next_time(), next >= kNeverStep - 1 ? std::numeric_limits<double>::infinity()
                                                             : world.clock.time(std::max(next, answered + 1)));
@@ -89,7 +90,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     // is found by parts.
     const Step following = world.answered + 1;
     const bool under_way = !matcher.idle();
-    const Step stop = std::min(last, under_way ? following : std::max(following, world.halves.next()));
+    const Step stop = std::min(last, under_way ? following : std::max(following, world.half_space_times.next()));
     StepsAhead next;
     broad.predict_load(clock.time(world.answered), {&next, 1});
     matcher.expect(static_cast<double>(next.meetings));
@@ -100,7 +101,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     frame.left_over += now.left_over;
     const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
-    if (found || under_way || world.halves.next() <= step) answer(step, now, share, frame);
+    if (found || under_way || world.half_space_times.next() <= step) answer(step, now, share, frame);
     interrupted = now.incomplete_from != kNoClass;
     budget.spend(share.spent());
     frame.cut = share.cut();

@@ -42,11 +42,11 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
   if (!plane.alive) return false;
   plane.alive = false;
   plane.body.id = kNoBody;
-  if (--alive_ == 0) next_ = kNeverStep;
+  --alive_;
   return true;
 }
 
-void HalfSpaces::make_room(std::size_t bodies) {
+void HalfSpaceTimes::make_room(std::size_t bodies) {
   grow(due_, bodies);
   grow(bounds_, due_.size());
   while (moving_places_.size() < due_.size()) append(moving_places_, kNoIndex);
@@ -54,7 +54,7 @@ void HalfSpaces::make_room(std::size_t bodies) {
 }
 
 // Most bodies may be static: they cost a step nothing.
-void HalfSpaces::set_due(BodyIndex body, Step due) {
+void HalfSpaceTimes::set_due(BodyIndex body, Step due) {
   due_[body] = due;
   std::uint32_t& place = moving_places_[body];
   const bool moves = due != kNeverStep;
@@ -70,34 +70,34 @@ void HalfSpaces::set_due(BodyIndex body, Step due) {
   }
 }
 
-void HalfSpaces::update_again(BodyIndex body) {
+void HalfSpaceTimes::update_again(BodyIndex body) {
   make_room(std::size_t{body} + 1);
   set_due(body, 0);
-  if (alive_ > 0) next_ = 0;
+  if (halves_.size() > 0) next_ = 0;
 }
 
-void HalfSpaces::update_all(std::size_t bodies) {
+void HalfSpaceTimes::update_all(std::size_t bodies) {
   make_room(bodies);
   for (const BodyIndex body : moving_) due_[body] = 0;
   next_ = 0;
 }
 
-void HalfSpaces::forget(BodyIndex body) {
+void HalfSpaceTimes::forget(BodyIndex body) {
   make_room(std::size_t{body} + 1);
   set_due(body, kNeverStep);
 }
 
-void HalfSpaces::due(Step now, std::vector<BodyIndex>& bodies) const {
-  if (alive_ == 0 || next_ > now) return;
+void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) const {
+  if (halves_.size() == 0 || next_ > now) return;
   for (const BodyIndex body : moving_) {
     if (due_[body] <= now) bodies.push_back(body);
   }
   if (!std::is_sorted(bodies.begin(), bodies.end())) std::sort(bodies.begin(), bodies.end());
 }
 
-void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
-                                std::span<const Motion> motions, double time_step, double slack,
-                                std::vector<BodyPair>& pairs) {
+void HalfSpaceTimes::update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies,
+                                    const BodyTable& table, std::span<const Motion> motions, double time_step,
+                                    double slack, std::vector<BodyPair>& pairs) {
   slack_ = slack;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const BodyIndex body = bodies[k];
@@ -110,14 +110,13 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
     }
     double seconds = std::numeric_limits<double>::infinity();
     bool meets = false;
-    for (std::size_t i = 0; i < planes_.size(); ++i) {
-      if (!planes_[i].alive) continue;
-      const double height = height_over(planes_[i].half, motion);
-      seconds = std::min(seconds, seconds_above(planes_[i].half, motion, height));
-      if (height > 0) continue;
+    halves_.each([&](const Body& of, const HalfSpace& half) {
+      const double height = height_over(half, motion);
+      seconds = std::min(seconds, seconds_above(half, motion, height));
+      if (height > 0) return;
       meets = true;
-      pairs.push_back({body, static_cast<BodyIndex>(kFirstHalfSpace + i)});
-    }
+      pairs.push_back({body, of.id.index});
+    });
     const bool rests = table[body].frozen;
     const Step last = rests ? kNeverStep : clock.last_before_expiry(motion.expiry);
     const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
@@ -129,15 +128,13 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
   for (const BodyIndex body : moving_) next_ = std::min(next_, due_[body]);
 }
 
-bool HalfSpaces::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {
-  if (alive_ == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
+bool HalfSpaceTimes::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {
+  if (halves_.size() == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
   const MotionBound& bound = bounds_[body];
   return keeps_motion_bound(bound.motion, bound.time, time, now.position, nullptr, slack_) &&
          now.radius <= bound.motion.radius;
 }
 
-std::size_t HalfSpaces::memory_bytes() const noexcept {
-  return bytes_of(planes_, due_, bounds_, moving_, moving_places_);
-}
+std::size_t HalfSpaceTimes::memory_bytes() const noexcept { return bytes_of(due_, bounds_, moving_, moving_places_); }
 
 }  // namespace orchard::runtime::detail

@@ -3,8 +3,7 @@
 
 namespace orchard::runtime::detail {
 
-// When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
-// updated again. One number per body, whatever the number of half-spaces: they are few.
+// The half-spaces of a world: few, and static.
 class HalfSpaces {
  public:
   BodyIndex add(const HalfSpace& half, const Body& with);  // its BodyIndex; BodyId::generation is 1
@@ -23,11 +22,29 @@ class HalfSpaces {
       if (plane.alive) visit(plane.body, plane.half);
     }
   }
+  std::size_t memory_bytes() const noexcept { return bytes_of(planes_); }
 
-  void update_again(BodyIndex body);            // at the next step: it is new, or its bounds do not hold any more
-  void update_all(std::size_t bodies);          // a half-space is new
-  void forget(BodyIndex body);                  // it is gone, or does not move
-  Step next() const noexcept { return next_; }  // at which any body is due
+ private:
+  struct Plane {
+    HalfSpace half;
+    Body body;
+    bool alive = false;
+  };
+  std::vector<Plane> planes_;
+  std::size_t alive_ = 0;
+};
+
+// When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
+// updated again. One number per body, whatever the number of half-spaces: they are few.
+class HalfSpaceTimes {
+ public:
+  explicit HalfSpaceTimes(const HalfSpaces& halves) noexcept : halves_(halves) {}
+
+  void update_again(BodyIndex body);    // at the next step: it is new, or its bounds do not hold any more
+  void update_all(std::size_t bodies);  // a half-space is new
+  void forget(BodyIndex body);          // it is gone, or does not move
+  // At which any body is due.
+  Step next() const noexcept { return halves_.size() > 0 ? next_ : kNeverStep; }
 
   // The bodies due at `now` or before, in ascending order.
   void due(Step now, std::vector<BodyIndex>& bodies) const;
@@ -42,11 +59,6 @@ class HalfSpaces {
   std::size_t memory_bytes() const noexcept;
 
  private:
-  struct Plane {
-    HalfSpace half;
-    Body body;
-    bool alive = false;
-  };
   struct MotionBound {
     double time = 0;
     Motion motion;
@@ -54,12 +66,11 @@ class HalfSpaces {
   };
   void make_room(std::size_t bodies);
   void set_due(BodyIndex body, Step due);
-  std::vector<Plane> planes_;
+  const HalfSpaces& halves_;
   std::vector<Step> due_;                     // by body
   std::vector<BodyIndex> moving_;             // bodies that are due at some step,
   std::vector<std::uint32_t> moving_places_;  // and by body where in there, or kNoIndex
   std::vector<MotionBound> bounds_;           // by body
-  std::size_t alive_ = 0;
   double slack_ = 0;
   Step next_ = kNeverStep;
 };

@@ -13,13 +13,13 @@ void PairMatcher::gather(Step step, const Advance& now) {
 
 void PairMatcher::gather_half_spaces(Step step) {
   due_.clear();
-  world_.halves.due(step, due_);
+  world_.half_space_times.due(step, due_);
   if (due_.empty()) return;
   sampler_.sample(step, due_);
   due_motions_.clear();
   for (const BodyIndex body : due_) due_motions_.push_back(sampler_.given_motion(body, world_.clock.time(step)));
-  world_.halves.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
-                               world_.options.position_slack, pairs_.with_planes);
+  world_.half_space_times.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
+                                         world_.options.position_slack, pairs_.with_planes);
 }
 
 void PairMatcher::gather_left_out(Step step, const Advance& now) {
@@ -44,9 +44,9 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
   pair.bodies = known.pair;
   const Body &a = world_.places.body(known.pair.a), &b = world_.places.body(known.pair.b);
   pair.a = a.id, pair.b = b.id;
-  pair.filter_version = world_.filter_version - 1;
-  pair.jumps = a.jumps + b.jumps;
-  pair.deformed = a.deformed + b.deformed;
+  pair.versions.pair_filter = world_.filter_version - 1;
+  pair.versions.jumps = a.jumps + b.jumps;
+  pair.versions.deformed = a.deformed + b.deformed;
   if (!a.one || !b.one) return pair;
   const Shape &of_a = world_.shapes[a.shape], &of_b = world_.shapes[b.shape];
   pair.coherent = of_a.has_tree() && of_b.has_tree();
@@ -56,13 +56,14 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
 
 bool PairMatcher::allowed(CachedPair& pair) const {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  if (pair.filter_version == world_.filter_version && pair.filters_a == a.filters && pair.filters_b == b.filters) {
-    return pair.allowed;
+  if (pair.versions.pair_filter == world_.filter_version && pair.versions.filter_a == a.filters &&
+      pair.versions.filter_b == b.filters) {
+    return pair.versions.allowed;
   }
-  pair.filter_version = world_.filter_version;
-  pair.filters_a = a.filters, pair.filters_b = b.filters;
-  pair.allowed = filters_allow(a, b) && (!world_.filter || world_.filter(pair.a, pair.b));
-  return pair.allowed;
+  pair.versions.pair_filter = world_.filter_version;
+  pair.versions.filter_a = a.filters, pair.versions.filter_b = b.filters;
+  pair.versions.allowed = filters_allow(a, b) && (!world_.filter || world_.filter(pair.a, pair.b));
+  return pair.versions.allowed;
 }
 
 }  // namespace orchard::runtime::detail

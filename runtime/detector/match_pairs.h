@@ -32,7 +32,7 @@ class PairMatcher {
   bool allowed(CachedPair& pair) const;
   bool is_there(const CachedPair& pair) const noexcept { return world_.contains(pair.a) && world_.contains(pair.b); }
   bool has_jumped(const CachedPair& pair) const noexcept {
-    return pair.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
+    return pair.versions.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
   }
   std::size_t memory_bytes() const noexcept {
     return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_, due_motions_);

@@ -15,27 +15,39 @@ namespace orchard::runtime::detail {
 struct CachedPair {
   BodyPair bodies{};
   BodyId a, b;
-  std::uint32_t filters_a = 0, filters_b = 0, filter_version = 0;  // of when it was allowed, or not
-  std::uint32_t jumps = 0;                                         // teleports of both, so far
-  std::uint32_t deformed = 0;                                      // and changes of their shapes
-  std::uint32_t separated_steps = 0;                               // certain ones in a row, while touching
-  std::uint32_t waited = 0;                                        // steps without a certain answer
-  bool allowed = false;
+  struct Versions {  // of what it depends on, as seen last
+    std::uint32_t filter_a = 0, filter_b = 0, pair_filter = 0;
+    std::uint32_t jumps = 0;     // teleports of both bodies
+    std::uint32_t deformed = 0;  // and changes of their shapes
+    bool allowed = false;        // by these filters
+  };
+  Versions versions;
+  struct Turn {                // within a budget
+    std::uint32_t waited = 0;  // steps without a certain answer
+    std::uint8_t importance = 0;
+    std::uint8_t roots_wait = 0;  // steps for which the roots are not asked by themselves
+  };
+  Turn turn;
+  std::uint32_t separated_steps = 0;  // certain ones in a row, while touching
   bool touching = false;
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
-  bool met = false;       // of several parts, part_a and part_b have met, and are trees: `trees` knows where
-  bool impact = false;
-  bool swept = false;   // at the step before both poses were known: a sweep may start there
-  bool unseen = false;  // there is no pose of the previous step, so no sweep is possible
-  std::uint8_t importance = 0;
-  std::uint8_t roots_wait = 0;  // steps within a budget for which the roots are not asked by themselves
-  Step answered = -1;           // the step of `verdict`, if that is certain
-  std::uint32_t part_a = 0, part_b = 0;
+  bool met = false;       // of several parts, these have met, and are trees: `trees` knows where
+  struct Sweep {
+    bool possible = false;  // at the step before both poses were known
+    bool unseen = false;    // there is no pose of the previous step, so no sweep is possible
+    bool impact = false;    // found one, from here to there in the step
+    double impact_from = 0, impact_to = 0;
+  };
+  Sweep sweep;
+  Step answered = -1;  // the step of `verdict`, if that is certain
+  std::array<std::uint32_t, 2> parts{};
   Verdict verdict;
-  Vec3 apart_by{};     // from centre to centre,
-  Step apart_at = -1;  // at that step
-  Vec3 along{};        // of the answer of the step under way, if that is "no": Clearance::along
-  double impact_from = 0, impact_to = 0;
+  struct Apart {
+    Vec3 by{};     // from centre to centre,
+    Step at = -1;  // at that step
+    Vec3 along{};  // of the answer of the step under way, if that is "no": Clearance::along
+  };
+  Apart apart;
   TreePair trees;
 };
 

@@ -21,7 +21,7 @@ void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::
     scratches_[i]->workspace.distance.bind(deepest_, deepest_);
     if (!sweeps_) continue;
     Workspace::Scratch* const scratch = scratches_[i]->workspace.scratch();
-    if (scratch != nullptr) scratch->reserve_timed(deepest_, deepest_);
+    if (scratch != nullptr) scratch->timed.reserve(deepest_.tree, deepest_.tree);
   }
   for (std::size_t i = 0; more && i < pool_.size(); ++i) pool_[i]->bind(deepest_, deepest_);
 }

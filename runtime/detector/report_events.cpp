@@ -22,16 +22,16 @@ void EventReporter::describe(const CachedPair& pair, Step step, PairChange chang
   const Clock& clock = world_.clock;
   event.change = change;
   event.a = pair.a, event.b = pair.b;
-  event.part_a = pair.part_a, event.part_b = pair.part_b;
+  event.part_a = pair.parts[0], event.part_b = pair.parts[1];
   event.time = clock.time(step);
   event.verdict = pair.verdict;
   const auto at = [&](double share) { return clock.time(step) + (share - 1) * clock.time_step; };
-  event.impact_from = pair.impact ? at(pair.impact_from) : kNone;
-  event.impact_to = pair.impact ? at(pair.impact_to) : kNone;
+  event.impact_from = pair.sweep.impact ? at(pair.sweep.impact_from) : kNone;
+  event.impact_to = pair.sweep.impact ? at(pair.sweep.impact_to) : kNone;
 }
 
 bool EventReporter::part(CachedPair& pair, bool there, bool jumped, Step step) {
-  pair.impact = false;
+  pair.sweep.impact = false;
   pair.answered = -1;
   pair.verdict = nothing_known(there ? Answer::no : Answer::maybe);
   if (there && !jumped && pair.touching && ++pair.separated_steps < world_.options.steps_to_end) {
@@ -44,7 +44,7 @@ bool EventReporter::part(CachedPair& pair, bool there, bool jumped, Step step) {
 
 void EventReporter::end_by_teleport(CachedPair& pair, Step step) {
   pair.verdict = nothing_known(Answer::maybe);
-  pair.impact = false;
+  pair.sweep.impact = false;
   describe(pair, step, PairChange::end, ended_.emplace_back());
   pair.touching = false;
 }
@@ -58,14 +58,14 @@ void EventReporter::begin_jobs(const ActivePairs& active, std::size_t jobs) {
 // What the answer makes of the pair, and which event that is.
 EventReporter::Outcome EventReporter::begin_or_end(CachedPair& pair) const noexcept {
   const Answer answer = pair.verdict.answer;
-  if (!pair.allowed) {
+  if (!pair.versions.allowed) {
     if (!pair.touching) return Outcome::nothing;
-    pair.touching = pair.impact = false;
+    pair.touching = pair.sweep.impact = false;
     pair.verdict = Verdict{};
     pair.answered = -1;
     return Outcome::end;
   }
-  pair.waited = answer == Answer::maybe ? pair.waited + 1 : 0;
+  pair.turn.waited = answer == Answer::maybe ? pair.turn.waited + 1 : 0;
   if (answer == Answer::yes) {
     pair.separated_steps = 0;
     const bool before = pair.touching;
@@ -83,14 +83,14 @@ EventReporter::Outcome EventReporter::begin_or_end(CachedPair& pair) const noexc
 void EventReporter::conclude(const ActivePairs& active, std::size_t i, Tally& tally) noexcept {
   CachedPair& pair = active.cached(i);
   // Of what is not allowed it is certain that nothing is asked.
-  const bool maybe = pair.allowed && pair.verdict.answer == Answer::maybe;
+  const bool maybe = pair.versions.allowed && pair.verdict.answer == Answer::maybe;
   tally.certain += !maybe;
   if (maybe) tally.worst_bound = std::max(tally.worst_bound, pair.verdict.separation_bound);
   outcomes_[i] = begin_or_end(pair);
   tally.events += outcomes_[i] != Outcome::nothing;
-  active.tell(i, pair.touching || pair.waited > 0);
-  if (pair.allowed) skipper_.keep_clearance(active.known(i), pair);
-  pair.along = {};
+  active.tell(i, pair.touching || pair.turn.waited > 0);
+  if (pair.versions.allowed) skipper_.keep_clearance(active.known(i), pair);
+  pair.apart.along = {};
 }
 
 void EventReporter::conclude_all(const ActivePairs& active) {

@@ -112,9 +112,9 @@ bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
 bool StateSampler::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
   const BodyIndex index = body.id.index;
   const Clock& clock = world_.clock;
-  const bool by_middle = body.has_middle() && world_.halves.relies_on_middle(index);
+  const bool by_middle = body.has_middle() && world_.half_space_times.relies_on_middle(index);
   const Motion of_half_spaces = world_.bodies.motion_of(index, clock.time_step, by_middle);
-  if (!world_.halves.motion_bound_kept(index, clock.time(step), of_half_spaces)) return false;
+  if (!world_.half_space_times.motion_bound_kept(index, clock.time(step), of_half_spaces)) return false;
   if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
   if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
   const Vec3 way = motion.position - Vec3(body.before.translation);
@@ -125,14 +125,14 @@ void StateSampler::cancel(Body& body) {
   if (is_half_space(body.id.index)) return;
   body.told_radius = -1;
   if (watches_) monitor_.cancelled(body.id.index);
-  if (!body.is_static) world_.halves.update_again(body.id.index);
+  if (!body.is_static) world_.half_space_times.update_again(body.id.index);
   broad_.cancel(body.id);
 }
 
-std::span<const BodyIndex> StateSampler::refused() {
+StateSampler::Faults StateSampler::faults() {
   std::sort(refused_.begin(), refused_.end());
   refused_.erase(std::unique(refused_.begin(), refused_.end()), refused_.end());
-  return refused_;
+  return {refused_, broken_};
 }
 
 std::size_t StateSampler::memory_bytes() const noexcept {

@@ -31,9 +31,11 @@ class StateSampler {
   void cancel(Body& body);  // its bounds do not hold any more
   void refuse(std::span<const BodyIndex> bodies) { append_all(refused_, bodies); }
   MotionMonitor& monitor() noexcept { return monitor_; }
-  const MotionMonitor& monitor() const noexcept { return monitor_; }
-  std::span<const BodyIndex> refused();  // since begin_call(), in ascending order
-  std::span<const BodyIndex> broken() const noexcept { return broken_; }
+  struct Faults {
+    std::span<const BodyIndex> refused;  // in ascending order
+    std::span<const BodyIndex> broken;   // motion bounds
+  };
+  Faults faults();  // since begin_call()
   std::size_t memory_bytes() const noexcept;
 
  private:

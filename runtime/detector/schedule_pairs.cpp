@@ -8,7 +8,7 @@ void PairScheduler::prepare() {
   const Executor& executor = world_.options.executor;
   queries_.prepare(world_.shapes, world_.shapes.size(),
                    executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * 4,
-                   world_.any_continuous);
+                   world_.any.continuous);
 }
 
 // The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
@@ -33,14 +33,14 @@ std::uint64_t PairScheduler::answer_all(PairCache& records, std::span<const std:
 }
 
 bool PairScheduler::sweeps(const PairCache& records, std::span<const std::uint32_t> open) noexcept {
-  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].swept; });
+  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].sweep.possible; });
 }
 
 void PairScheduler::sweep_all(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget) {
   sweeps_.clear();
   for (const std::uint32_t index : open) {
-    if (records[index].swept) sweeps_.push_back(index);
-    if (records[index].unseen) leave_open(records[index]);
+    if (records[index].sweep.possible) sweeps_.push_back(index);
+    if (records[index].sweep.unseen) leave_open(records[index]);
   }
   if (sweeps_.empty()) return;
   std::size_t done = 0;

@@ -63,8 +63,8 @@ void PairScheduler::sort_tasks(const PairCache& records) {
     if (!tasks_[i].done) schedule_.push_back(i);
   }
   sort_by(schedule_, sorted_,
-          [&](std::uint32_t task) { return 255 - std::min(records[tasks_[task].record].waited, 255u); });
-  sort_by(schedule_, sorted_, [&](std::uint32_t task) { return records[tasks_[task].record].importance; });
+          [&](std::uint32_t task) { return 255 - std::min(records[tasks_[task].record].turn.waited, 255u); });
+  sort_by(schedule_, sorted_, [&](std::uint32_t task) { return records[tasks_[task].record].turn.importance; });
 }
 
 // What can be told without a search.
@@ -81,8 +81,8 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, QueryPool::Scratch
   task.work = kPairWork;
   const bool remembers = task.slow && CoherentPair::remembers(record.trees);
   // Of bodies of several parts, whose tasks may run at once, all have their roots asked.
-  if (record.coherent && !remembers && record.roots_wait > 0) {
-    --record.roots_wait;
+  if (record.coherent && !remembers && record.turn.roots_wait > 0) {
+    --record.turn.roots_wait;
     return;
   }
   answerer_.place(record, task.part_a, task.part_b, pair);
@@ -91,11 +91,11 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, QueryPool::Scratch
     task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
-    narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     narrow.start(pair.a.pose(), pair.b.pose());
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
-    if (record.coherent) record.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
+    if (record.coherent) record.turn.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
   }
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
   task.verdict.work = task.work;
@@ -111,7 +111,7 @@ void PairScheduler::decide(Task& task, CachedPair& record, std::uint64_t most,
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
   } else {
-    narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
   }
   task.work = verdict.work;
@@ -203,14 +203,14 @@ void PairScheduler::refine_one(Task& task, const CachedPair& record, std::uint64
   answerer_.place(record, task.part_a, task.part_b, pair);
   PairQuery& query = *task.query;
   if (!task.started) {
-    query.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+    query.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     query.start(pair.a.pose(), pair.b.pose());
     task.started = true;
   }
   const double bound = task.verdict.separation_bound;
-  const std::uint64_t before = query.work();
+  const std::uint64_t before = query.known().work;
   query.refine_exactly({slice, time});
-  task.work = query.work() - before;
+  task.work = query.known().work - before;
   task.done = query.finished();
   task.verdict = verdict_of(query, pair);
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
@@ -259,7 +259,7 @@ void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32
 }
 
 void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
-  const auto importance = [&](std::size_t i) { return records[tasks_[schedule_[i]].record].importance; };
+  const auto importance = [&](std::size_t i) { return records[tasks_[schedule_[i]].record].turn.importance; };
   for (std::size_t begin = 0; begin < schedule_.size();) {
     std::size_t end = begin;
     while (end < schedule_.size() && importance(end) == importance(begin)) ++end;

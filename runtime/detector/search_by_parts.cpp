@@ -58,7 +58,7 @@ void PartPairs::find(Step step, const PairCache& before, std::vector<BodyPair>& 
     }
   }
   if (!std::is_sorted(found.begin(), found.end())) std::sort(found.begin(), found.end());
-  if (!world_.any_filters && !world_.filter) return;
+  if (!world_.any.own_filter && !world_.filter) return;
   std::erase_if(found, [this](const BodyPair& pair) { return world_.filters_exclude(pair); });
 }
 
@@ -82,7 +82,7 @@ void PartPairs::search(BodyIndex index, bool wanted) {
 
 void PartPairs::choose(Step step, const PairCache& pairs) {
   const BodyTable& bodies = world_.bodies;
-  if (!bodies.any_parts() || !world_.any_static || world_.any_continuous || step < choose_at_) return;
+  if (!bodies.any_parts() || !world_.any.static_body || world_.any.continuous || step < choose_at_) return;
   choose_at_ = step + kSteps;
   to_change_.clear();
   for (const BodyIndex index : bodies_) {

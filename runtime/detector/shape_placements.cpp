@@ -121,7 +121,7 @@ Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& w
     return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose(), pair.half)
                                    : test_simple(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), guess);
   }
-  narrow.bind_where(pair.a.shape->prepared, pair.b.shape->prepared);
+  narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
   narrow.start(pair.a.pose(), pair.b.pose());
   const bool limited = most != std::numeric_limits<std::uint64_t>::max();
   work += kPairWork;
@@ -130,7 +130,7 @@ Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& w
   } else if (work < most) {
     narrow.refine_exactly({.work = most - work});
   }
-  work += narrow.work();
+  work += narrow.known().work;
   return verdict_of(narrow, pair);
 }
 

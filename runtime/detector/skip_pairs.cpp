@@ -144,29 +144,30 @@ ActivePairs PairSkipper::find_active(PairCache& cache) {
 // Neither has moved since the last certain answer.
 bool PairSkipper::rest(const CachedPair& pair) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  return pair.answered >= 0 && std::max(a.moved, b.moved) <= pair.answered && !pair.impact;
+  return pair.answered >= 0 && std::max(a.moved, b.moved) <= pair.answered && !pair.sweep.impact;
 }
 
 bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted, bool& over) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  pair.importance = std::max(a.importance, b.importance);
-  if (!pair.allowed) return false;
+  pair.turn.importance = std::max(a.importance, b.importance);
+  if (!pair.versions.allowed) return false;
   const bool continuous = a.continuous_speed > 0 || b.continuous_speed > 0;
   const std::uint32_t jumps = a.jumps + b.jumps;
   const auto known_before = [&](const Body& body) {
     return body.is_static || (body.frozen && body.asked < step) || body.known_before == step - 1;
   };
-  pair.swept = continuous && pair.jumps == jumps && known_before(a) && known_before(b);
+  pair.sweep.possible = continuous && pair.versions.jumps == jumps && known_before(a) && known_before(b);
   // As spheres reach as far as a step leads, a body that was not sampled at the step before had nothing near it then:
   // unless the broad phase was interrupted, or the body's parts go farther now. Nothing was between it and a new body.
   const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
   const bool both_before = std::max(a.since, b.since) < step;
-  pair.unseen = continuous && pair.jumps == jumps && !pair.swept && sphere_fell_short && both_before;
-  over = pair.jumps != jumps && pair.touching;
+  pair.sweep.unseen =
+      continuous && pair.versions.jumps == jumps && !pair.sweep.possible && sphere_fell_short && both_before;
+  over = pair.versions.jumps != jumps && pair.touching;
   if (over) pair.answered = -1;
-  pair.jumps = jumps;
-  if (pair.deformed != a.deformed + b.deformed) {
-    pair.deformed = a.deformed + b.deformed;
+  pair.versions.jumps = jumps;
+  if (pair.versions.deformed != a.deformed + b.deformed) {
+    pair.versions.deformed = a.deformed + b.deformed;
     pair.trees.forget();
   }
   return !rest(pair);
@@ -189,8 +190,8 @@ void PairSkipper::keep_clearance(PairCache::Known& known, const CachedPair& pair
   const double reach = is_half_space(known.pair.b) ? std::numeric_limits<double>::infinity()
                                                    : world_.bodies.sphere_cache(known.pair.a).sphere.reach +
                                                          world_.bodies.sphere_cache(known.pair.b).sphere.reach;
-  if (dot(pair.along, pair.along) > 0 && std::isfinite(reach)) {
-    kept.along = rounded(pair.along);
+  if (dot(pair.apart.along, pair.apart.along) > 0 && std::isfinite(reach)) {
+    kept.along = rounded(pair.apart.along);
     distance -= kRoundedToFloat * (way + reach);  // no two of their points are farther from each other
   }
   kept.distance = distance > 0 ? distance : 0;

@@ -7,8 +7,8 @@
 
 namespace orchard::runtime::detail {
 
-// What is left of a step's budget.
-class StepBudget {
+// What is left of the work and the time of a step.
+class WorkLeft {
  public:
   using Clock = std::chrono::steady_clock;
   // Looks at the clock only if it `runs`.
@@ -23,15 +23,12 @@ class StepBudget {
     bool runs_;
     Clock::time_point begin_;
   };
-  StepBudget(const Budget& budget, const StepCut* replay) noexcept
-      : left_(budget.work), limited_(budget.work != Budget{}.work), replay_(replay) {
-    if (replay_ != nullptr) return;
+  explicit WorkLeft(const Budget& budget) noexcept : left_(budget.work), limited_(budget.work != Budget{}.work) {
     if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
       timed_ = true;
       deadline_ = Clock::now() + budget.time;
     }
   }
-  bool limited() const noexcept { return limited_ || timed_ || replay_ != nullptr; }
   bool limited_in_work() const noexcept { return limited_; }
   std::uint64_t left() const noexcept { return left_; }
   void spend(std::uint64_t work) noexcept {
@@ -46,31 +43,6 @@ class StepBudget {
     return timed_ ? std::max(std::chrono::nanoseconds(0), std::chrono::nanoseconds(deadline_ - Clock::now()))
                   : Budget{}.time;
   }
-  // One of `among` equal shares of what is left, this one first.
-  StepBudget share(std::uint64_t among) const noexcept {
-    Budget part;
-    if (limited_) part.work = left_ / among + (left_ % among != 0 ? 1 : 0);
-    if (timed_) part.time = time_left() / static_cast<std::int64_t>(among);
-    return {part, replay_};
-  }
-
-  // Where the step is cut short: as the clock says, or as another run's clock said. For one thread.
-  const StepCut* replay() const noexcept { return replay_; }
-  const StepCut& cut() const noexcept { return cut_; }
-  bool may_go_on() noexcept { return left_ > 0 && reaches(&StepCut::begun, begun_); }  // with beginning
-  bool may_begin() noexcept {
-    const bool may = reaches(&StepCut::begun, begun_);
-    begun_ += may ? 1 : 0;
-    return may;
-  }
-  bool may_refine() noexcept { return left_ > 0 && reaches(&StepCut::refined, refined_); }
-  bool may_sweep(std::uint64_t pair) noexcept { return left_ > 0 && reaches(&StepCut::swept, pair); }
-  std::uint64_t piece(std::uint64_t slice) const noexcept {
-    return replay_ == nullptr ? slice : std::min(slice, replay_->refined - refined_ - 1);
-  }
-  void refined(std::uint64_t work) noexcept { refined_ += work + 1; }
-  void cut_broad(std::uint64_t work) noexcept { cut_.broad = work; }
-
   bool timed() const noexcept { return timed_; }
   // Sets a part of what is left aside, until it is given back. Time as well, or only time.
   struct Part {
@@ -90,6 +62,45 @@ class StepBudget {
     deadline_ += part.time;
   }
 
+ protected:
+  Budget share_of_rest(std::uint64_t among) const noexcept {  // this one first
+    Budget part;
+    if (limited_) part.work = left_ / among + (left_ % among != 0 ? 1 : 0);
+    if (timed_) part.time = time_left() / static_cast<std::int64_t>(among);
+    return part;
+  }
+
+ private:
+  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: spent when nothing was left
+  bool limited_, timed_ = false;
+  Clock::time_point deadline_{};
+};
+
+// A step's budget, and where it cuts the step short: as the clock says, or as another run's clock said. For one thread.
+class StepBudget : public WorkLeft {
+ public:
+  StepBudget(const Budget& budget, const StepCut* replay) noexcept
+      : WorkLeft(replay == nullptr ? budget : Budget{.work = budget.work}), replay_(replay) {}
+  bool limited() const noexcept { return limited_in_work() || timed() || replay_ != nullptr; }
+  // One of `among` equal shares of what is left.
+  StepBudget share(std::uint64_t among) const noexcept { return {share_of_rest(among), replay_}; }
+
+  const StepCut* replay() const noexcept { return replay_; }
+  const StepCut& cut() const noexcept { return cut_; }
+  bool may_go_on() noexcept { return left() > 0 && reaches(&StepCut::begun, begun_); }  // with beginning
+  bool may_begin() noexcept {
+    const bool may = reaches(&StepCut::begun, begun_);
+    begun_ += may ? 1 : 0;
+    return may;
+  }
+  bool may_refine() noexcept { return left() > 0 && reaches(&StepCut::refined, refined_); }
+  bool may_sweep(std::uint64_t pair) noexcept { return left() > 0 && reaches(&StepCut::swept, pair); }
+  std::uint64_t piece(std::uint64_t slice) const noexcept {
+    return replay_ == nullptr ? slice : std::min(slice, replay_->refined - refined_ - 1);
+  }
+  void refined(std::uint64_t work) noexcept { refined_ += work + 1; }
+  void cut_broad(std::uint64_t work) noexcept { cut_.broad = work; }
+
  private:
   bool reaches(std::uint64_t StepCut::*stage, std::uint64_t done) noexcept {
     const bool stop = replay_ != nullptr ? done >= replay_->*stage : late();
@@ -97,9 +108,6 @@ class StepBudget {
     return !stop;
   }
 
-  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: spent when nothing was left
-  bool limited_, timed_ = false;
-  Clock::time_point deadline_{};
   const StepCut* replay_;
   StepCut cut_;
   std::uint64_t begun_ = 0, refined_ = 0;

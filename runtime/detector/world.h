@@ -30,17 +30,21 @@ struct World {
   ShapeTable shapes;
   BodyTable bodies;
   HalfSpaces halves;
+  HalfSpaceTimes half_space_times{halves};
   ShapePlacements places{shapes, bodies, halves};
   std::unique_ptr<KeptStates> kept_states;  // null: the application has them
   PairFilter filter;
   std::uint32_t filter_version = 0;
-  std::size_t body_count = 0;   // half-spaces included
-  std::uint64_t changes = 0;    // of bodies, shapes and states between steps
-  Step answered = -1;           // up to which steps have been answered
-  bool any_continuous = false;  // bodies, ever
-  bool any_static = false;      // bodies, ever
-  bool any_filters = false;     // any body, ever: a filter of its own
-  bool any_jumped = false;      // bodies, since the last step that was answered
+  std::size_t body_count = 0;  // half-spaces included
+  std::uint64_t changes = 0;   // of bodies, shapes and states between steps
+  Step answered = -1;          // up to which steps have been answered
+  struct Any {
+    bool continuous = false;   // body, ever
+    bool static_body = false;  // ever
+    bool own_filter = false;   // of a body, ever
+    bool jump = false;         // of a body, since the last step that was answered
+  };
+  Any any;
 };
 
 }  // namespace orchard::runtime::detail

@@ -67,7 +67,7 @@ void FlexibleTree::link_spheres() {
     const Children children = children_of(tree_.branching, link);
     for (std::uint32_t i = 0; i < children.count; ++i) adopt(spheres_, node, children.first * kBlockWidth + i);
   }
-  dirty_spheres_ = room_by_level(spheres_);
+  dirty_.spheres = room_by_level(spheres_);
 }
 
 void FlexibleTree::link_obb_nodes() {
@@ -88,7 +88,7 @@ void FlexibleTree::link_obb_nodes() {
     for (std::uint32_t i = 0; i < kBlockWidth && tree_.obb_nodes[child].radius[i] >= 0; ++i)
       adopt(obb_nodes_, node, child * kBlockWidth + i);
   }
-  dirty_slabs_ = room_by_level(obb_nodes_);
+  dirty_.slabs = room_by_level(obb_nodes_);
 }
 
 // Which triangles each vertex has, and which leaves and blocks each triangle is in.
@@ -123,8 +123,8 @@ void FlexibleTree::list_triangles() {
     }
   }
   moved_.assign(tree_.triangles.size(), 0);
-  block_dirty_.assign(tree_.triangle_blocks.size(), 0);
-  dirty_blocks_.reserve(block_dirty_.size());
+  dirty_.is_dirty.assign(tree_.triangle_blocks.size(), 0);
+  dirty_.blocks.reserve(dirty_.is_dirty.size());
 }
 
 // What every query reads of the whole tree, and may keep: it holds for all that the tree can become.
@@ -188,19 +188,19 @@ bool FlexibleTree::move(std::span<const std::uint32_t> vertices,
       for (const std::uint32_t v : tree_.triangles[t]) {
         moved_[t] = std::max(moved_[t], distance_of(tree_.vertices[v], rest_[v]));
       }
-      for (const std::uint32_t leaf : leaves_of_triangle_.of(t)) mark(spheres_, dirty_spheres_, leaf);
+      for (const std::uint32_t leaf : leaves_of_triangle_.of(t)) mark(spheres_, dirty_.spheres, leaf);
       const std::uint32_t block = block_of_triangle_[t];
-      if (block == kNone || block_dirty_[block]) continue;
-      block_dirty_[block] = 1;
-      dirty_blocks_.push_back(block);
+      if (block == kNone || dirty_.is_dirty[block]) continue;
+      dirty_.is_dirty[block] = 1;
+      dirty_.blocks.push_back(block);
     }
   }
-  for (const std::uint32_t block : dirty_blocks_) {
-    block_dirty_[block] = 0;
+  for (const std::uint32_t block : dirty_.blocks) {
+    dirty_.is_dirty[block] = 0;
     rewrite(block);
-    if (slab_of_block_[block] != kNone) mark(obb_nodes_, dirty_slabs_, slab_of_block_[block]);
+    if (slab_of_block_[block] != kNone) mark(obb_nodes_, dirty_.slabs, slab_of_block_[block]);
   }
-  dirty_blocks_.clear();
+  dirty_.blocks.clear();
   refit_spheres();
   refit_obb_nodes();
   return true;
@@ -262,7 +262,7 @@ void FlexibleTree::refit_spheres() noexcept {
     }
     return enlarged;
   };
-  refit(spheres_, dirty_spheres_, enlarged_by, [&](std::uint32_t index, double before) {
+  refit(spheres_, dirty_.spheres, enlarged_by, [&](std::uint32_t index, double before) {
     const Node& node = spheres_[index];
     if (link_of(index) & kLeafBit) enlarged_ += node.enlarged - before;
     if (index != 0) tree_.blocks[index / kBlockWidth].radius[index % kBlockWidth] = raised(node.radius, node.enlarged);
@@ -280,7 +280,7 @@ void FlexibleTree::refit_obb_nodes() noexcept {
     }
     return enlarged;
   };
-  refit(obb_nodes_, dirty_slabs_, enlarged_by, [this](std::uint32_t index, double) {
+  refit(obb_nodes_, dirty_.slabs, enlarged_by, [this](std::uint32_t index, double) {
     const Node& node = obb_nodes_[index];
     ObbNodeBlock& block = tree_.obb_nodes[index / kBlockWidth];
     const std::uint32_t lane = index % kBlockWidth;

@@ -83,7 +83,7 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
           ASSERT_EQ(of.clearance.changes, known.mark);
         }
         if (known.record) {
-          ASSERT_EQ(table[of.record].waited, known.mark);
+          ASSERT_EQ(table[of.record].turn.waited, known.mark);
         }
         if (!known.record && draw.bits() % 2 == 0) {
           table.take(place);
@@ -92,7 +92,7 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
           known.record = true;
         }
         known.mark = of.clearance.changes = ++marks;
-        if (known.record) table[of.record].waited = known.mark;
+        if (known.record) table[of.record].turn.waited = known.mark;
         known.held = known.record && draw.bits() % 2 == 0;
         table.tell(place++, known.held);
       }

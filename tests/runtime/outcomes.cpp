@@ -21,7 +21,7 @@ class Digest {
   void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
   void add(const NarrowPhase& query) {
     add(query.verdict());
-    add(query.pair_tests()), add(query.triangle_tests());
+    add(query.progress().pair_tests), add(query.progress().triangle_tests);
   }
   void add(const Verdict& v) {
     add(static_cast<std::uint64_t>(v.answer));

@@ -49,16 +49,16 @@ void Sleeping::refresh_members() {
 
 void Sleeping::ask(Step now, std::span<const BodyIndex> bodies) {
   motions_.resize(bodies.size());
-  pool_.ask(now, bodies, motions_);
+  pool_.motions.ask(now, bodies, motions_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Known& known = known_[bodies[i]];
     if (!is_valid(motions_[i])) {
-      pool_.refuse(bodies[i]);
+      pool_.motions.refuse(bodies[i]);
       known = {Motion{}, now, now + 1, false};
       continue;
     }
     const Step last = pool_.clock.last_before_expiry(motions_[i].expiry);
-    const bool for_ever = last == kNeverStep || pool_.is_static(bodies[i]);
+    const bool for_ever = last == kNeverStep || pool_.statics.has(bodies[i]);
     known = {motions_[i], now, for_ever ? kNeverStep : std::max(now, last) + 1, true};
   }
 }

@@ -44,7 +44,7 @@ class Sleeping final : public runtime::detail::BroadPhaseAlgorithm {
 
   void refresh_members();
   bool stale(BodyIndex body, Step now) const noexcept { return known_[body].asked < 0 || known_[body].end <= now; }
-  bool current(BodyIndex body, Step now) const noexcept { return known_[body].asked == now || pool_.is_static(body); }
+  bool current(BodyIndex body, Step now) const noexcept { return known_[body].asked == now || pool_.statics.has(body); }
   void ask(Step now, std::span<const BodyIndex> bodies);
   void find(Step now);
   bool intersecting_are_current(Step now);

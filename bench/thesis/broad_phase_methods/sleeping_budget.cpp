@@ -19,7 +19,7 @@ void rotate_after(std::vector<T>& sorted, const T& last) {
 void Sleeping::collect_stale(Step now, unsigned importance) {
   stale_.clear();
   for (const BodyIndex body : members_) {
-    if (pool_.importance(body) == importance && stale(body, now)) stale_.push_back(body);
+    if (pool_.classes.of(body) == importance && stale(body, now)) stale_.push_back(body);
   }
   rotate_after(stale_, turns_[importance].body);
 }
@@ -28,7 +28,7 @@ void Sleeping::collect_pairs(Step now, unsigned importance) {
   pairs_.clear();
   for (const BoundContact& contact : found_->initial) {
     const BodyPair pair{present_[contact.a], present_[contact.b]};
-    if (contact.time > 0 || pool_.importance(pair) != importance) continue;
+    if (contact.time > 0 || pool_.classes.of(pair) != importance) continue;
     if (!current(pair.a, now) || !current(pair.b, now)) pairs_.push_back(pair);
   }
   rotate_after(pairs_, turns_[importance].pair);
@@ -96,7 +96,7 @@ std::size_t Sleeping::left_over(Step now) const noexcept {
 StepReport Sleeping::step_within(Step now, BudgetTracker& tracker) {
   if (turns_.empty()) turns_.resize(kNoClass);
   find(now);
-  for (unsigned rank = pool_.next_class(0); rank < kNoClass; rank = pool_.next_class(rank + 1)) {
+  for (unsigned rank = pool_.classes.next(0); rank < kNoClass; rank = pool_.classes.next(rank + 1)) {
     if (work_through(now, rank, tracker)) continue;
     report(now);
     return {now + 1, reported_, rank, left_over(now)};

@@ -3,7 +3,7 @@
 #include "collision/kernels/node_box.h"
 
 // Eight nodes' boxes against one other's each: what gaps (node_box.cpp) and axes (front_block.cpp) of such are made of.
-// Rounding: narrow_phase.cpp, (6).
+// Rounding: placed_trees.cpp, (6).
 namespace orchard::runtime::detail {
 
 template <typename Kind>

@@ -10,7 +10,7 @@
 
 // Rounding. Boxes: as for their gaps. Leaves: u . p of points placed to within sigma, with |p| <= D and
 // |u|_1 <= 1.74, is off by less than 1.74 sigma + 7 u D, and the difference of two such by less than twice the margin
-// (narrow_phase.cpp, (5)). Gaps that close: Shift::error.
+// (placed_trees.cpp, (5)). Gaps that close: Shift::error.
 namespace orchard::runtime::detail {
 namespace {
 

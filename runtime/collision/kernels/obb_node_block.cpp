@@ -103,6 +103,17 @@ ORCHARD_INLINE bool visit_each(const LeafPair& pair, const Placement& placement,
   });
 }
 
+// Between all triangles of the lanes and all of the rows, along a direction.
+template <typename Kind>
+ORCHARD_INLINE typename Eight<Kind>::Floats gap_of_all(const typename Eight<Kind>::Vectors& u,
+                                                       const typename Eight<Kind>::Vectors (&lane)[3],
+                                                       const typename Eight<Kind>::Vectors (&row)[3]) noexcept {
+  using E = Eight<Kind>;
+  const Extent<Kind> lanes = extent_along<Kind>(u, lane), rows = extent_along<Kind>(u, row);
+  return E::max(E::all(least_of<Kind>(rows.low)) + E::all(least_of<Kind>(-lanes.high)),
+                E::all(least_of<Kind>(lanes.low)) + E::all(least_of<Kind>(-rows.high)));
+}
+
 // Axes are normalised in float, so they are longer than 1 by less than 4 u, and a projection of D is off by less than
 // 12 u D and the points' own errors: twice the margin is plenty.
 template <typename Kind>
@@ -123,10 +134,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
   const Floats margin = E::all(2 * placement.margin * placement.unit), limit = E::all(reach);
   // All of them together, along the direction that has parted others.
-  const Extent<Kind> lane_extent = extent_along<Kind>(given, lane), row_extent = extent_along<Kind>(given, row);
-  const Floats apart = E::max(E::all(least_of<Kind>(row_extent.low)) + E::all(least_of<Kind>(-lane_extent.high)),
-                              E::all(least_of<Kind>(lane_extent.low)) + E::all(least_of<Kind>(-row_extent.high)));
-  const Floats all_beyond = (apart - margin) * whole;
+  const Floats all_beyond = (gap_of_all<Kind>(given, lane, row) - margin) * whole;
   if (Kind::bits(all_beyond <= limit) == 0) {
     for (std::uint32_t r = 0; r < kBlockWidth; ++r) store(all_beyond, result.lower[r]), result.near[r] = 0;
     result.beyond = result.lower[0][0];

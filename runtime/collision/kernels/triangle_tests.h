@@ -5,7 +5,7 @@
 
 // What the inner loops over triangles (obb_node_block.cpp, obb_node_block_plain.cpp) are made of.
 //
-// Rounding. Ball slabs: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
+// Rounding. Ball slabs: see Placement::margin in placed_trees.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
 // are more than the margin apart are apart. A projection a . (p - q) of points placed to within sigma is computed to
 // within |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, with |a|_1 the sum of |components|.

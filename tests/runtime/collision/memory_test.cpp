@@ -60,10 +60,10 @@ TEST(Memory, WithoutRoomForALevelTheTrianglesDecide) {
     whole.start({}, pose), narrow.start({}, pose);
     while (!whole.finished()) whole.refine();
     while (!narrow.finished()) narrow.refine();
-    EXPECT_FALSE(whole.out_of_room());
+    EXPECT_FALSE(whole.progress().out_of_room);
     EXPECT_EQ(narrow.answer(), whole.answer());
     EXPECT_GE(narrow.separation_bound(), whole.separation_bound());
-    EXPECT_EQ(narrow.out_of_room(), whole.level() > 2) << seed;
+    EXPECT_EQ(narrow.progress().out_of_room, whole.progress().level > 2) << seed;
   }
 }
 
@@ -76,7 +76,7 @@ TEST(Memory, WhenThereIsNoneQueriesStayValid) {
   for (int i = 0; i < 10 && !query.finished(); ++i) query.refine();
   query.refine_exactly();
   EXPECT_TRUE(query.finished());
-  EXPECT_TRUE(query.out_of_room());
+  EXPECT_TRUE(query.progress().out_of_room);
   EXPECT_EQ(query.answer(), Answer::maybe);
 }
 

@@ -57,7 +57,7 @@ TEST(NarrowPhase, CountsTouchingChildrenAsMeeting) {
   const auto quarter = pose_from_quaternion({std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, {touch, 0, 0});
   EXPECT_EQ(query.start({}, *quarter), Answer::maybe);
   EXPECT_EQ(query.refine(), Answer::maybe);
-  EXPECT_EQ(query.pairs(), 2u);
+  EXPECT_EQ(query.progress().pairs, 2u);
   EXPECT_TRUE(query.finished());
   Pose apart = *quarter;
   apart.translation[0] += 1e-4;
@@ -145,8 +145,8 @@ TEST(NarrowPhase, MeetsExactlyTheBallsThatMeetAndReportsTheLeastBoundOfThem) {
     NarrowPhase query(a, b);
     query.start({}, pose);
     query.refine();
-    ASSERT_EQ(query.pairs(), meeting) << seed;
-    ASSERT_EQ(query.pair_tests(), 1 + a.branching * b.branching);
+    ASSERT_EQ(query.progress().pairs, meeting) << seed;
+    ASSERT_EQ(query.progress().pair_tests, 1 + a.branching * b.branching);
     ASSERT_LE(query.lower_bound(), std::max(0.0, least));
     if (meeting == 0) continue;
     ASSERT_GE(query.separation_bound(), bound) << seed;

@@ -56,13 +56,13 @@ void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& p
   double bound = std::numeric_limits<double>::infinity();
   Answer answer = query.start(pose_a, pose_b);
   for (std::uint32_t level = 0;; ++level) {
-    ASSERT_EQ(query.level(), level);
+    ASSERT_EQ(query.progress().level, level);
     ASSERT_NE(answer, truth.touch ? Answer::no : Answer::yes) << "at level " << level;
     ASSERT_GE(query.separation_bound(), truth.solid_gap - tolerance);
     ASSERT_LE(query.separation_bound(), bound);
     ASSERT_GE(query.lower_bound(), 0);
     ASSERT_LE(query.lower_bound(), truth.surface_gap + tolerance);
-    ASSERT_TRUE(query.pairs() > 0 || query.finished());
+    ASSERT_TRUE(query.progress().pairs > 0 || query.finished());
     bound = query.separation_bound();
     if (query.finished()) break;
     ASSERT_EQ(answer, Answer::maybe);
@@ -83,8 +83,8 @@ void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& p
   for (std::uint32_t level = 1; level <= std::max(a.tree.depth, b.tree.depth); ++level) {
     NarrowPhase probed(a.tree, b.tree), refined(a.tree, b.tree);
     probed.start(pose_a, pose_b), refined.start(pose_a, pose_b);
-    for (std::uint32_t l = 0; l < level && !refined.exact(); ++l) refined.refine();
-    if (refined.exact()) break;
+    for (std::uint32_t l = 0; l < level && !refined.progress().exact; ++l) refined.refine();
+    if (refined.progress().exact) break;
     ASSERT_EQ(probed.probe(level), refined.answer()) << "level " << level;
     ASSERT_GE(probed.separation_bound(), truth.solid_gap - tolerance);
     ASSERT_LE(probed.lower_bound(), truth.surface_gap + tolerance);
@@ -96,9 +96,9 @@ void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& p
   ASSERT_EQ(direct.refine_exactly(), answer);
   ASSERT_TRUE(direct.finished());
   ASSERT_GE(direct.separation_bound(), truth.solid_gap - tolerance);
-  ASSERT_LE(direct.level(), 1u);
+  ASSERT_LE(direct.progress().level, 1u);
   const std::uint32_t deepest = std::max(a.tree.depth, b.tree.depth);
-  ASSERT_LE(query.level(), deepest + 1);
+  ASSERT_LE(query.progress().level, deepest + 1);
   ASSERT_EQ(query.refine(), answer);  // nothing happens any more
 }
 

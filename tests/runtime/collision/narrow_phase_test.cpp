@@ -28,10 +28,10 @@ struct Outcome {
 Outcome outcome_of(const NarrowPhase& query) {
   const Contact c = query.contact();
   return {query.answer(),
-          query.level(),
-          query.pairs(),
-          query.pair_tests(),
-          query.triangle_tests(),
+          query.progress().level,
+          query.progress().pairs,
+          query.progress().pair_tests,
+          query.progress().triangle_tests,
           query.separation_bound(),
           query.lower_bound(),
           c.center,
@@ -94,10 +94,10 @@ TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
     double bound = sliced.separation_bound();
     while (!sliced.finished()) {
       const Budget budget{.work = 1 + draw.bits() % most};
-      const std::uint64_t before = sliced.work();
+      const std::uint64_t before = sliced.progress().work;
       ASSERT_EQ(sliced.refine({.work = 0}), sliced.answer());
       sliced.refine(budget);
-      const std::uint64_t spent = sliced.work() - before;
+      const std::uint64_t spent = sliced.progress().work - before;
       ASSERT_LT(spent, budget.work + kLeafPairTests * kTriangleTestCost);
       ASSERT_TRUE(spent > 0 || sliced.finished());
       ASSERT_LE(sliced.separation_bound(), bound);
@@ -116,9 +116,9 @@ TEST(NarrowPhase, StopsSoonAfterItsTimeAndResumes) {
     while (!whole.finished()) whole.refine();
     sliced.start(s.pose_a, s.pose_b);
     while (!sliced.finished()) {
-      const std::uint64_t before = sliced.work();
+      const std::uint64_t before = sliced.progress().work;
       sliced.refine({.time = std::chrono::nanoseconds(0)});
-      ASSERT_LT(sliced.work() - before, kClockInterval + kLeafPairTests * kTriangleTestCost);
+      ASSERT_LT(sliced.progress().work - before, kClockInterval + kLeafPairTests * kTriangleTestCost);
     }
     ASSERT_EQ(outcome_of(whole), outcome_of(sliced));
   }
@@ -134,7 +134,8 @@ TEST(NarrowPhase, ReplaysATimedRunFromItsCount) {
       timed.refine({.time = std::chrono::nanoseconds(seed % 3 * 500)});
     }
     replayed.start(s.pose_a, s.pose_b);
-    while (replayed.work() < timed.work()) replayed.refine({.work = timed.work() - replayed.work()});
+    while (replayed.progress().work < timed.progress().work)
+      replayed.refine({.work = timed.progress().work - replayed.progress().work});
     ASSERT_EQ(outcome_of(timed), outcome_of(replayed)) << seed;
   }
 }
@@ -240,7 +241,7 @@ TEST(NarrowPhase, ScalesExactlyByPowersOfTwo) {
       large.start(pose_a, pose_b);
       while (!large.finished()) large.refine();
       ASSERT_EQ(query.answer(), large.answer());
-      ASSERT_EQ(query.pair_tests(), large.pair_tests()) << scale << " " << seed;
+      ASSERT_EQ(query.progress().pair_tests, large.progress().pair_tests) << scale << " " << seed;
       ASSERT_EQ(query.separation_bound() * scale, large.separation_bound());
       ASSERT_EQ(query.lower_bound() * scale, large.lower_bound());
     }

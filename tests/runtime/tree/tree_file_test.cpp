@@ -139,7 +139,7 @@ TEST(TreeFile, IsUsedInPlaceWithoutACopy) {
     by_view.start({}, pose), by_copy.start({}, pose);
     while (!by_copy.finished()) by_view.refine(), by_copy.refine();
     ASSERT_EQ(by_view.answer(), by_copy.answer());
-    ASSERT_EQ(by_view.work(), by_copy.work());
+    ASSERT_EQ(by_view.progress().work, by_copy.progress().work);
     ASSERT_EQ(by_view.separation_bound(), by_copy.separation_bound());
   }
   write(path, {file.begin(), file.begin() + 100});

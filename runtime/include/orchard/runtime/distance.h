@@ -66,7 +66,7 @@ class DistanceQuery {
   DistanceSearch& search() noexcept;
 
   // The DistanceSearch (a private header) lies here and not on the heap, so that its construction cannot fail.
-  static constexpr std::size_t kSize = 1856, kAlignment = 32;
+  static constexpr std::size_t kSize = 1376, kAlignment = 32;
   alignas(kAlignment) std::array<std::byte, kSize> storage_;
 };
 

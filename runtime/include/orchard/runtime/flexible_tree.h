@@ -61,7 +61,12 @@ class FlexibleTree {
       return std::span(items).subspan(begin[i], begin[i + 1] - begin[i]);
     }
   };
-  using Levels = std::vector<std::vector<std::uint32_t>>;  // dirty nodes by level; room for all of them
+  using Levels = std::vector<std::vector<std::uint32_t>>;
+  struct Dirty {            // What has to follow the triangles that moved; there is room for all of it.
+    Levels spheres, slabs;  // Nodes by level.
+    std::vector<std::uint32_t> blocks;
+    std::vector<std::uint8_t> is_dirty;  // By block.
+  };
 
   static void adopt(std::vector<Node>& nodes, std::uint32_t parent, std::uint32_t child) noexcept;
   static Levels room_by_level(const std::vector<Node>& nodes);
@@ -86,9 +91,7 @@ class FlexibleTree {
   std::vector<Node> spheres_, obb_nodes_;  // by node
   Lists triangles_of_vertex_, leaves_of_triangle_;
   std::vector<std::uint32_t> block_of_triangle_, slab_of_block_;
-  Levels dirty_spheres_, dirty_slabs_;
-  std::vector<std::uint32_t> dirty_blocks_;
-  std::vector<std::uint8_t> block_dirty_;
+  Dirty dirty_;
   double enlarged_ = 0, rest_radii_ = 0;
   std::size_t touched_ = 0;
 };

@@ -66,8 +66,8 @@ struct Verdict {
 // The object is deterministic: the same trees, poses and room give the same answers, counts and bounds, however budgets
 // divide the calls of refine(), on every machine and for every vector width; exchanging a and b mirrors the results. It
 // throws nothing, and allocates nothing after construction and reserve(). If a level of spheres has more meeting pairs
-// than there is room for, it is abandoned: out_of_room() becomes true, and the next step is the last level, which needs
-// only the memory of its stack. Without memory for that, "maybe" can be final, too.
+// than there is room for, it is abandoned: Progress::out_of_room becomes true, and the next step is the last level,
+// which needs only the memory of its stack. Without memory for that, "maybe" can be final, too.
 class NarrowPhase {
  public:
   static constexpr std::size_t kDefaultRoom = 1u << 13;
@@ -77,9 +77,9 @@ class NarrowPhase {
   NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room = kDefaultRoom) noexcept;
   // Constructs a query without bodies. Call bind() before start().
   explicit NarrowPhase(std::size_t room = kDefaultRoom) noexcept;
-  // Rebinds the query to another pair (about 50 ns) and keeps reserved memory. Call start() before the next query.
-  // Allocates only if these trees are deeper than all before. Returns false if there is no memory for that; "maybe" can
-  // then be final.
+  // Rebinds the query to another pair (about 10 ns) and keeps reserved memory. The prepared trees must outlive the
+  // query or its next bind(). Call start() before the next query. Allocates only if these trees are deeper than all
+  // before. Returns false if there is no memory for that; "maybe" can then be final.
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   // Reserves room for this many meeting pairs per level. Returns false and changes nothing if there is not enough
@@ -88,9 +88,8 @@ class NarrowPhase {
 
   // Starts the query at two poses with level 0.
   Answer start(const Pose& a, const Pose& b) noexcept;
-  Answer refine() noexcept { return refine(Budget{}); }  // To the end of the next level.
   // Refines to the end of the current or next level, or of the budget. Call it again to continue.
-  Answer refine(const Budget& budget) noexcept;
+  Answer refine(const Budget& budget = {}) noexcept;
   // Skips the remaining levels of spheres and refines the last level: the fastest way to "yes" or "no", without the
   // bounds of the levels in between. Call either function again to continue.
   Answer refine_exactly(const Budget& budget = {}) noexcept;
@@ -108,16 +107,20 @@ class NarrowPhase {
   // size that floats cannot represent (bodies scaled beyond 4 kCoordinateLimit of the other's units, or by more than
   // kMaxRelativeScale of each other). The answer is then "maybe", finished, with the bounds 0 and infinity.
   bool refused() const noexcept;
-  bool out_of_room() const noexcept;     // Whether bounds are looser because room was missing.
-  bool exact() const noexcept;           // Whether the last level has begun.
-  std::uint32_t level() const noexcept;  // Completed levels below the roots.
-  // Returns how many pairs met at the last completed level of spheres; 0 once the last level has begun.
-  std::size_t pairs() const noexcept;
-  std::uint64_t pair_tests() const noexcept;  // Tests of spheres and ball slabs since start().
-  std::uint64_t triangle_tests() const noexcept;
-  // Returns the work since start(), in units of a budget. A query that a time budget cut short stops at the same place
-  // again if it gets this value as its budget of work, so a trace of these values replays a run exactly.
-  std::uint64_t work() const noexcept;
+
+  // How far a query has come since start().
+  struct Progress {
+    std::uint32_t level;       // Completed levels below the roots.
+    bool exact;                // Whether the last level has begun.
+    bool out_of_room;          // Whether bounds are looser because room was missing.
+    std::size_t pairs;         // Pairs that met at the last completed level of spheres; 0 once the last has begun.
+    std::uint64_t pair_tests;  // Tests of spheres and ball slabs.
+    std::uint64_t triangle_tests;
+    // In units of a budget. A query that a time budget cut short stops at the same place again if it gets this value as
+    // its budget of work, so a trace of these values replays a run exactly.
+    std::uint64_t work;
+  };
+  Progress progress() const noexcept;
 
   // Returns a certified upper bound on the distance between the two solids, from every pair of spheres that met so far.
   // It never rises. For each pair it is min(e1 + e2, a1 + |c1 - c2| + a2), where e is the error and a the depth of a
@@ -140,7 +143,7 @@ class NarrowPhase {
   PairQuery& query() noexcept;
 
   // The PairQuery (a private header) lies here and not on the heap, so that its construction cannot fail.
-  static constexpr std::size_t kSize = 1632, kAlignment = 32;
+  static constexpr std::size_t kSize = 1664, kAlignment = 32;
   alignas(kAlignment) std::array<std::byte, kSize> storage_;
 };
 

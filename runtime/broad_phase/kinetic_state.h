@@ -1,0 +1,38 @@
+#pragma once
+#include "broad_phase/box_index.h"
+#include "broad_phase/changes.h"
+#include "broad_phase/overlap_list.h"
+#include "broad_phase/pair_times.h"
+#include "broad_phase/windows.h"
+
+namespace orchard::runtime::detail {
+
+// What the parts of the kinetic broad phase share: what is known of its bodies, and which of them overlap.
+struct KineticState {
+  KineticState(BodyPool& all, const BroadPhaseOptions& given) : pool(all), options(given), windows(all, given.window) {}
+
+  void make_room(std::size_t slots) {
+    boxes.make_room(slots);
+    changes.make_room(slots);
+    overlaps.make_room(slots);
+    windows.make_room(slots);  // last: its size says that there is room in all of them
+  }
+  // What becomes of a body whose motion is not valid: it is in no pair until it has been asked again.
+  void refuse(BodyIndex body);
+  std::size_t memory_bytes() const noexcept {
+    return changes.memory_bytes() + windows.memory_bytes() + boxes.memory_bytes() + wheel.memory_bytes() -
+           sizeof(wheel) + overlaps.memory_bytes();
+  }
+
+  BodyPool& pool;
+  const BroadPhaseOptions options;
+  Changes changes;
+  Windows windows;
+  MovingGrid grid;  // in which the boxes are
+  BoxIndex boxes;
+  GridCounts counts;  // of their insertions, for the plan
+  TimingWheel wheel;
+  OverlapList overlaps;
+};
+
+}  // namespace orchard::runtime::detail

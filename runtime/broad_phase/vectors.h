@@ -1,0 +1,114 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "orchard/runtime/broad_phase.h"
+#include "simd/vector_support.h"
+
+// How the broad phase and the detector use memory.
+namespace orchard::runtime::detail {
+
+// Leaves what a vector grows by as it is in memory: for what is written before it is read, by jobs. So it is one pass,
+// and pages that have never been used are shared between the jobs' threads.
+template <typename T>
+struct UnsetAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UnsetAllocator<U>;
+  };
+  UnsetAllocator() noexcept = default;
+  template <typename U>
+  UnsetAllocator(const UnsetAllocator<U>&) noexcept {}
+  template <typename U, typename... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) == 0) {
+      static_assert(std::is_trivially_default_constructible_v<U>);
+      ::new (static_cast<void*>(place)) U;
+    } else {
+      ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+    }
+  }
+};
+template <typename T>
+using UnsetVector = std::vector<T, UnsetAllocator<T>>;
+
+// Of a vector that grows one by one, by an eighth at a time: twice the room would be half the memory. What comes all at
+// once gets the room that it takes.
+template <typename T, typename Allocator>
+void make_room(std::vector<T, Allocator>& v, std::size_t size) {
+  constexpr std::size_t kMinRoom = 32;
+  if (v.capacity() < size) v.reserve(std::max({kMinRoom, size, v.capacity() + v.capacity() / 8}));
+}
+template <typename T>
+void append(std::vector<T>& v, const T& value) {
+  if (v.size() == v.capacity()) v.reserve(std::max<std::size_t>(64, v.size() + v.size() / 16));
+  v.push_back(value);
+}
+template <typename T, typename Allocator>
+void grow(std::vector<T, Allocator>& v, std::size_t size) {
+  if (v.size() >= size) return;
+  make_room(v, size);
+  v.resize(size);
+}
+
+// Whether each index is one above that before it.
+inline bool successive(std::span<const BodyIndex> bodies) noexcept {
+  BodyIndex off = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) off |= bodies[i] ^ (bodies[0] + static_cast<BodyIndex>(i));
+  return off == 0;
+}
+
+// Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is
+// built without exceptions as well.)
+template <typename Undo>
+class UndoUnlessDone {
+ public:
+  explicit UndoUnlessDone(const Undo& undo) : undo_(undo) {}
+  UndoUnlessDone(const UndoUnlessDone&) = delete;
+  UndoUnlessDone& operator=(const UndoUnlessDone&) = delete;
+  ~UndoUnlessDone() {
+    if (!done_) undo_();
+  }
+  void done() noexcept { done_ = true; }
+
+ private:
+  Undo undo_;
+  bool done_ = false;
+};
+
+// Empties a vector and gives its memory back, which assigning {} does not.
+template <typename T, typename Allocator>
+void give_back(std::vector<T, Allocator>& v) noexcept {
+  std::vector<T, Allocator>().swap(v);
+}
+
+// Starts loading what will be written soon. Part of its caller at once: GCC takes it for a function without effects,
+// and leaves out what calls are left when it has found that.
+ORCHARD_INLINE void prefetch(const void* where) noexcept {
+#ifdef __GNUC__
+  __builtin_prefetch(where, 1);
+#else
+  (void)where;
+#endif
+}
+
+// All lines of an object.
+template <typename T>
+ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
+  constexpr std::size_t kLine = 64;
+  const char* const begin = reinterpret_cast<const char*>(&object);
+  for (std::size_t at = 0; at < sizeof(T); at += kLine) prefetch(begin + at);
+}
+
+template <typename... Vectors>
+std::size_t bytes_of(const Vectors&... vectors) noexcept {
+  return ((vectors.capacity() * sizeof(typename Vectors::value_type)) + ...);
+}
+
+}  // namespace orchard::runtime::detail

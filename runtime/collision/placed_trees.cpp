@@ -1,0 +1,313 @@
+#include "collision/placed_trees.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "collision/support_map.h"
+#include "math/rigid_pair.h"
+#include "math/vector_functions.h"
+#include "tree/tree_nodes.h"
+
+// Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
+// float, a a centre of the first tree, u = 2^-24, E1 and E2 the trees' extents, T the relative translation.
+//  (1) |c' - c| <= sigma. A row of the rotation has length 1, so per component rounding its entries costs u|q| and the
+//      three products and three sums 4.1 u (|q| + |T_i|): together, with the rounding of T itself, at most
+//      sqrt(3) 5.2 u |q| + 5.2 u |T| <= u (10 E2 + 6 |T|). What double arithmetic and poses that are rigid only to
+//      kRigidTolerance add is exact_error below.
+//  (2) square = |c' - a|^2 (1 + 5.1 u) at most and reach = (r1 + r2 + slack)(1 - 2 u) at least. If the balls touch,
+//      |c' - a| <= r1 + r2 + sigma, so square <= reach * reach, as computed, holds if slack - sigma >= 5.2 u (r1 +
+//      r2).
+//  (3) If the test fails, the true gap |c - a| - r1 - r2 is at least sqrt(square) - reach, evaluated exactly, if
+//      slack - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
+//  (4) |c - a| <= sqrt(square) + slack if slack - sigma >= 3 u |c' - a|.
+// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them. E2, r2 and
+// what follows are the second tree's times its relative scale; rounding that product costs r2 another u.
+//  (5) Gaps between ball slabs: a moved normal is within 10 u of the true one, and every normal's length within 8.4 u
+//  of 1.
+//      A height over a ball slab's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most
+//      the sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by
+//      4 u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
+//  (6) Gaps between boxes: one of them is turned into the other one's axes, in the first tree's units, and (1) holds
+//  for
+//      either with sigma + 16 u D. Along a unit vector v the points of a box reach at most the sum of its half sizes
+//      times |v . axis|, and besides what the axes lack to be orthonormal (to 1e-6, so 17 u each) times the radius: 51
+//      u. An axis is within 10 u of the true one, a product of axes within 25 u, a cosine thus within 30 u, and the sum
+//      of three of them, times half sizes of at most a radius each, within 60 u of a radius: 111 u for a radius and so
+//      for D. A height is off by sigma + 22 u D, the rest by 6 u D: box_margin = 2 sigma + 192 u D leaves room.
+namespace orchard::runtime {
+
+using detail::minus;
+
+namespace {
+
+constexpr double kFloatUnit = 0x1p-24;
+// Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
+constexpr double kMinSlack = 1e-15;
+constexpr double kCoarse = 0x1p-9;    // of the smaller body's radius; leaves of 1,000 triangles have some 2^-5
+constexpr double kMinSize = 1e-18;    // below it Placement::unit stays as it is: margins are far larger
+constexpr double kMinError = 1e-150;  // of a length: covers the underflow of its square
+constexpr int kRootDirections = 5;    // tried at most, to part the hulls
+
+template <typename Container>
+int compare_bytes(const Container& a, const Container& b) noexcept {
+  if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;
+  if (a.data() == b.data()) return 0;
+  return a.empty() ? 0 : std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0]));
+}
+
+int compare(const TreeView& a, const TreeView& b) noexcept {
+  if (const int c = compare_bytes(a.blocks, b.blocks)) return c;
+  if (const int c = compare_bytes(a.triangles, b.triangles)) return c;
+  if (const int c = compare_bytes(a.vertices, b.vertices)) return c;
+  if (const int c = compare_bytes(a.leaf_triangles, b.leaf_triangles)) return c;
+  const std::array<double, 5> da = {a.origin[0], a.origin[1], a.origin[2], a.bounding_radius, a.vertex_error};
+  const std::array<double, 5> db = {b.origin[0], b.origin[1], b.origin[2], b.bounding_radius, b.vertex_error};
+  return compare_bytes(da, db);
+}
+
+bool same_place(const TreeView& a, const TreeView& b) noexcept {
+  return a.blocks.data() == b.blocks.data() && a.triangle_blocks.data() == b.triangle_blocks.data() &&
+         a.vertices.data() == b.vertices.data() && a.origin == b.origin;
+}
+
+bool before(const Pose& a, const Pose& b) noexcept {
+  if (a.rotation != b.rotation) return a.rotation < b.rotation;
+  return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
+}
+
+Vec3 turned_back(const Pose& pose, const Vec3& u) noexcept {
+  const auto& r = pose.rotation;
+  return {r[0] * u[0] + r[3] * u[1] + r[6] * u[2], r[1] * u[0] + r[4] * u[1] + r[7] * u[2],
+          r[2] * u[0] + r[5] * u[1] + r[8] * u[2]};
+}
+
+double sum_of_sizes(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
+
+}  // namespace
+
+// Whether that is so already: bodies of one shape follow each other often.
+bool OrderedTrees::is_bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept {
+  if (equal_ && exchanged_) return false;  // as the last poses had it
+  const std::size_t of_a = exchanged_ ? 1 : 0;
+  const PreparedTree &tree_a = exchanged_ ? *second_ : *first_, &tree_b = exchanged_ ? *first_ : *second_;
+  return a.fingerprint != 0 && &tree_a == &a && &tree_b == &b && prints_[of_a] == a.fingerprint &&
+         prints_[1 - of_a] == b.fingerprint;
+}
+
+void OrderedTrees::order(const PreparedTree& a, const PreparedTree& b) noexcept {
+  equal_ = a.fingerprint == b.fingerprint;
+  one_tree_ = equal_ && same_place(a.tree, b.tree);
+  exchanged_ = !equal_ && compare(a.tree, b.tree) > 0;
+  const PreparedTree &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
+  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first.root[i], second.root[i]};
+  prints_ = {first.fingerprint, second.fingerprint};
+}
+
+void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
+  if (is_bound_to(a, b)) return;
+  order(a, b);
+  first_.refer_to(exchanged_ ? b : a), second_.refer_to(exchanged_ ? a : b);
+}
+
+void OrderedTrees::bind(const TreeView& a, const TreeView& b) noexcept {
+  const PreparedTree of_a(a);
+  const PreparedTree of_b = compare(a, b) == 0 ? of_a : PreparedTree(b);
+  order(of_a, of_b);
+  first_.keep(exchanged_ ? of_b : of_a), second_.keep(exchanged_ ? of_a : of_b);
+}
+
+// Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,
+// each keeps its own.
+bool OrderedTrees::order_at(const Pose& a, const Pose& b) noexcept {
+  if (one_tree_) return before(b, a);
+  if (!equal_ || before(b, a) == exchanged_) return exchanged_;
+  exchanged_ = !exchanged_;
+  std::swap(first_, second_);
+  std::swap(prints_[0], prints_[1]);
+  for (auto& pair : roots_) std::swap(pair[0], pair[1]);
+  return exchanged_;
+}
+
+void PlacedTrees::bind(const TreeView& a, const TreeView& b) noexcept { trees_.bind(a, b); }
+
+void PlacedTrees::find_exact_error(const Pose& of_first, const Pose& of_second) noexcept {
+  exact_error_ = (of_first.scale * first().error + of_second.scale * second().error) +
+                 1e-14 * (sum_of_sizes(of_first.translation) + sum_of_sizes(of_second.translation)) + kMinError;
+}
+
+// Nothing is done here that only deeper levels need. In double and in the world: bodies that are far apart must not
+// overflow. Exchanging the bodies changes no bit of any result, so that equal trees need no order yet.
+Roots::Answer PlacedTrees::test_roots(const Pose& a, const Pose& b, Roots& result) noexcept {
+  result = {};
+  // Nothing below holds otherwise, and the hulls' tables have no place for directions that are no directions.
+  const bool exchanged = trees_.exchanged();
+  const Pose &of_first = exchanged ? b : a, &of_second = exchanged ? a : b;
+  const PreparedTree &first = trees_.first(), &second = trees_.second();
+  const detail::PoseLanes poses(of_first, of_second);
+  const auto refuse = [&] {
+    keep(a, b);
+    return Roots::Answer::refused;
+  };
+  if (!poses.rotate()) return refuse();
+  const auto lanes = [](const std::array<double, 2>& pair) { return detail::Two{pair[0], pair[1]}; };
+  const detail::Two roots[3] = {lanes(trees_.roots(0)), lanes(trees_.roots(1)), lanes(trees_.roots(2))};
+  Vec3 way{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const detail::Two place = poses.placed(i, roots);
+    way[i] = place[1] - place[0];
+  }
+  const double square = dot(way, way), distance = std::sqrt(square);
+  const auto sum = [&](double by_first, double by_second) {
+    return of_first.scale * by_first + of_second.scale * by_second;
+  };
+  find_exact_error(of_first, of_second);
+  const double radii = sum(first.radius, second.radius);
+  const double bound = detail::pair_bound(distance + exact_error_, radii, sum(first.reach, second.reach),
+                                          sum(first.depth, second.depth));
+  const double ball_gap = distance - radii - exact_error_;
+  double gap = ball_gap;
+  Vec3 along = way;
+  if (gap <= 0 && square > 0 && have_triangles(*this)) {
+    // How far the bodies' convex hulls are apart, at least: along the line through the roots' centres first.
+    const auto reach = [](const PreparedTree& of, const Pose& pose, const Vec3& u) {
+      const Vec3 direction = turned_back(pose, u);
+      return pose.scale * (detail::reach_along(of.tree.supports, direction) - dot(direction, of.middle));
+    };
+    gap = square - (reach(first, of_first, way) + reach(second, of_second, -way));
+    if (!(gap > 0)) gap = hulls_gap(of_first, of_second, way, along);
+    gap = gap / distance * (1 - detail::kStretch) - detail::kStretch * distance - exact_error_;
+  }
+  result.separation_bound = bound;
+  if (gap > 0 && std::isfinite(gap)) {
+    result.lower_bound = gap * (1 - detail::kStretch);
+    for (std::size_t i = 0; i < 3; ++i) result.apart_along[i] = along[i] / (exchanged ? -distance : distance);
+    return Roots::Answer::apart;
+  }
+  keep(a, b);
+  if (std::isfinite(ball_gap) && in_range()) return Roots::Answer::near;
+  result.separation_bound = std::numeric_limits<double>::infinity();
+  return Roots::Answer::refused;
+}
+
+void PlacedTrees::keep(const Pose& a, const Pose& b) noexcept {
+  exchanged_ = trees_.order_at(a, b);
+  first_pose_ = exchanged_ ? b : a;
+  second_pose_ = exchanged_ ? a : b;
+  placed_ = false;
+}
+
+// Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the
+// distance of the roots' centres: reaches are proportional to the direction's length, and reflecting keeps it. `u`: the
+// way at first, and the direction of a gap at last.
+double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const Vec3& way, Vec3& u) const noexcept {
+  const auto support_of = [](const PreparedTree& side, const Pose& pose, const Vec3& v) {
+    const Vec3 direction = turned_back(pose, v);
+    detail::Support support = detail::support_along(side.tree.supports, direction);
+    support.most = pose.scale * (support.most - dot(direction, side.middle));
+    support.point = rotate(pose, minus(support.point, side.middle));
+    for (double& component : support.point) component *= pose.scale;
+    return support;  // from the root's centre, in the world
+  };
+  double best = -std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < kRootDirections; ++turn) {
+    const detail::Support p = support_of(first(), of_first, u), q = support_of(second(), of_second, -u);
+    const double gap = dot(u, way) - (p.most + q.most);
+    if (gap > 0) return gap;
+    if (gap <= best) break;
+    best = gap;
+    // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
+    const Vec3 apart = minus(q.point, p.point), between = {way[0] + apart[0], way[1] + apart[1], way[2] + apart[2]};
+    const double square = dot(between, between), component = dot(between, u);
+    if (component >= 0 || !(square > 0)) break;
+    const double factor = 2 * component / square;
+    for (std::size_t i = 0; i < 3; ++i) u[i] -= factor * between[i];
+  }
+  return best;
+}
+
+// The second tree's frame in the first one's, both relative to the trees' origins: these enter here, so that everything
+// below works on the trees' own small coordinates.
+Pose PlacedTrees::relative_pose() const noexcept {
+  const auto& r = first_pose_.rotation;
+  const auto& q = second_pose_.rotation;
+  const double shrink = 1 / first_pose_.scale;
+  // What is below this is no more than rounding, and without it no product of three coordinates underflows:
+  // exact_sign.h.
+  const auto settled = [](double value, double least) { return std::fabs(value) < least ? 0.0 : value; };
+  Pose relative;
+  relative.scale = second_pose_.scale * shrink;
+  auto offset = transform(second_pose_, second().tree.origin);
+  for (std::size_t i = 0; i < 3; ++i) offset[i] -= first_pose_.translation[i];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      relative.rotation[3 * i + j] = settled(r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j], 0x1p-60);
+    }
+    relative.translation[i] = settled(
+        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first().tree.origin[i], 0x1p-305);
+  }
+  return relative;
+}
+
+// Not needed where the roots decide.
+void PlacedTrees::place() noexcept {
+  if (placed_) return;
+  placed_ = true;
+  relative_ = relative_pose();
+  const double shrink = 1 / first_pose_.scale, scale = relative_.scale;
+  for (std::size_t i = 0; i < 9; ++i) {
+    placement_.turn[i] = static_cast<float>(relative_.rotation[i]);
+    placement_.rotation[i] = static_cast<float>(relative_.rotation[i] * scale);
+  }
+  for (std::size_t i = 0; i < 3; ++i) placement_.translation[i] = static_cast<float>(relative_.translation[i]);
+  placement_.scale = static_cast<float>(scale);
+  const double distance = length(relative_.translation), second_extent = second().extent * scale;
+  const double sigma = exact_error_ * shrink + kFloatUnit * (10 * second_extent + 6 * distance);
+  const double size = distance + first().extent + second_extent;
+  const auto rounded_up = [](double value) {
+    return static_cast<float>(std::max(value, kMinSlack) * (1 + 2 * kFloatUnit));
+  };
+  placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
+  placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
+  placement_.box_margin = rounded_up(2 * sigma + 192 * kFloatUnit * size);
+  placement_.coarse = double{placement_.box_margin} > kCoarse * std::min(first().radius, second().radius * scale);
+  const int exponent = 1 + detail::exponent_of(std::max(size, kMinSize));
+  detail::find_rows(placement_);
+  placement_.unit = static_cast<float>(detail::scaled(1, -exponent));
+  placement_.whole = static_cast<float>(detail::scaled(1, exponent));
+}
+
+// Whether floats can hold the square of every distance in the pair's frame, and doubles the exact level's products.
+// With T and the second extent, origins and errors included, at most 4 L and the first extent below 2.8 L, L =
+// kCoordinateLimit, no float sum of squares or of products of two lengths exceeds 120 L^2, a third of the largest
+// float.
+bool PlacedTrees::in_range() const noexcept {
+  const double relative = second_pose_.scale / first_pose_.scale;
+  if (!(relative >= 1 / kMaxRelativeScale && relative <= kMaxRelativeScale)) return false;
+  double size = second().extent * second_pose_.scale + exact_error_;
+  for (std::size_t i = 0; i < 3; ++i) {
+    size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]) +
+            std::fabs(second().tree.origin[i]) * second_pose_.scale +
+            std::fabs(first().tree.origin[i]) * first_pose_.scale;
+  }
+  return size <= 4 * double{kCoordinateLimit} * first_pose_.scale;
+}
+
+bool PlacedTrees::place(const Pose& a, const Pose& b) noexcept {
+  keep(a, b);
+  if (!in_range()) return false;
+  place();
+  return true;
+}
+
+bool PlacedTrees::place_for_triangles(const Pose& a, const Pose& b) noexcept {
+  const bool exchanged = trees_.exchanged();
+  find_exact_error(exchanged ? b : a, exchanged ? a : b);
+  keep(a, b);
+  if (!in_range()) return false;
+  relative_ = relative_pose();
+  return true;
+}
+
+}  // namespace orchard::runtime

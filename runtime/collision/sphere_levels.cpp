@@ -1,0 +1,254 @@
+#include "collision/sphere_levels.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "collision/kernels/sphere_block.h"
+#include "tree/tree_nodes.h"
+
+// Why the sphere tests are conservative: placed_trees.cpp, (1) to (4).
+namespace orchard::runtime {
+
+using detail::block_of;
+using detail::BlockHits;
+using detail::BlockPair;
+using detail::Group;
+using detail::group_of;
+using detail::is_leaf;
+
+namespace {
+
+constexpr std::size_t kBlockPairs = std::size_t{kBlockWidth} * kBlockWidth;
+constexpr std::uint32_t kMaxProbedLevels = 64;  // a call each
+constexpr std::uint32_t kNoExcess = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) - 1;
+
+// sqrt(s^2 + x) - s falls with s and grows with x: with the largest reach and the least excess over all the pairs that
+// missed, it is at most any of their gaps.
+double gap_of(const detail::LevelState& state) noexcept {
+  const auto largest = [](const auto& v) { return double{*std::max_element(v.begin(), v.end())}; };
+  const double reach = (largest(state.row_radius) + largest(state.lane_radius)) * (1 + 1e-6);
+  const double excess =
+      double{std::bit_cast<float>(*std::min_element(state.min_excess.begin(), state.min_excess.end()) + 1)};
+  return std::isfinite(excess) ? excess / (std::sqrt(reach * reach + excess) + reach)
+                               : std::numeric_limits<double>::infinity();
+}
+
+void begin_seeing(detail::LevelState& state) noexcept {
+  state.min_excess.fill(kNoExcess);
+  state.row_radius.fill(0);
+  state.lane_radius.fill(0);
+}
+
+// The pair among `bits` whose spheres overlap most, compared with their sizes.
+std::uint32_t deepest_of(std::uint64_t bits, const BlockPair& block, const BlockHits& hits, float scale) noexcept {
+  auto best = static_cast<std::uint32_t>(std::countr_zero(bits));
+  float least = std::numeric_limits<float>::infinity();
+  const float row_scale = block.lanes_are_second ? 1.0f : scale, lane_scale = block.lanes_are_second ? scale : 1.0f;
+  for (; bits != 0; bits &= bits - 1) {
+    const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;
+    const float reach = block.rows->radius[row] * row_scale + block.lanes->radius[lane] * lane_scale;
+    const float depth = hits.square[row][lane] - reach * reach;
+    if (depth < least) least = depth, best = bit;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool SphereLevels::PairList::reserve(std::size_t capacity) noexcept {
+  if (capacity <= capacity_) return true;
+  capacity = std::max({capacity, 2 * capacity_, std::size_t{64}});
+  std::unique_ptr<NodePair[]> larger(new (std::nothrow) NodePair[capacity]);
+  if (!larger) return false;
+  std::copy_n(pairs_.get(), size_, larger.get());
+  pairs_ = std::move(larger);
+  capacity_ = capacity;
+  return true;
+}
+
+bool SphereLevels::reserve(std::size_t pairs) noexcept {
+  pairs += kBlockPairs;  // what one pair of blocks may add
+  return inner_.reserve(pairs) && leaves_.reserve(pairs) && next_.reserve(pairs);
+}
+
+void SphereLevels::clear() noexcept {
+  inner_.clear(), leaves_.clear(), next_.clear();
+  settled_leaves_ = 0;
+}
+
+void SphereLevels::forget(double root_bound) noexcept {
+  leaves_.clear(), next_.clear();
+  cursor_ = {};
+  level_best_ = leaf_best_ = {};
+  best_ = {root_bound, {0, 0}};
+  least_bound_ = pruned_gap_ = std::numeric_limits<double>::infinity();
+}
+
+bool SphereLevels::begin(const PlacedTrees& trees) noexcept {
+  if (!inner_.room_for(1) || !leaves_.room_for(1)) return false;
+  (roots_are_leaves(trees) ? leaves_ : inner_).push({0, 0});
+  start_level(trees);
+  settled_leaves_ = leaves_.size();
+  return true;
+}
+
+bool SphereLevels::roots_are_leaves(const PlacedTrees& trees) noexcept {
+  return is_leaf(trees.first().tree, 0) && is_leaf(trees.second().tree, 0);
+}
+
+// A group of nodes of each tree, to be compared: the children of a pair, or of one node of it and the other, a leaf.
+struct SphereLevels::Groups {
+  Groups(const PlacedTrees& trees, const NodePair& pair) noexcept
+      : lanes_are_second(!is_leaf(trees.second().tree, pair.b)),
+        row_tree((lanes_are_second ? trees.first() : trees.second()).tree),
+        lane_tree((lanes_are_second ? trees.second() : trees.first()).tree),
+        rows(group_of(row_tree, (lanes_are_second ? trees.first() : trees.second()).bits,
+                      lanes_are_second ? pair.a : pair.b)),
+        lanes(group_of(lane_tree, (lanes_are_second ? trees.second() : trees.first()).bits,
+                       lanes_are_second ? pair.b : pair.a)) {}
+
+  // Up to eight rows and eight lanes from these on.
+  BlockPair block(std::uint32_t outer, std::uint32_t inner) const noexcept {
+    const std::uint32_t row = rows.first + inner, lane = lanes.first + outer;
+    BlockPair result{&block_of(row_tree, row), &block_of(lane_tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
+    result.lane_count = std::min(kBlockWidth, lanes.count - outer);
+    result.row_end = std::min(kBlockWidth, result.row_begin + rows.count - inner);
+    return result;
+  }
+  // The pair of a bit of BlockHits.
+  NodePair pair(std::uint32_t outer, std::uint32_t inner, std::uint32_t bit) const noexcept {
+    const std::uint32_t row = rows.first + inner;
+    const NodePair result{row - row % kBlockWidth + bit / kBlockWidth, lanes.first + outer + bit % kBlockWidth};
+    return lanes_are_second ? result : NodePair{result.b, result.a};
+  }
+
+  // The lanes are the children of b, the rows those of a, or a itself; if b is a leaf, a's children are the lanes.
+  bool lanes_are_second;
+  const TreeView &row_tree, &lane_tree;
+  Group rows, lanes;
+};
+
+SphereLevels::End SphereLevels::refine(const PlacedTrees& trees, PairBudget& tracker) noexcept {
+  BlockHits hits;
+  for (; cursor_.pair < inner_.size(); ++cursor_.pair, cursor_.outer = 0) {
+    const Groups groups(trees, inner_[cursor_.pair]);
+    for (; cursor_.outer < groups.lanes.count; cursor_.outer += kBlockWidth, cursor_.inner = 0) {
+      while (cursor_.inner < groups.rows.count) {
+        if (tracker.exhausted()) return End::budget;
+        if (!next_.room_for(kBlockPairs) || !leaves_.room_for(kBlockPairs)) return End::room;
+        BlockPair block = groups.block(cursor_.outer, cursor_.inner);
+        block.row_end = std::min(block.row_end, block.row_begin + tracker.rows(block.lane_count));
+        detail::test_block(block, trees.placement(), seen_, hits);
+        collect(trees, groups, hits);
+        const std::uint32_t rows = block.row_end - block.row_begin;
+        cursor_.inner += rows;
+        tests_ += std::uint64_t{rows} * block.lane_count;
+        tracker.spend(std::uint64_t{rows} * block.lane_count);
+      }
+    }
+  }
+  finish_level(trees);
+  return End::level;
+}
+
+void SphereLevels::collect(const PlacedTrees& trees, const Groups& groups, const BlockHits& hits) noexcept {
+  const auto pair_of = [&](std::uint64_t mask) {
+    return groups.pair(cursor_.outer, cursor_.inner, static_cast<std::uint32_t>(std::countr_zero(mask)));
+  };
+  for (std::uint64_t mask = hits.meeting & ~hits.leaves; mask != 0; mask &= mask - 1) next_.push(pair_of(mask));
+  for (std::uint64_t mask = hits.leaves; mask != 0; mask &= mask - 1) leaves_.push(pair_of(mask));
+  for (std::uint64_t mask = hits.improving; mask != 0; mask &= mask - 1) {
+    const auto bit = static_cast<std::uint32_t>(std::countr_zero(mask));
+    improve(trees, pair_of(mask), hits.square[bit / kBlockWidth][bit % kBlockWidth], (hits.leaves >> bit & 1) != 0);
+  }
+}
+
+void SphereLevels::improve(const PlacedTrees& trees, NodePair pair, double square, bool leaves) noexcept {
+  const SiblingBlock &p = block_of(trees.first().tree, pair.a), &q = block_of(trees.second().tree, pair.b);
+  const std::uint32_t i = pair.a % kBlockWidth, j = pair.b % kBlockWidth;
+  const double slack = trees.placement().slack, scale = trees.relative().scale;
+  const double bound = detail::pair_bound(std::sqrt(square) + slack, double{p.radius[i]} + scale * double{q.radius[j]},
+                                          double{p.error[i]} + scale * double{q.error[j]},
+                                          double{p.depth[i]} + scale * double{q.depth[j]});
+  Best& best = leaves ? leaf_best_ : level_best_;
+  if (bound >= best.bound) return;
+  best = {bound, pair};
+  least_bound_ = std::min(least_bound_, bound);
+  // Slack covers the rounding of the block's own comparison: a pair that would be taken here is never withheld, so what
+  // is best does not depend on how the level was cut into calls.
+  (leaves ? seen_.best_leaf : seen_.best_inner) = static_cast<float>(bound + slack);
+}
+
+void SphereLevels::start_level(const PlacedTrees& trees) noexcept {
+  cursor_ = {};
+  level_best_ = {};
+  begin_seeing(seen_);
+  seen_.best_inner = std::numeric_limits<float>::infinity();
+  seen_.best_leaf = static_cast<float>(leaf_best_.bound + double{trees.placement().slack});
+}
+
+void SphereLevels::finish_level(const PlacedTrees& trees) noexcept {
+  std::swap(inner_, next_);
+  next_.clear();
+  settled_leaves_ = leaves_.size();
+  best_ = leaf_best_.bound <= level_best_.bound ? leaf_best_ : level_best_;
+  pruned_gap_ = std::min(pruned_gap_, gap_of(seen_));
+  start_level(trees);
+}
+
+void SphereLevels::give_up() noexcept {
+  inner_.clear();
+  next_.clear();
+  if (level_best_.bound < best_.bound) best_ = level_best_;
+}
+
+// What a depth-first search has seen; its tests count for a lower bound as those of a level do.
+struct SphereLevels::Probe {
+  detail::LevelState seen{};
+  NodePair found{};
+  double square = 0;
+};
+
+bool SphereLevels::probe(const PlacedTrees& trees, std::uint32_t level) noexcept {
+  Probe probe;
+  begin_seeing(probe.seen);
+  level_best_ = {};
+  if (!probe_below(trees, {0, 0}, std::min(level, kMaxProbedLevels), probe)) {
+    pruned_gap_ = std::min(pruned_gap_, gap_of(probe.seen));
+    return false;
+  }
+  improve(trees, probe.found, probe.square, false);
+  if (level_best_.bound < best_.bound) best_ = level_best_;
+  return true;
+}
+
+// The pair's children, the deepest overlap first. True once two nodes meet that are that many levels down, or leaves.
+bool SphereLevels::probe_below(const PlacedTrees& trees, NodePair pair, std::uint32_t levels, Probe& probe) noexcept {
+  const Groups groups(trees, pair);
+  BlockHits hits;
+  for (std::uint32_t outer = 0; outer < groups.lanes.count; outer += kBlockWidth) {
+    for (std::uint32_t inner = 0; inner < groups.rows.count;) {
+      const BlockPair block = groups.block(outer, inner);
+      detail::test_block(block, trees.placement(), probe.seen, hits);
+      const std::uint32_t at = inner, rows = block.row_end - block.row_begin;
+      tests_ += std::uint64_t{rows} * block.lane_count;
+      inner += rows;
+      for (std::uint64_t left = levels > 1 && hits.leaves == 0 ? hits.meeting : 0; left != 0;) {
+        const std::uint32_t bit = deepest_of(left, block, hits, trees.placement().scale);
+        left &= ~(std::uint64_t{1} << bit);
+        if (probe_below(trees, groups.pair(outer, at, bit), levels - 1, probe)) return true;
+      }
+      const std::uint64_t ends = levels > 1 ? hits.leaves : hits.meeting;
+      if (ends == 0) continue;
+      const std::uint32_t bit = deepest_of(ends, block, hits, trees.placement().scale);
+      probe.found = groups.pair(outer, at, bit);
+      probe.square = double{hits.square[bit / kBlockWidth][bit % kBlockWidth]};
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace orchard::runtime
