@@ -88,7 +88,7 @@ void paste(vtkImageData* picture, vtkImageData* part, int left, int bottom) {
   const int* size = part->GetDimensions();
   for (int y = 0; y < size[1]; ++y) {
     std::memcpy(picture->GetScalarPointer(left, bottom + y, 0), part->GetScalarPointer(0, y, 0),
-                static_cast<std::size_t>(size[0] * part->GetNumberOfScalarComponents()));
+                static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(part->GetNumberOfScalarComponents()));
   }
 }
 

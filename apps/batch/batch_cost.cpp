@@ -89,7 +89,7 @@ MeshCost expected_cost(const WorkerCommand& worker, double triangles) {
 
 void print_batch_cost(const BatchCommand& command, const WorkerCommand& worker, const Manifest& manifest,
                       const Shard& shard) {
-  const std::size_t jobs = std::max(1, command.jobs);
+  const auto jobs = static_cast<std::size_t>(std::max(1, command.jobs));
   std::vector<MeshCost> meshes;
   std::uint64_t triangles = 0;
   for (const BatchMesh& mesh : manifest.meshes) {

@@ -178,40 +178,51 @@ struct SweptOption {
 };
 
 struct MedialCommand {
+  // What is read and how the axis is built.
   std::filesystem::path mesh, folder;
   MeshOptions reading;
   MedialTuning tuning;
   AxisSource source;
-  bool outside = false;                       // the axis of the space around the solid, within a sphere
-  double outside_radius = 2;                  // of that sphere, in bounding radii
-  std::filesystem::path features;             // .obj: the edges that sheets reach to; empty: found by their loss
-  std::filesystem::path axis;                 // not empty: the axis of a file to judge; nothing is built
-  bool connect = false;                       // balls of files without cells, by their power diagram
-  std::vector<std::string> exports;           // of the axis: ma, ply, obj, graphml, vtp, npz, csv
-  bool report = false;                        // judge what was built, and write a page
-  std::vector<std::filesystem::path> beside;  // axes of files to judge by the same measures, in the same table
-  bool picture = false;                       // of where the judged axis is worst
-  std::string up = "y";                       // the mesh's axis that points up in the picture
-  Index quality_samples = 100'000;            // surface points of the judgement
-  Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
-  double few_error = 0;                 // percent of the diagonal that the simplified axis may be off; 0: not asked
-  std::string few_kind = "medial";      // what the balls of the simplified axis may be: medial or free
-  std::vector<std::string> importance;  // measures of the balls to add as arrays
-  std::string prune_curve;              // the measure whose values are written against error and size; empty: none
-  bool error_curve = false;             // simplify to ever fewer vertices, and write how far off each is
-  std::filesystem::path envelope;       // .obj: the surface of what the axis stands for; empty: none
-  double envelope_cell = 0.5;           // % of the diagonal
-  std::vector<std::string> sweep;       // NAME=VALUE,VALUE,..
-  std::vector<SweptOption> swept;       // what it says
-  std::vector<MedialCommand> runs;      // of a sweep: the command of each combination, the last option fastest
-  std::vector<std::string> choice;      // of such a run: the values of the options that are swept
-  bool keep = false;                    // of a sweep: write the axis of each run as well
-  std::string best = "hausdorff_max";   // of a sweep: the measure that its rows are printed by, the best first
-  std::optional<TreeRequest> tree;      // of a sweep: the tree to build from each axis
-  bool views = true;                    // ParaView files, if the program was built with VTK
-  Index light_balls = 20'000;           // of a file for spheres, where the axis has more; 0: no such file
-  std::vector<std::string> given;       // the options on the command line, as of BuildCommand
-  bool accept = false;                  // as of BuildCommand
+  bool outside = false;            // build the axis of the space between the solid and a sphere around it
+  double outside_radius = 2;       // the radius of that sphere, in bounding radii of the mesh
+  std::filesystem::path features;  // an .obj file of edges that sheets reach to; empty: they are found by their loss
+
+  // An axis that is read from a file and judged. Nothing is built then.
+  std::filesystem::path axis;  // empty: build one
+  bool connect = false;        // connect the balls of a file without cells by their power diagram
+
+  // What is computed from the axis.
+  std::vector<std::string> importance;  // the measures to add as arrays, one value for each ball
+  std::string prune_curve;   // the measure whose values are written with error and size of the pruned axis; or empty
+  bool error_curve = false;  // simplify to fewer and fewer vertices, and write the error of each step
+  Index few_vertices = 0;    // simplify to this many vertices; 0: until few_error is reached
+  double few_error = 0;      // the largest error of the simplified axis in percent of the diagonal; 0: not requested
+  std::string few_kind = "medial";  // "medial": balls of the axis only; "free": balls of any center and radius
+  std::filesystem::path envelope;   // an .obj file for the surface of the union that the axis represents; or empty
+  double envelope_cell = 0.5;       // the grid's spacing for that surface in percent of the diagonal
+
+  // How the axis is judged.
+  Index quality_samples = 100'000;            // the number of surface points at which it is measured
+  bool report = false;                        // write a page with measures and plots
+  std::vector<std::filesystem::path> beside;  // files of other axes to judge by the same measures, in the same table
+
+  // A sweep builds an axis for each combination of values.
+  std::vector<std::string> sweep;      // "NAME=VALUE,VALUE,..", as on the command line
+  std::vector<SweptOption> swept;      // the same, parsed
+  std::vector<MedialCommand> runs;     // the command of each combination; the last option varies fastest
+  std::vector<std::string> choice;     // in such a run: its values of the swept options
+  bool keep = false;                   // write the axis of each run as well
+  std::string best = "hausdorff_max";  // the measure that the table is sorted by, best first
+  std::optional<TreeRequest> tree;     // a tree to build from each axis
+
+  // What is written.
+  std::vector<std::string> exports;  // formats of the axis: ma, ply, obj, graphml, vtp, npz, csv
+  bool views = true;                 // write ParaView files, if the program was built with VTK
+  Index light_balls = 20'000;        // the number of spheres in a light file, if the axis has more; 0: no such file
+  bool picture = false;              // draw the places where the judged axis has its largest errors
+  std::string up = "y";              // the mesh's axis that points up in the picture
+  std::vector<std::string> given;    // as of BuildCommand
+  bool accept = false;               // as of BuildCommand
   Output output;
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line

@@ -188,6 +188,7 @@ std::vector<std::string> importance_names() {
 
 std::vector<std::string> prune_names() {
   std::vector<std::string> names;
+  names.reserve(kImportanceMeasures.size());
   for (const ImportanceMeasure measure : kImportanceMeasures) names.push_back(option_name(measure));
   return names;
 }

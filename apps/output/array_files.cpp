@@ -101,7 +101,7 @@ std::string to_npz(std::span<const NamedArray> arrays) {
     append(directory, static_cast<std::uint32_t>(bytes.size()));
     directory += name;
     append(bytes, std::uint32_t{0x04034b50});
-    bytes += entry + name + file;
+    bytes.append(entry).append(name).append(file);
   }
   require_room(bytes.size());
   const auto begin = static_cast<std::uint32_t>(bytes.size());

@@ -37,7 +37,7 @@ std::array<double, count> numbers_of(const std::string& option, const std::strin
     const std::size_t end = std::min(text.find(',', at), text.size());
     const auto value = finite_number(text.substr(std::min(at, text.size()), end - at));
     if (!value || (end == text.size()) != (i + 1 == count))
-      throw InputError(option + " " + text + ": expected " + expected);
+      throw InputError(std::string(option).append(" ").append(text).append(": expected ").append(expected));
     result.at(i) = *value;
     at = end + 1;
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "orchard/geometry/surface.h"
@@ -6,37 +7,48 @@
 
 namespace orchard::detail {
 
-// A binary tree over the triangles of a surface. Each node has a ball around its triangles and a slab between two
-// parallel planes, which is thin where the triangles are nearly coplanar. A ball that touches a finely meshed surface
-// from inside therefore does not have to visit all triangles near it.
+// A tree over the triangles of a surface with four children to a node. Around each child is a ball, and a slab between
+// two parallel planes that is thin where the child's triangles are nearly coplanar. Where the two meet is a flat disc.
+// A ball that touches a finely meshed surface from inside therefore does not have to visit all triangles near it.
 class SlabTree {
  public:
+  static constexpr int kWidth = 4;
+  // One number or one vector for each child.
+  using Lanes = Eigen::Array<double, kWidth, 1>;
+  using Vectors = Eigen::Array<double, kWidth, 3>;
+
   struct Node {
-    Point center = Point::Zero();
-    double radius = 0;
-    Vector normal = Vector::Zero();  // the slab is low <= normal x <= high
-    double low = 0, high = 0;
-    Index first = 0, count = 0;  // of a leaf: its items in triangles(); count is 0 in inner nodes
-    Index children = 0;          // the numbers of the two children are this and the next one
+    Vectors center = Vectors::Zero(), normal = Vectors::Zero();
+    Lanes radius = Lanes::Zero();
+    // The slab is low <= normal (x - center) <= high.
+    Lanes low = Lanes::Zero(), high = Lanes::Zero();
+    // A lower bound on the cosine of the angle between the child's normal and those of its triangles.
+    Lanes spread = Lanes::Zero();
+    std::array<Index, kWidth> children{};  // nodes; of a leaf, triangles
+    Index count = 0;                       // of children
+    bool is_leaf = false;
+  };
+
+  // What a search still looks for: something that a ball with a smaller radius touches, at a triangle whose normal has
+  // at most this component along the place's normal.
+  struct Limits {
+    double radius = 0, cosine = 1;
   };
 
   explicit SlabTree(const Surface& surface);
 
   const std::vector<Node>& nodes() const { return nodes_; }  // the root first
-  std::span<const Index> triangles(const Node& leaf) const {
-    return std::span(triangles_).subspan(leaf.first, leaf.count);
-  }
 
-  // Returns a lower bound on the radius of the balls that touch a triangle below the node; infinity if no triangle is
-  // in the cone.
-  static double min_touch(const Node& node, const TangentPlace& place);
-  // The same bound for ray_through_triangle().
-  static double min_ray(const Node& node, const TangentPlace& place);
+  // Returns, for each child, a lower bound on the radius of the balls that touch one of its triangles; infinity if none
+  // of them is within the limits and in the cone.
+  static Lanes min_touch(const Node& node, const TangentPlace& place, const Limits& limits);
+  // The same bounds for ray_through_triangle().
+  static Lanes min_ray(const Node& node, const TangentPlace& place, const Limits& limits);
 
  private:
-  static double max_depth(const Node& node, const TangentPlace& place, const Vector& way);
-  void fill(Index node, Index begin, Index end);
-  void bound(Node& node, Index begin, Index end) const;
+  Index fill(Index begin, Index end);
+  void halve(Index begin, Index middle, Index end);
+  void bound(Node& node, Index child, Index begin, Index end) const;
 
   const Surface& surface_;
   std::vector<Point> middles_;  // of triangles, while the tree is built

@@ -28,6 +28,26 @@ double seen_angle(const TangentPlace& place, const Point& other) {
   return 2 * std::asin(std::clamp(place.normal.dot(way) / way.norm(), 0.0, 1.0));
 }
 
+// The part of a triangle that one of its places lies on, up to rounding.
+Feature feature_at(const std::array<Point, 3>& corners, const Point& at) {
+  constexpr double kOnFeature = 1e-9;  // of the longest edge
+  std::array<Vector, 3> edges;
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    edges[i] = corners[(i + 1) % 3] - corners[i];
+    longest = std::max(longest, edges[i].norm());
+  }
+  const auto numbered = [](Feature first, std::size_t i) {
+    return static_cast<Feature>(static_cast<std::size_t>(first) + i);
+  };
+  for (std::size_t i = 0; i < 3; ++i)
+    if ((at - corners[i]).norm() <= kOnFeature * longest) return numbered(Feature::vertex0, i);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (edges[i].cross(at - corners[i]).norm() <= kOnFeature * longest * edges[i].norm())
+      return numbered(Feature::edge0, i);
+  return Feature::face;
+}
+
 // A feature (face, edge or vertex) of the triangle `other` that `triangle` shares: which of `triangle`'s own it is.
 Feature feature_on(const std::array<Index, 3>& triangle, const std::array<Index, 3>& other, Feature feature) {
   if (feature == Feature::face) return feature;
@@ -53,21 +73,24 @@ ThicknessAt TangentBallSearch::at(const SurfacePlace& place) {
   std::sort(around_.begin(), around_.end());
 
   ThicknessAt best;
+  ended_ = kNone;
   best.diameter = best.thickness = kNaN;
   best.contact = place.position;
   const Vector main = smooth_normal(surface_, place, std::cos(options_.smooth));
   best.normal = main;
   if (!(main.norm() > 0)) return best;
   try_normal(place, main, best);
-  if (place.feature == Feature::face || options_.definition == ThicknessDefinition::ray) return best;
-  for (const auto& [triangle, feature] : parts_) {
-    const Vector& normal = surface_.normal(triangle);
-    if (normal.isZero(0) || angle_between(normal, main) < kParallel) continue;
-    const bool concave = std::all_of(parts_.begin(), parts_.end(), [&](const auto& part) {
-      return descent_at(normal, surface_.corners(part.first), surface_.normal(part.first), part.second) <= kLevel;
-    });
-    if (concave) try_normal(place, normal, best);
+  if (place.feature != Feature::face && options_.definition == ThicknessDefinition::ball) {
+    for (const auto& [triangle, feature] : parts_) {
+      const Vector& normal = surface_.normal(triangle);
+      if (normal.isZero(0) || angle_between(normal, main) < kParallel) continue;
+      const bool concave = std::all_of(parts_.begin(), parts_.end(), [&](const auto& part) {
+        return descent_at(normal, surface_.corners(part.first), surface_.normal(part.first), part.second) <= kLevel;
+      });
+      if (concave) try_normal(place, normal, best);
+    }
   }
+  if (ended_ != kNone) set_thickness(place, best);
   return best;
 }
 
@@ -81,14 +104,17 @@ void TangentBallSearch::try_normal(const SurfacePlace& place, const Vector& norm
     if (std::isnan(best.diameter)) best.diameter = 0;
     return;
   }
-  run(first_, tangent, std::numeric_limits<double>::infinity());
+  // In the cone, depth >= sine x distance: no radius is above distance / (2 sine).
+  const Box& box = surface_.bounding_box();
+  const double farthest = (place.position - box.center()).norm() + box.diagonal().norm() / 2;
+  run(first_, tangent, {farthest / tangent.sine, std::isnan(best.diameter) ? -1 : best.diameter / 2});
   if (touched_ == kNone || 2 * found_.radius <= best.diameter) return;
+  ended_ = touched_;
   best.diameter = 2 * found_.radius;
   best.error = 2 * (found_.radius - low_);
   best.normal = normal;
   best.contact = found_.at;
   best.angle = rays ? angle_between(normal, surface_.normal(touched_)) : seen_angle(tangent, found_.at);
-  set_thickness(tangent, best);
 }
 
 // The largest angle between a triangle's normal and a neighbour's, among neighbours that continue it smoothly.
@@ -105,44 +131,49 @@ double TangentBallSearch::turn_around(Index triangle) const {
 // The contact that faces the place need not be the first that the ball meets, because the facets of a smooth surface
 // all lie a little off it: so a slightly larger ball is searched whose contact does face the place. The ball may grow
 // only by as much as facets explain, so a wall that ended it at a smaller angle is not passed over.
-void TangentBallSearch::set_thickness(const TangentPlace& place, ThicknessAt& at) {
+void TangentBallSearch::set_thickness(const SurfacePlace& place, ThicknessAt& at) {
   at.thickness = at.angle >= options_.facing - kSameAngle ? at.diameter : kNaN;
   if (!std::isnan(at.thickness) || options_.definition == ThicknessDefinition::ray) return;
-  double turn = turn_around(touched_);
+  double turn = 0;
+  surface_.triangles_at(ended_, feature_at(surface_.corners(ended_), at.contact), around_end_);
+  for (const Index triangle : around_end_) turn = std::max(turn, turn_around(triangle));
   for (const auto& [triangle, feature] : parts_) turn = std::max(turn, turn_around(triangle));
   const double limit = at.diameter / 2 / (1 - kFacets * turn / options_.smooth);
   max_cosine_ = std::cos(std::max(options_.facing - turn / 2 - kSameAngle, 0.0));
-  run(facing_, {place.position, place.normal, std::sin(options_.facing / 2)}, limit * (1 + kSame));
+  const TangentPlace tangent{place.position, at.normal, std::sin(options_.facing / 2)};
+  run(facing_, tangent, {limit * (1 + kSame), -1});
   max_cosine_ = 1;
   if (touched_ == kNone) return;
   at.thickness = 2 * found_.radius;
   at.contact = found_.at;
-  at.angle = seen_angle(place, found_.at);
+  at.angle = seen_angle(tangent, found_.at);
 }
 
-double TangentBallSearch::bound(const SlabTree::Node& node, const TangentPlace& place) const {
-  return options_.definition == ThicknessDefinition::ray ? SlabTree::min_ray(node, place)
-                                                         : SlabTree::min_touch(node, place);
+SlabTree::Lanes TangentBallSearch::bounds(const SlabTree::Node& node, const TangentPlace& place) const {
+  const SlabTree::Limits limits{found_.radius, max_cosine_};
+  return options_.definition == ThicknessDefinition::ray ? SlabTree::min_ray(node, place, limits)
+                                                         : SlabTree::min_touch(node, place, limits);
 }
 
-void TangentBallSearch::run(Search& search, const TangentPlace& place, double limit) {
-  found_ = {limit, place.position};
+void TangentBallSearch::run(Search& search, const TangentPlace& place, const Radii& radii) {
+  found_ = {radii.limit, place.position};
   touched_ = kNone;
   work_ = 0;
+  low_ = 0;
   if (search.touched != kNone && look_at(place, search.touched)) slide(place);
-  this->search(place);
+  if (found_.radius > radii.enough) this->search(place, search.may_miss, radii.enough);
   if (low_ < found_.radius && touched_ != kNone) slide(place);
   search.touched = touched_;
 }
 
 // Visits the node with the least bound on the ball first, until no bound is below the ball that was found.
-void TangentBallSearch::search(const TangentPlace& place) {
-  waiting_.assign(1, {bound(tree_.nodes()[0], place), 0});
+void TangentBallSearch::search(const TangentPlace& place, bool may_miss, double enough) {
+  waiting_.assign(1, {0, 0});
   while (!waiting_.empty()) {
     const Entry top = waiting_.front();
     low_ = top.bound;
     if (low_ >= (1 - kSame) * found_.radius) break;
-    if (work_ >= options_.work && std::isfinite(found_.radius)) return;
+    if (found_.radius <= enough || (work_ >= options_.work && (may_miss || touched_ != kNone))) return;
     std::pop_heap(waiting_.begin(), waiting_.end());
     waiting_.pop_back();
     descend(place, top.node);
@@ -150,22 +181,28 @@ void TangentBallSearch::search(const TangentPlace& place) {
   low_ = found_.radius;
 }
 
-// Goes down to a leaf, at every node to the child with the lesser bound. The other child waits in the queue.
+// Goes down to a leaf, at every node to the child with the least bound. The other children wait in the queue.
 void TangentBallSearch::descend(const TangentPlace& place, Index index) {
-  const auto& nodes = tree_.nodes();
-  while (nodes[index].count == 0) {
-    const Index first = nodes[index].children;
-    Entry near{bound(nodes[first], place), first}, far{bound(nodes[first + 1], place), first + 1};
-    work_ += 2;
-    if (far.bound < near.bound) std::swap(near, far);
-    if (far.bound < found_.radius) {
-      waiting_.push_back(far);
+  while (true) {
+    const SlabTree::Node& node = tree_.nodes()[index];
+    const SlabTree::Lanes bounds = this->bounds(node, place);
+    work_ += node.count;
+    if (node.is_leaf) {
+      for (Index i = 0; i < node.count; ++i)
+        if (bounds[i] < found_.radius) look_at(place, node.children[i]);
+      return;
+    }
+    Index nearest = 0;
+    for (Index i = 1; i < node.count; ++i)
+      if (bounds[i] < bounds[nearest]) nearest = i;
+    for (Index i = 0; i < node.count; ++i) {
+      if (i == nearest || !(bounds[i] < found_.radius)) continue;
+      waiting_.push_back({bounds[i], node.children[i]});
       std::push_heap(waiting_.begin(), waiting_.end());
     }
-    if (!(near.bound < found_.radius)) return;
-    index = near.node;
+    if (!(bounds[nearest] < found_.radius)) return;
+    index = node.children[nearest];
   }
-  for (const Index triangle : tree_.triangles(nodes[index])) look_at(place, triangle);
 }
 
 // Goes from triangle to triangle across edges as long as the ball gets smaller. Where the search ended early, the ball
@@ -182,7 +219,6 @@ void TangentBallSearch::slide(const TangentPlace& place) {
 
 bool TangentBallSearch::look_at(const TangentPlace& place, Index triangle) {
   if (std::binary_search(around_.begin(), around_.end(), triangle)) return false;
-  ++work_;
   if (max_cosine_ < 1 && surface_.normal(triangle).dot(place.normal) > max_cosine_) return false;
   const auto corners = surface_.corners(triangle);
   const Touch touch = options_.definition == ThicknessDefinition::ray

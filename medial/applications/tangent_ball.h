@@ -24,27 +24,34 @@ class TangentBallSearch {
     // The top of the heap is the entry with the smallest bound, and the smallest node among equal bounds.
     bool operator<(const Entry& other) const { return std::pair(bound, node) > std::pair(other.bound, other.node); }
   };
-  // The state of one of the two searches of a place, with the triangle where the last one ended.
+  // One of the two searches of a place.
   struct Search {
-    Index touched = kNone;
+    bool may_miss;          // whether it may end with nothing found
+    Index touched = kNone;  // the triangle where the last one ended
+  };
+  // The radii that a search is for. Triangles that only balls of radius `limit` or more touch are not looked for. The
+  // search ends as soon as a ball is found that is no larger than `enough`.
+  struct Radii {
+    double limit, enough;
   };
   void try_normal(const SurfacePlace& place, const Vector& normal, ThicknessAt& best);
   double turn_around(Index triangle) const;
-  void set_thickness(const TangentPlace& place, ThicknessAt& at);
-  // Looks only for triangles that balls smaller than `limit` touch.
-  void run(Search& search, const TangentPlace& place, double limit);
-  void search(const TangentPlace& place);
+  void set_thickness(const SurfacePlace& place, ThicknessAt& at);
+  void run(Search& search, const TangentPlace& place, const Radii& radii);
+  void search(const TangentPlace& place, bool may_miss, double enough);
   void descend(const TangentPlace& place, Index node);
   void slide(const TangentPlace& place);
   bool look_at(const TangentPlace& place, Index triangle);  // returns whether the triangle ends the ball
-  double bound(const SlabTree::Node& node, const TangentPlace& place) const;
+  SlabTree::Lanes bounds(const SlabTree::Node& node, const TangentPlace& place) const;
 
   const Surface& surface_;
   const SlabTree& tree_;
   const ThicknessOptions options_;
   std::vector<Index> around_;                     // the triangles that the place is on, ascending
   std::vector<std::pair<Index, Feature>> parts_;  // of them, and the part of each that the place is on
-  Search first_, facing_;
+  Search first_{.may_miss = false}, facing_{.may_miss = true};
+  Index ended_ = kNone;            // the triangle that ends the largest ball of the place so far
+  std::vector<Index> around_end_;  // the triangles that this ball touches there
   std::vector<Entry> waiting_;
   // Triangles whose normal has a larger component along the place's normal are skipped, because they do not face the
   // place.

@@ -11,6 +11,7 @@ namespace {
 // triangles because of rounding.
 constexpr double kOnTriangleBorder = 1e-12;  // of the triangle's area
 constexpr double kOutside = 1e-10;  // of a squared radius: far more than the roundings of a distance from the centre
+constexpr double kFarLarger = 1e8;  // of a squared radius, beside a squared distance
 
 void take(Touch& best, const TangentPlace& place, const Point& at) {
   const Vector way = place.position - at;
@@ -66,6 +67,8 @@ std::optional<Interval> part_in_cone(const TangentPlace& place, const Point& a, 
 // Whether no place of an edge makes a ball smaller than `limit`: those that do lie inside the ball of this radius, up
 // to rounding.
 bool is_edge_outside(const TangentPlace& place, const Point& a, const Point& b, double limit) {
+  // Of a ball that is far larger than the distance, or infinite, the margin leaves nothing to test.
+  if (!(limit * limit < kFarLarger * (place.position - a).squaredNorm())) return false;
   const Vector e = b - a, way = place.position - limit * place.normal - a;
   const double squared = e.squaredNorm();
   const double t = squared > 0 ? std::clamp(way.dot(e) / squared, 0.0, 1.0) : 0;

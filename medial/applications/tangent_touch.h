@@ -25,9 +25,9 @@ struct Touch {
 
 // The smallest of these balls that meets a triangle in the cone, exact up to a few roundings: its radius is the least
 // |p - q|^2 / (2 n (p - q)) over the points q of the triangle in the cone. `normal`: the triangle's unit normal, or
-// zero if the triangle is degenerate. A ball that is no smaller than `limit` need not be found.
+// zero if the triangle is degenerate. A ball that is no smaller than `limit`, which may be infinite, need not be found.
 Touch touch_of_triangle(const TangentPlace& place, const std::array<Point, 3>& corners, const Vector& normal,
-                        double limit = std::numeric_limits<double>::infinity());
+                        double limit);
 
 // Where the ray from p along -n meets a triangle. The touch's radius is half the distance along the ray.
 Touch ray_through_triangle(const TangentPlace& place, const std::array<Point, 3>& corners, const Vector& normal);

@@ -83,7 +83,7 @@ class SeamReacher {
     ExactBall at = from;
     for (int i = 0; i < steps; ++i) {
       const Point start = at.center + step * out;
-      const ExactBall next = solver.solve(start, at.touching());
+      ExactBall next = solver.solve(start, at.touching());
       const bool goes_on = next.exact && (next.center - start).norm() <= step && next.loss >= sheets_.options.level;
       if (!goes_on) break;
       if (next.count > 2) return next;

@@ -44,12 +44,12 @@ SurfacePaths::SurfacePaths(const Surface& surface, double max_edge) {
 void SurfacePaths::add_arcs() {
   struct Side {
     Index low, high, opposite;
-    auto operator<=>(const Side&) const = default;
+    auto operator<=>(const Side&) const = default;  // NOLINT(modernize-use-nullptr): no 0 here
   };
   struct Way {
     Index from, to;
     float length;
-    auto operator<=>(const Way&) const = default;
+    auto operator<=>(const Way&) const = default;  // NOLINT(modernize-use-nullptr): no 0 here
   };
   std::vector<Side> sides;
   for (const auto& corners : mesh_.triangles) {

@@ -117,6 +117,7 @@ void set_parts(const std::vector<RawLabel>& raw, const PartOptions& options, Sur
     names.push_back(label);
   }
   std::vector<Index> labels;
+  labels.reserve(raw.size());
   for (const RawLabel& label : raw) labels.push_back(numbers.at(label));
   const detail::PatchMesh patches(parts.mesh);
   patches.smooth(labels, options.smoothing);

@@ -117,6 +117,7 @@ class LevelCut {
 Index cut_at_level(const Surface& surface, BallComplex& complex, double level, double merging) {
   const ValueOfBall value_of = [level](const ExactBall& ball) { return scaled_loss(ball, level); };
   std::vector<double> values;
+  values.reserve(complex.balls.size());
   for (const ExactBall& ball : complex.balls) values.push_back(value_of(ball));
   return LevelCut(surface, complex, std::move(values), value_of, merging).run();
 }
@@ -124,6 +125,7 @@ Index cut_at_level(const Surface& surface, BallComplex& complex, double level, d
 Index cut_where_below(const Surface& surface, BallComplex& complex, const std::vector<double>& over_level,
                       double merging) {
   std::vector<double> values;
+  values.reserve(over_level.size());
   for (const double value : over_level) values.push_back(scaled(value));
   return LevelCut(surface, complex, std::move(values), {}, merging).run();
 }

@@ -98,6 +98,7 @@ TEST(Offset, OfABoxIsRoundOutsideAndSharpInside) {
 TEST(Offset, OfACylinder) {
   constexpr int kSides = 24;
   std::vector<std::array<double, 2>> outline;
+  outline.reserve(kSides);
   for (int i = 0; i < kSides; ++i)
     outline.push_back({std::cos(2 * std::numbers::pi * i / kSides), std::sin(2 * std::numbers::pi * i / kSides)});
   std::vector<std::array<Index, 3>> caps;

@@ -182,7 +182,7 @@ inline void ask_everything(const Judge& judge, Draw& draw, double ball) {
     for (double& x : ray.direction) x = std::ldexp(x, chance(0.5) ? 300 : -900);
     if (ray.longest != std::numeric_limits<double>::infinity()) ray.longest = 1e-3;
   }
-  if (Vec3(ray.direction) == Vec3{}) ray.direction = {1, 0, 0};
+  if (std::ranges::all_of(ray.direction, [](double x) { return x == 0; })) ray.direction = {1, 0, 0};
   judge.ray(ray);
   const Vec3 p = somewhere();
   judge.segment(p, chance(0.1) ? p : chance(0.5) ? somewhere() : p + draw.in_ball(1));

@@ -151,7 +151,7 @@ TEST(BroadPhase, SleepsWhileNothingCanHappen) {
   EXPECT_TRUE(now.pairs.empty());
   EXPECT_GT(now.time, 0.5);
   const std::uint64_t asked = world.motions_asked();
-  for (double t = 0; t < now.time - 0.01; t += 0.01) EXPECT_EQ(world.advance(t).time, now.time);
+  for (int i = 0; 0.01 * (i + 1) < now.time; ++i) EXPECT_EQ(world.advance(0.01 * i).time, now.time);
   EXPECT_EQ(world.motions_asked(), asked);
 }
 
@@ -163,7 +163,8 @@ TEST(BroadPhase, PortableAndVectorLoopsDoTheSame) {
     BroadPhase world(bodies.source());
     for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
     std::vector<std::uint64_t> log;
-    for (double t = 0; t <= 0.5; t += 0.01) {
+    for (int i = 0; i <= 50; ++i) {
+      const double t = 0.01 * i;
       for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) log.push_back(now.pairs.size());
       log.push_back(world.motions_asked());
     }
@@ -176,7 +177,8 @@ TEST(BroadPhase, HandlesAlignedAndDegenerateConfigurations) {
   std::vector<Motion> values(60);
   for (std::size_t i = 0; i < values.size(); ++i) {
     Motion& m = values[i];
-    m.position = {0, static_cast<double>(i % 10) * 2, static_cast<double>(i / 10) * 2};  // spheres that just touch
+    const std::size_t row = i / 10, column = i % 10;
+    m.position = {0, static_cast<double>(column) * 2, static_cast<double>(row) * 2};  // spheres that just touch
     m.radius = i % 3 == 0 ? 0 : 1;
     m.velocity = {1, 0, 0};  // all the same
   }

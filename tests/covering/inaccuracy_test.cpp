@@ -72,7 +72,8 @@ TEST(Inaccuracy, IsZeroForASphereInsideTheSolid) {
 TEST(Inaccuracy, IsZeroForASphereAcrossInteriorSurfaceInNoTime) {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {
-    const Point at(i % 2, (i / 2) % 2, i / 4);
+    const int column = i % 2, row = i / 2 % 2, layer = i / 4;
+    const Point at(column, row, layer);
     const auto first = static_cast<Index>(mesh.vertices.size());
     const TriangleMesh cube = test::box(at, at + Vector::Ones());
     mesh.vertices.insert(mesh.vertices.end(), cube.vertices.begin(), cube.vertices.end());

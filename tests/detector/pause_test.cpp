@@ -128,7 +128,7 @@ TEST(Pauses, OfNoLengthAreNothingSpecial) {
 }
 
 TEST(Pauses, OfADetectorThatKeepsTheStatesEndWhereBodiesAreThen) {
-  Detector world({.time_step = kStep});
+  Detector world(DetectorOptions{.time_step = kStep});
   const ShapeId ball = world.add_sphere(1);
   const BodyId a = world.add_body(ball, {.velocity = {1, 0, 0}});
   world.add_static({{ball}}, {.translation = {600, 0, 0}});

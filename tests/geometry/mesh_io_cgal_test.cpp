@@ -109,7 +109,7 @@ TEST(ReadStl, NamesTheLineOrByteAndTheFault) {
   };
   for (const auto& [text, parts] : cases) {
     for (const std::string& part : parts) {
-      test::expect_input_error([&] { test::read_bytes(read_stl, text, "mesh.stl"); }, {"mesh.stl", part});
+      test::expect_input_error([&bytes = text] { test::read_bytes(read_stl, bytes, "mesh.stl"); }, {"mesh.stl", part});
     }
   }
 }
@@ -213,7 +213,7 @@ TEST(ReadOff, NamesTheLineAndTheFault) {
   };
   for (const auto& [text, parts] : cases) {
     for (const std::string& part : parts) {
-      test::expect_input_error([&] { test::read_bytes(read_off, text, "mesh.off"); }, {"mesh.off", part});
+      test::expect_input_error([&bytes = text] { test::read_bytes(read_off, bytes, "mesh.off"); }, {"mesh.off", part});
     }
   }
 }

@@ -59,7 +59,8 @@ TEST_F(MeshIo, SaysWhatIsWrongWithAFileItCannotOpen) {
       {"empty.obj", "the file is empty"}, {"mesh.xyz", "unknown mesh format"}, {"mesh", "known are .obj, .ply, .stl"},
   };
   for (const auto& [name, fault] : cases) {
-    test::expect_input_error([&] { read_mesh(folder_ / name); }, {(folder_ / name).string(), fault});
+    const fs::path file = folder_ / name;
+    test::expect_input_error([&] { read_mesh(file); }, {file.string(), fault});
   }
   test::expect_input_error([] { read_mesh(""); }, {"unknown mesh format"});
 }
@@ -73,15 +74,18 @@ TEST_F(MeshIo, DoesNotWaitForADevice) {
 // One limit, here: what is larger made trees that no reader took.
 TEST_F(MeshIo, RefusesMeshesOfASizeThatNothingWorksWith) {
   const auto written = [&](const std::string& name, double scale, double offset = 0) {
-    const fs::path file = folder_ / name;
+    fs::path file = folder_ / name;
     write_obj(file, test::transformed(test::box({-1, -1, -1}, {1, 1, 1}), scale, Vector::Constant(offset)));
     return file;
   };
   EXPECT_NO_THROW(read_mesh(written("largest.obj", kMaxCoordinate)));
   EXPECT_NO_THROW(read_mesh(written("least.obj", kMinExtent / 2)));
-  for (const auto& [scale, offset] : {std::pair{1.001 * kMaxCoordinate, 0.0}, {1e20, 0.0}, {1.0, -1e16}, {1e300, 0.0}})
-    test::expect_input_error([&] { (void)read_mesh(written("large.obj", scale, offset)); },
+  for (const auto& [scale, offset] :
+       {std::pair{1.001 * kMaxCoordinate, 0.0}, {1e20, 0.0}, {1.0, -1e16}, {1e300, 0.0}}) {
+    const fs::path file = written("large.obj", scale, offset);
+    test::expect_input_error([&] { (void)read_mesh(file); },
                              {"large.obj", "vertex 0", "limit of 1e+15", "scale the mesh down"});
+  }
   for (const double scale : {0.499 * kMinExtent, 1e-20, 1e-300})
     test::expect_input_error([&] { (void)read_mesh(written("small.obj", scale)); },
                              {"small.obj", "limit of 1e-12", "scale the mesh up"});

@@ -30,7 +30,8 @@ using test::with;
 TriangleMesh chessboard() {
   TriangleMesh mesh;
   for (int i = 0; i < 27; ++i) {
-    const Point corner(i % 3, i / 3 % 3, i / 9);
+    const int column = i % 3, row = i / 3 % 3, layer = i / 9;
+    const Point corner(column, row, layer);
     if (i % 2 == 0) mesh = joined({mesh, test::box(corner, corner + Vector::Ones())});
   }
   return welded(mesh);

@@ -132,7 +132,7 @@ TEST(MedialAxis, OfATorusFollowsTheCoreCircle) {
 // side of the solid, and pass for no place between two.
 TEST(MedialAxis, HasWideAnglesBetweenTwoSidesAlone) {
   int wide = 0, misled = 0;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     TriangleMesh mesh = test::icosphere(3);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       Random random(seed, 7, i);

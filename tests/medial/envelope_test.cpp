@@ -53,7 +53,7 @@ TEST(EnvelopeMesh, HasTheVolumeOfARoundedTriangle) {
   mesh.radii = {0.3, 0.3, 0.3};
   mesh.triangles = {{0, 1, 2}};
   complete(mesh);
-  const auto length = [&](int a, int b) { return (mesh.centers[a] - mesh.centers[b]).norm(); };
+  const auto length = [&](Index a, Index b) { return (mesh.centers[a] - mesh.centers[b]).norm(); };
   const double r = 0.3, around = length(0, 1) + length(1, 2) + length(0, 2);
   const double volume = 2 * 1.5 * r + std::numbers::pi / 2 * around * r * r + 4.0 / 3 * std::numbers::pi * r * r * r;
   const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 0.02}).mesh;

@@ -75,7 +75,8 @@ TEST(FeatureEdges, OfABoxAreItsTwelve) {
 TEST(FeatureEdges, OfACylinderAreItsRims) {
   for (const int around : {24, 64, 360}) {
     const Surface surface(test::turned({{1, -4}, {1, 4}}, around));
-    EXPECT_EQ(FeatureEdges(surface, options_for(surface)).edges().size(), 2u * around) << around;
+    EXPECT_EQ(FeatureEdges(surface, options_for(surface)).edges().size(), 2 * static_cast<std::size_t>(around))
+        << around;
   }
 }
 

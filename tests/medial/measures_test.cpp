@@ -19,25 +19,26 @@ MedialMesh completed(MedialMesh mesh) {
 }
 
 // Three squares of n x n cells around a common edge of length 1, and a curve of length 3 from its end.
-MedialMesh three_squares(int n) {
+MedialMesh three_squares(std::size_t n) {
   MedialMesh mesh;
   std::vector<std::vector<std::vector<Index>>> number(3);
-  for (int sheet = 0; sheet < 3; ++sheet) {
-    for (int i = 0; i <= n; ++i) {
+  for (std::size_t sheet = 0; sheet < 3; ++sheet) {
+    for (std::size_t i = 0; i <= n; ++i) {
       number[sheet].emplace_back();
-      for (int j = 0; j <= n; ++j) {
+      for (std::size_t j = 0; j <= n; ++j) {
         if (sheet > 0 && i == 0) {
           number[sheet][0].push_back(number[0][0][j]);
           continue;
         }
-        const double turn = 2 * std::numbers::pi / 3 * sheet, out = static_cast<double>(i) / n;
+        const double side = static_cast<double>(n), out = static_cast<double>(i) / side;
+        const double turn = 2 * std::numbers::pi / 3 * static_cast<double>(sheet);
         number[sheet][i].push_back(mesh.size());
-        mesh.centers.emplace_back(out * std::cos(turn), out * std::sin(turn), static_cast<double>(j) / n);
+        mesh.centers.emplace_back(out * std::cos(turn), out * std::sin(turn), static_cast<double>(j) / side);
         mesh.radii.push_back(0.5);
       }
     }
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
         const Index a = number[sheet][i][j], b = number[sheet][i + 1][j], c = number[sheet][i + 1][j + 1],
                     d = number[sheet][i][j + 1];
         mesh.triangles.push_back({a, b, c});

@@ -169,8 +169,8 @@ TEST(RefineAxis, WhatReachesForARidgeIsOneSheetWithAStraightBorder) {
     const MedialBuild without = build_medial_axis(surface, options);
     const MedialMesh mesh = medial_mesh(build.axis);
     const detail::Reconstruction reconstruction(mesh);
-    for (double z = 0; z <= 3; z += 0.01)
-      ASSERT_LE(reconstruction.distance({0.5, 0.6 + height, z}),
+    for (int i = 0; i <= 300; ++i)
+      ASSERT_LE(reconstruction.distance({0.5, 0.6 + height, 0.01 * i}),
                 1.96 * RefineOptions{}.border_loss * diagonal(surface));
     // Teeth side by side would double it.
     EXPECT_GT(build.refinement.reached_places, 0u);
@@ -189,7 +189,7 @@ TEST(RefineAxis, WhatStandsOutAlongARidgeFarFromTheAxisGetsNoSpikes) {
     outline.push_back({std::cos(angle), std::sin(angle)});
   }
   const Surface roller(test::extruded(outline, kLength));
-  for (const Index points : {2000, 8000}) {
+  for (const Index points : {2000u, 8000u}) {
     SCOPED_TRACE(points);
     MedialBuildOptions options = reaching(points, test::first_seed() + 1);
     const MedialBuild build = build_medial_axis(roller, options);

@@ -11,9 +11,9 @@ int main(int argc, char** argv) {
     return 1;
   }
   for (int g = 0; g < model->ngeom; ++g) {
-    const mjtNum* at = model->geom_pos + 3 * g;
+    const mjtNum* at = model->geom_pos + (size_t)3 * (size_t)g;
     if (model->geom_type[g] != mjGEOM_SPHERE) return 1;
-    printf("%.17g,%.17g,%.17g,%.17g,%s\n", at[0], at[1], at[2], model->geom_size[3 * g],
+    printf("%.17g,%.17g,%.17g,%.17g,%s\n", at[0], at[1], at[2], model->geom_size[(size_t)3 * (size_t)g],
            mj_id2name(model, mjOBJ_BODY, model->geom_bodyid[g]));
   }
   mj_deleteModel(model);

@@ -62,6 +62,7 @@ Ball ball_of(const Triangle& t) {
 
 std::vector<Ball> balls_of(const std::vector<Triangle>& triangles) {
   std::vector<Ball> balls;
+  balls.reserve(triangles.size());
   for (const Triangle& t : triangles) balls.push_back(ball_of(t));
   return balls;
 }

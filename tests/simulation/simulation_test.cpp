@@ -169,7 +169,7 @@ TEST(Simulation, AConveyorRemovesAndAddsBodies) {
 TEST(Simulation, ASmallerBudgetLeavesMoreOpenAtLowerLevels) {
   const runtime::PackedSphereTree ring = runtime::test::build_tree(runtime::test::torus(16, 8, 1, 0.4));
   std::size_t open[2] = {}, deep[2] = {};
-  for (const std::size_t run : {0, 1}) {
+  for (std::size_t run = 0; run < 2; ++run) {
     Simulation simulation("pile", {shape_of(ring)}, 8, 2);
     for (int frame = 0; frame < 150; ++frame) {
       const FrameRecord record = simulation.frame({.work = run == 0 ? 400u : 4000u});

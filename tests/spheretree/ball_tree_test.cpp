@@ -24,7 +24,7 @@ std::vector<Sphere> random_balls(Index count, std::uint64_t seed, const Vector& 
 }
 
 TEST(BallTree, HoldsEachBallInAllThatIsAboveIt) {
-  for (const Index count : {1, 2, 8, 9, 137}) {
+  for (const Index count : {1u, 2u, 8u, 9u, 137u}) {
     const std::vector<Sphere> balls = random_balls(count, count);
     const SphereTree tree = ball_tree(balls);
     validate(tree);

@@ -20,7 +20,7 @@ SphereSetBuild build(const Surface& surface, SphereFit fit, Index spheres) {
 
 TEST(SphereSet, CoversWithExactlyAsManyAsAskedFor) {
   const Surface surface(l_shape());
-  for (const Index spheres : {1, 2, 7}) {
+  for (const Index spheres : {1u, 2u, 7u}) {
     const SphereSetBuild set = build(surface, SphereFit::cover, spheres);
     EXPECT_EQ(set.spheres.size(), spheres);
     EXPECT_TRUE(set.kept);
@@ -31,7 +31,7 @@ TEST(SphereSet, CoversWithExactlyAsManyAsAskedFor) {
 TEST(SphereSet, LiesInsideAndFillsMoreWithMoreSpheres) {
   const Surface surface(l_shape());
   double left_out = surface.report().volume;
-  for (const Index spheres : {1, 6}) {
+  for (const Index spheres : {1u, 6u}) {
     const SphereSetBuild set = build(surface, SphereFit::inside, spheres);
     EXPECT_EQ(set.spheres.size(), spheres);
     EXPECT_TRUE(set.kept);

@@ -258,7 +258,7 @@ TEST(TightenedTree, IsTheSameForAMeshThatIsScaledOrMoved) {
     SurfaceSampling moved = points;
     for (Point& point : moved.points) point = frame.factor * point + frame.offset;
     const Surface surface(transformed(mesh, frame.factor, frame.offset));
-    const SphereTree tree = tightened_tree(surface, moved, {.depth = 2, .effort = Effort::low}).tree;
+    SphereTree tree = tightened_tree(surface, moved, {.depth = 2, .effort = Effort::low}).tree;
     expect_conservative(tree, surface, "moved U");
     return tree;
   };
@@ -337,7 +337,8 @@ TEST(TightenedTree, StopsWhenCancelled) {
 TriangleMesh lattice_of_parts(int n) {
   TriangleMesh mesh;
   for (int i = 0; i < n * n * n; ++i) {
-    const Point at(i % n, (i / n) % n, i / (n * n));
+    const int column = i % n, row = i / n % n, layer = i / (n * n);
+    const Point at(column, row, layer);
     const TriangleMesh part = box(at, at + Vector::Constant(0.4));
     const auto first = static_cast<Index>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());

@@ -48,7 +48,8 @@ std::vector<PlanarShape> many_disks(std::size_t count, std::uint64_t seed) {
   const double radius = std::sqrt(area / std::numbers::pi);
   std::vector<PlanarShape> shapes;
   const double edge = 1 + 2 * radius;
-  for (double i = 0; i < n * edge * edge; ++i)
+  const auto disks = static_cast<std::size_t>(std::ceil(n * edge * edge));
+  for (std::size_t i = 0; i < disks; ++i)
     shapes.push_back(
         PlanarShape::disk({random.uniform(-radius, 1 + radius), random.uniform(-radius, 1 + radius)}, radius));
   return shapes;

@@ -62,7 +62,8 @@ PosedBodies random_scene(const std::vector<Body>& all, std::uint64_t seed) {
 }
 
 TEST(NarrowPhase, GivesTheSameAnswersAtEveryLevelWhenTheBodiesAreExchanged) {
-  const auto all = bodies(), copies = all;
+  const auto all = bodies();
+  const auto copies = all;  // other trees, of the same values
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     const PosedBodies s = random_scene(all, seed);

@@ -27,7 +27,7 @@ TrianglePoints points(const LatticeTriangle& t, double unit) {
 void expect_matches(const LatticeTriangle& a, const LatticeTriangle& b, double unit) {
   const bool expected = lattice_triangles_meet(a, b);
   TrianglePoints pa = points(a, unit), pb = points(b, unit);
-  for (int order = 0; order < 3; ++order) {
+  for (std::size_t order = 0; order < 3; ++order) {
     Vec3 witness{};
     ASSERT_EQ(triangles_intersect(pa, pb, &witness), expected);
     ASSERT_EQ(triangles_intersect(pb, pa, nullptr), expected);

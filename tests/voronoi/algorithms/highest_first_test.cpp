@@ -110,7 +110,7 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
 // more.
 TEST(HighestFirstVoronoi, TakesExactSignsSoonWhereASampleIsInDoubt) {
   const Surface lamp(read_mesh(std::filesystem::path(ORCHARD_DATA_DIR) / "lamp.obj"));
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const auto points = sample_surface(lamp, {.face_points = 40000, .edge_points = 10000, .seed = seed}).points;
     double last = 0, undone = 0;
     const auto [diagram, report] = highest_first_voronoi(points, [&](std::string_view, double part) {

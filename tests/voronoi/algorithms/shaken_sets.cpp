@@ -13,7 +13,7 @@ namespace orchard::test {
 namespace {
 
 int between(Random& random, int low, int high) {
-  return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1)));
+  return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) + 1));
 }
 
 Point on_ring(double radius, int i, int around, double z) {

@@ -66,16 +66,16 @@ TEST(ShakenSets, HaveRightDiagramsAtOnceAndInPieces) {
 // Found among thousands, each for a mistake of its own: a sphere, at once and in pieces, that was a neighbour's and not
 // its own; a hull that was folded, turned around an edge twice, or had lost a point.
 TEST(ShakenSets, ThatHadWrongDiagramsOnceHaveRightOnes) {
-  for (const std::uint64_t seed :
-       {640010906, 30004220, 17, 83, 127, 238, 320, 340, 360, 362, 5, 15, 26, 27, 34, 40, 42, 55, 74}) {
+  for (const std::uint64_t seed : {640010906u, 30004220u, 17u, 83u, 127u, 238u, 320u, 340u, 360u, 362u, 5u, 15u, 26u,
+                                   27u, 34u, 40u, 42u, 55u, 74u}) {
     const test::ShakenSet set = test::shaken_set(seed);
     expect_right_at_once(set.name, set.points);
-    for (const std::uint64_t max : {1, 4, 20}) expect_right_in_pieces(set.name, set.points, max, seed);
+    for (const std::uint64_t max : {1u, 4u, 20u}) expect_right_in_pieces(set.name, set.points, max, seed);
   }
 }
 
 TEST(ShakenSets, InPiecesOfWhichFlatVerticesMadeWrongDiagramsHaveRightOnes) {
-  for (const std::uint64_t seed : {60020389, 60021837, 60024323, 60033294, 110903385}) {
+  for (const std::uint64_t seed : {60020389u, 60021837u, 60024323u, 60033294u, 110903385u}) {
     const test::ShakenSet set = test::shaken_set(seed);
     expect_right_in_pieces(set.name, set.points, max_at_once(seed), seed);
   }
@@ -88,7 +88,7 @@ TEST(ShakenSets, InFilesThatHadWrongDiagramsOnceHaveRightOnes) {
     if (!std::filesystem::exists(file)) continue;
     const test::Points points = read_points_or_mesh(file).vertices;
     expect_right_at_once(name, points);
-    for (const std::uint64_t max : {1, 3, 7, 20})
+    for (const std::uint64_t max : {1u, 3u, 7u, 20u})
       for (std::uint64_t seed = 0; seed < 5; ++seed) expect_right_in_pieces(name, points, max, seed);
   }
 }

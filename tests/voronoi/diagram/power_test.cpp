@@ -30,7 +30,7 @@ Index ball_of_least_power(const std::vector<Sphere>& balls, const Point& place) 
 }
 
 TEST(PowerDiagram, VerticesAreAsFarFromTheirBallsAndNoBallIsNearer) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const std::vector<Sphere> balls = random_balls(40, seed);
     const PowerDiagram diagram = power_diagram(balls, Box(Point::Zero(), Point::Ones()));
     ASSERT_FALSE(diagram.vertices.empty());

@@ -166,7 +166,8 @@ TEST(OffCircumcenter, BoundsTheDistanceByAFewRoundingsOfShortEdges) {
     const double distance = exact_distance(center, p), slack = 1 + 0x1p-48;
     const double edges = (p[1] - p[0]).norm() * (p[2] - p[0]).norm() * (p[3] - p[2]).norm();
     const double rounding = 256 * kRounding * edges * relative.center.norm() / std::abs(relative.volume6);
-    for (const auto& [first, second] : {std::array{1, 2}, std::array{2, 1}, std::array{2, 3}, std::array{3, 1}}) {
+    for (const auto& [first, second] :
+         {std::array{1u, 2u}, std::array{2u, 1u}, std::array{2u, 3u}, std::array{3u, 1u}}) {
       const double off = off_circumcenter(center, p[0], p[first], p[second], p[6 - first - second]).off;
       ASSERT_GE(off * slack, distance) << trial;
       if (!(rounding < 0x1p-20)) continue;
