@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kAt = 1e-9;  // bounding radii: how far rounding moves a place off an edge
 
+// Where two feature edges meet, sheets may pass the corner; where three do, a sheet ends at the corner.
+constexpr std::size_t kEdgesOfCorner = 3;
+
 using MeshEdge = std::array<Index, 2>;  // vertices of the mesh, ascending
 
 // The vertices and edges of the complex on one edge of the mesh.
@@ -60,23 +63,55 @@ std::map<MeshEdge, Row> rows_on_edges(const Surface& surface, const BallComplex&
   return rows;
 }
 
+// Returns, for each vertex of the mesh at which feature edges meet, the nearest place on each of these.
+std::map<Index, std::vector<Index>> nearest_places(const std::map<MeshEdge, Row>& rows) {
+  std::map<Index, std::vector<Index>> nearest;
+  for (const auto& [edge, row] : rows) {
+    nearest[edge[0]].push_back(row.places.front().second);
+    nearest[edge[1]].push_back(row.places.back().second);
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex,
                                                 const FeatureEdges& features) {
   std::vector<std::array<Index, 2>> gaps;
-  std::map<Index, std::vector<Index>> nearest;  // for each vertex of the mesh, the nearest place on each sharp edge
-  for (const auto& [edge, row] : rows_on_edges(surface, complex, features)) {
+  const std::map<MeshEdge, Row> rows = rows_on_edges(surface, complex, features);
+  for (const auto& [edge, row] : rows) {
     for (std::size_t i = 0; i + 1 < row.places.size(); ++i) {
       if (row.along[i] == 0) gaps.push_back({row.places[i].second, row.places[i + 1].second});
     }
-    nearest[edge[0]].push_back(row.places.front().second);
-    nearest[edge[1]].push_back(row.places.back().second);
   }
-  for (const auto& [corner, places] : nearest) {
+  for (const auto& [corner, places] : nearest_places(rows)) {
     if (places.size() == 2 && places[0] != places[1]) gaps.push_back({places[0], places[1]});
   }
   return gaps;
+}
+
+std::vector<EdgeAroundCorner> edges_around_corners(const Surface& surface, const BallComplex& complex,
+                                                   const FeatureEdges& features) {
+  const EdgeNumbers edge = complex.edge_numbers();
+  const auto length = [&](const std::array<Index, 2>& ends) {
+    return (complex.balls[ends[0]].center - complex.balls[ends[1]].center).norm();
+  };
+  std::vector<EdgeAroundCorner> found;
+  for (const auto& [corner, places] : nearest_places(rows_on_edges(surface, complex, features))) {
+    if (places.size() < kEdgesOfCorner) continue;
+    std::array<Index, 2> shortest{kNone, kNone};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        const std::array<Index, 2> ends{std::min(places[i], places[k]), std::max(places[i], places[k])};
+        if (!std::binary_search(complex.edges.begin(), complex.edges.end(), ends)) continue;
+        if (shortest[0] == kNone || length(ends) < length(shortest)) shortest = ends;
+      }
+    }
+    // If the axis has a vertex at the corner, it is the nearest place on all edges that meet there.
+    const bool has_vertex = std::adjacent_find(places.begin(), places.end()) != places.end();
+    if (shortest[0] != kNone && !has_vertex) found.push_back({corner, edge(shortest[0], shortest[1])});
+  }
+  return found;
 }
 
 }  // namespace orchard::detail

@@ -33,6 +33,11 @@ Index extend_to_seams(const Surface& surface, BallComplex& complex, const Border
 // narrower than the point spacing. Returns the number of new vertices.
 Index extend_to_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
 
+// Divides borders that pass a corner in which three or more feature edges meet, at the corner. The sheet to the third
+// edge can then end at the line in which it meets the other sheets, up to the corner; without a vertex there, it would
+// get a border of its own beside that line. Returns the number of divided edges.
+Index divide_at_corners(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
 // Extends sheets that reach sharp convex edges up to the corner where the edges meet. Returns the number of new
 // vertices.
 Index extend_to_corners(const Surface& surface, BallComplex& complex, const BorderOptions& options);

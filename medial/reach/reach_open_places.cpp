@@ -16,6 +16,7 @@
 #include "../extend/sharp_ends.h"
 #include "../extend/sheet_extension.h"
 #include "../quality/reconstruction.h"
+#include "on_sheet.h"
 
 namespace orchard::detail {
 namespace {
@@ -100,7 +101,7 @@ class OpenPlaceReacher {
     for (const Index e : candidates) {
       const auto& [a, b] = sheets_.complex.edges[e];
       if (vertex != kNone && sheets_.at.triangles_at[e].size() != 1) break;
-      if (!is_inside(a, b, ball)) continue;
+      if (!fits(a, b, ball)) continue;
       const Index v = vertex == kNone ? sheets_.triangles.add_vertex(ball) : vertex;
       if (!add({a, b}, v)) continue;
       vertex = v;
@@ -168,7 +169,7 @@ class OpenPlaceReacher {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
     if (p.radius == 0 && q.radius == 0) return false;
     if (p.radius == 0 && ball.radius == 0 && !edges_.goes_between(p.center, ball.center)) return false;
-    return is_inside(a, b, ball) && becomes_linear(sheets_.surface, p, q, ball, dividing_);
+    return fits(a, b, ball) && becomes_linear(sheets_.surface, p, q, ball, dividing_);
   }
 
   // Returns the centre, on the way from a place to the centre of its nearest ball, of the largest ball that leaves the
@@ -255,8 +256,8 @@ class OpenPlaceReacher {
     return (place - a - t * along).norm();
   }
 
-  // Returns whether there are balls between an edge and a new ball, and these protrude only a little.
-  bool is_inside(Index a, Index b, const ExactBall& ball) const {
+  // Returns whether there are balls between an edge and a new ball that protrude only a little, where no sheet is yet.
+  bool fits(Index a, Index b, const ExactBall& ball) const {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
     // Triangles without area or without balls are refused.
     if (is_flat_triangle(p.center, q.center, ball.center) || std::max({p.radius, q.radius, ball.radius}) == 0)
@@ -272,7 +273,7 @@ class OpenPlaceReacher {
         if (protrudes(part(k), part(i - k), part(kProbed - i))) return false;
       }
     }
-    return true;
+    return !lies_on_sheet(sheets_.surface, reconstruction_, p.center, q.center, ball.center);
   }
 
   SheetExtension sheets_;

@@ -270,6 +270,7 @@ void Refiner::reach_edges() {
   for (int pass = 0; pass < kBorderPasses; ++pass) {
     const Index seams = extend_to_seams(surface_, complex_, border);
     Index reached = extend_to_edges(surface_, complex_, border);
+    reached += divide_at_corners(surface_, complex_, border);
     report_.filling_triangles += seams + fill_along_edges(surface_, complex_, border);
     reached += extend_to_corners(surface_, complex_, border);
     if (seams == 0 && reached == 0) break;
