@@ -151,7 +151,7 @@ void TangentBallSearch::set_thickness(const SurfacePlace& place, ThicknessAt& at
     if (!certain || low_ < found_.radius) at.error = std::numeric_limits<double>::infinity();
     return;
   }
-  at.error = 2 * found_.radius - (certain ? 2 * low_ : low);
+  at.error = std::max(at.error, 2 * found_.radius - (certain ? 2 * low_ : low));
   at.thickness = 2 * found_.radius;
   at.contact = found_.at;
   at.angle = seen_angle(tangent, found_.at);

@@ -51,7 +51,7 @@ struct Solid {
 std::vector<Solid> solids() {
   return {{"box", test::known_box({1, 2, 3}).solid},
           {"L", test::known_l_shape(8).solid},
-          {"cylinder", test::known_cylinder(24, 4).solid, 0.85},
+          {"cylinder", test::known_cylinder(24, 4).solid, 0.84},
           {"torus", test::known_torus(32, 16).solid, 0.5},
           {"bridge", test::extruded(test::thin_bridge(0.05), 1)},
           {"groove", test::extruded(test::v_groove(0.2), 1)}};
