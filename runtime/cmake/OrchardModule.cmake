@@ -19,6 +19,10 @@ else()
   if(CMAKE_SIZEOF_VOID_P EQUAL 4 AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(i.86|x86|x86_64|AMD64)$")
     target_compile_options(orchard_flags INTERFACE -msse2 -mfpmath=sse)
   endif()
+  # GCC 12 joins halves of vectors wrongly for ARM: the nearest point of a segment was one of its ends.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+    target_compile_options(orchard_flags INTERFACE -fno-tree-slp-vectorize)
+  endif()
   # Position-independent code calls its own functions, and does not look up whether somebody else has replaced them.
   include(CheckCXXCompilerFlag)
   check_cxx_compiler_flag(-fno-semantic-interposition orchard_has_no_interposition)
