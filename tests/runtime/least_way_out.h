@@ -117,7 +117,8 @@ inline std::optional<ShallowPose> shallow_pose(Draw& draw, const std::vector<Bod
   const Pose a = centered(all[i].tree, draw.pose(0)), turned = draw.pose(0);
   const double reach = all[i].tree.bounding_radius + all[j].tree.bounding_radius;
   const TreePair pair(trees[i], trees[j]);
-  for (double far = reach; far > 0; far -= 0.004 * reach) {
+  for (int step = 0; step < 250; ++step) {
+    const double far = (1 - 0.004 * step) * reach;
     Pose b = centered(all[j].tree, turned);
     for (std::size_t k = 0; k < 3; ++k) b.translation[k] += far * way[k];
     if (collide(workspace, pair, a, b).answer == Answer::yes) return ShallowPose{i, j, reach, a, b};
