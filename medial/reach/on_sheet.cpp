@@ -3,8 +3,8 @@
 namespace orchard::detail {
 namespace {
 
-// Of the distance of the middle of the triangle from its edge: a ball that is nearer than this to the middle lies on
-// another cell than the edge.
+// A part of the distance between the middle of the triangle and its edge. A ball that is nearer to the middle than this
+// does not belong to the edge.
 constexpr double kOnSheet = 0.5;
 
 }  // namespace

@@ -17,7 +17,7 @@ struct KineticState {
     overlaps.make_room(slots);
     windows.make_room(slots);  // last: its size says that there is room in all of them
   }
-  // What becomes of a body whose motion is not valid: it is in no pair until it has been asked again.
+  // Takes a body whose motion is not valid out of all pairs until its motion has been asked for again.
   void refuse(BodyIndex body);
   std::size_t memory_bytes() const noexcept {
     return changes.memory_bytes() + windows.memory_bytes() + boxes.memory_bytes() + wheel.memory_bytes() -

@@ -1,6 +1,5 @@
 #pragma once
 #include "broad_phase/body_pool.h"
-
 #include "broad_phase/quantized_grid.h"
 
 namespace orchard::runtime::detail {

@@ -14,8 +14,8 @@
 // How the broad phase and the detector use memory.
 namespace orchard::runtime::detail {
 
-// Leaves what a vector grows by as it is in memory: for what is written before it is read, by jobs. So it is one pass,
-// and pages that have never been used are shared between the jobs' threads.
+// Does not initialise what a vector grows by, for values that jobs write before they are read. This saves a pass, and
+// the threads of the jobs share the work of using new pages for the first time.
 template <typename T>
 struct UnsetAllocator : std::allocator<T> {
   template <typename U>
@@ -38,8 +38,8 @@ struct UnsetAllocator : std::allocator<T> {
 template <typename T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 
-// Of a vector that grows one by one, by an eighth at a time: twice the room would be half the memory. What comes all at
-// once gets the room that it takes.
+// Makes room in a vector that grows one by one. It grows by an eighth, because doubling would leave up to half of the
+// memory unused. What is added all at once gets exactly the room that it needs.
 template <typename T, typename Allocator>
 void make_room(std::vector<T, Allocator>& v, std::size_t size) {
   constexpr std::size_t kMinRoom = 32;

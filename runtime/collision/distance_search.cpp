@@ -171,17 +171,13 @@ void DistanceSearch::expand_within(const Apart& pair, const detail::Opened& open
   detail::BoxGaps gaps;
   detail::compare_children<detail::meeting_boxes>(first(), second(), placement, pair, opened, margin, gaps);
   if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_.length);
-  Apart found[kBlockWidth];
-  detail::FarthestFirst order;
-  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+  const auto child = [&](std::uint32_t lane) ORCHARD_INLINE_LAMBDA -> Apart {
     const float sum = gaps.gap[lane] + limit_.rounded_up, gap = sum - std::fabs(sum) * kSumRounding;
-    const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
-    found[order.count] = {opened.pair(pair, lane), lower};
-    order.add(lower);
-  }
-  for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = found[i];
-  stack_size_ += order.count;
+    return {opened.pair(pair, lane), pair.lower > 0 ? std::max(gap, pair.lower) : gap};
+  };
+  stack_size_ =
+      detail::push_farthest_first(&stack_[0], stack_size_, gaps.meeting, child,
+                                  [](const Apart& apart, std::uint32_t) ORCHARD_INLINE_LAMBDA { return apart.lower; });
 }
 
 // The nearest ones first: each found makes fewer of the others worth a test.

@@ -216,15 +216,10 @@ void FrontWalk::expand(const NodePair& pair, const detail::Opened& opened) noexc
     const NodePair child = opened.pair(pair, lane);  // vectors point from the single one to the eight
     add(child.a, child.b, axes.gap[lane], {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
   }
-  NodePair children[kBlockWidth];
-  detail::FarthestFirst order;
-  for (std::uint32_t left = axes.meeting; left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    children[order.count] = opened.pair(pair, lane);
-    order.add(axes.gap[lane]);
-  }
-  for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = children[i];
-  stack_size_ += order.count;
+  stack_size_ = detail::push_farthest_first(
+      &stack_[0], stack_size_, axes.meeting,
+      [&](std::uint32_t lane) ORCHARD_INLINE_LAMBDA { return opened.pair(pair, lane); },
+      [&](const NodePair&, std::uint32_t lane) ORCHARD_INLINE_LAMBDA { return axes.gap[lane]; });
 }
 
 void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept {

@@ -10,7 +10,7 @@
 
 namespace orchard::runtime {
 
-// A NarrowPhase as the other queries of a pair see it: public members with the names of NarrowPhase's say the same.
+// What a NarrowPhase consists of; other queries of a pair use it, too. Members that NarrowPhase also has mean the same.
 class PairQuery {
  public:
   struct Known {
@@ -68,17 +68,18 @@ class PairQuery {
   bool out_of_room_ = false;
 };
 
-// The last level of a query, in another order than refine_exactly()'s: beginning with triangles that met before, or
-// with a front. What it finds is the query's answer. Precondition: the query has a last level.
+// Searches the last level of a query in another order than refine_exactly(): triangles that met before come first, or a
+// front decides where to begin. What it finds is the query's answer. Precondition: the query has a last level.
 class DirectSearch {
  public:
   explicit DirectSearch(PairQuery& query) noexcept : query_(query) {}
 
-  // Whatever the roots say; for what needs more than test_two(), trees().place() does the rest. False where nothing can
-  // be said. Precondition: both poses are rigid.
+  // Starts the query at two poses without a test of the roots. test_two() can be called then; everything else needs
+  // trees().place() first. Returns false, and refuses, if floats cannot hold the pair. Precondition: both poses are
+  // rigid.
   bool place(const Pose& a, const Pose& b) noexcept;
-  // Whether these triangles meet, any of two leaves, or any near them in the trees but for these leaves, as far as the
-  // budget goes. Where they do, the answer is "yes".
+  // These test two triangles, all triangles of two leaves, and triangles of the leaves' neighbours (as far as the
+  // budget goes). If any meet, the query's answer becomes "yes". They return whether it did.
   bool test_two(const MeetingTriangles::Place& place) noexcept {
     return say_yes_if(query_.triangles_.test_two(query_.trees_, place));
   }
@@ -87,7 +88,7 @@ class DirectSearch {
   }
   bool search_near(const NodePair& leaves, const Budget& budget) noexcept;
   void search(const Budget& budget) noexcept { query_.refine_last(budget); }  // all of the last level
-  // That no triangles meet, and how far apart they are at least, in the world.
+  // Makes the answer "no". `lower`: a bound on the distance of the surfaces, in world units.
   void say_no(double lower) noexcept;
   void add_work(std::uint64_t work) noexcept { query_.known_.work += work; }
 
@@ -101,7 +102,7 @@ class DirectSearch {
   PairQuery& query_;
 };
 
-// The query that a NarrowPhase, or a workspace's, is a cover of.
+// Returns what a NarrowPhase consists of.
 PairQuery& query_of(NarrowPhase& pair) noexcept;
 
 // collide() for it, and the same with Order::exact_first, but for the verdict.

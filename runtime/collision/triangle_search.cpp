@@ -26,15 +26,10 @@ void TriangleSearch::start() noexcept {
 inline void TriangleSearch::push_children(const NodePair& pair, const detail::Opened& opened,
                                           const BoxGaps& gaps) noexcept {
   tests_.pairs += static_cast<std::uint64_t>(std::bit_width(gaps.used));
-  NodePair children[kBlockWidth];
-  detail::FarthestFirst order;
-  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    children[order.count] = opened.pair(pair, lane);
-    order.add(gaps.gap[lane]);
-  }
-  for (std::uint32_t i = 0; i < order.count; ++i) stack_[size_ + order.place[i]] = children[i];
-  size_ += order.count;
+  size_ = detail::push_farthest_first(
+      stack_.data(), size_, gaps.meeting,
+      [&](std::uint32_t lane) ORCHARD_INLINE_LAMBDA { return opened.pair(pair, lane); },
+      [&](const NodePair&, std::uint32_t lane) ORCHARD_INLINE_LAMBDA { return gaps.gap[lane]; });
 }
 
 // Two pairs at a time: what one waits for, the other one computes.

@@ -37,9 +37,10 @@ class TriangleSearch {
   const MeetingTriangles& found() const noexcept { return found_; }
 
   void start() noexcept;  // with the roots
-  // With the pairs of what is in the blocks of two leaves, the nearest ones of those that may meet, but for the leaves.
+  // Starts with pairs of neighbours of two leaves, from the same blocks of the trees: the nearest ones that may meet,
+  // without the two leaves themselves.
   void start_near(const PlacedTrees& trees, const NodePair& leaves) noexcept;
-  // Ends at the first pair of triangles that meet. False if interrupted.
+  // Searches up to the first pair of triangles that meet. Returns false if the budget ended the search.
   bool refine(const PlacedTrees& trees, PairBudget& tracker) noexcept;
   // Whether any triangles of two leaves meet.
   bool test_leaves(const PlacedTrees& trees, const NodePair& leaves) noexcept;
