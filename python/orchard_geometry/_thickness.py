@@ -19,7 +19,7 @@ class Thickness:
 
     thickness: Floats  #: (n,): NaN where nothing faces the place, as beside edges
     ball_diameter: Floats  #: (n,): of the largest ball in the solid that touches the place; 0 on edges that stick out
-    error: Floats  #: (n,): proven, ball_diameter is too large by no more
+    error: Floats  #: (n,): proven, diameter and thickness are too large by no more; inf: a thickness may be missing
     contact: Floats  #: (n, 3): the other end
     contact_angle: Floats  #: (n,): radians between both ends
 
