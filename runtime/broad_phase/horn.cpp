@@ -3,12 +3,78 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broad_phase/motion_lanes.h"
+#include "simd/machine.h"
+
 namespace orchard::runtime {
+namespace detail {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping early is early, not late
 
-double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+template <typename Kind>
+ORCHARD_INLINE auto reach_of(const MotionLanes<typename Kind::Numbers>& m,
+                             const typename Kind::Numbers& duration) noexcept {
+  const auto largest = [](const auto& v) ORCHARD_INLINE_LAMBDA {
+    const auto abs = [](const auto& x) ORCHARD_INLINE_LAMBDA { return most<Kind>(x, -x); };
+    return most<Kind>(most<Kind>(abs(v[0]), abs(v[1])), abs(v[2]));
+  };
+  return largest(m.position) + m.radius + duration * (largest(m.velocity) + m.drift + duration * m.acceleration / 2);
+}
+
+template <typename Kind>
+ORCHARD_INLINE auto slack_of(const MotionLanes<typename Kind::Numbers>& a, const MotionLanes<typename Kind::Numbers>& b,
+                             const typename Kind::Numbers& duration) noexcept {
+  return all_of<Kind>(kMotionSlack) * (reach_of<Kind>(a, duration) + reach_of<Kind>(b, duration)) +
+         all_of<Kind>(kMinLength);
+}
+
+// The first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0, where the gap is positive; infinity if there is
+// none. acceleration >= 0.
+template <typename Kind, typename Numbers = typename Kind::Numbers>
+ORCHARD_INLINE Numbers closing(const Numbers& gap, const Numbers& slope, const Numbers& acceleration) noexcept {
+  const Numbers root = Kind::sqrt(slope * slope + 2 * acceleration * gap);
+  const auto down = slope < 0;  // no cancellation in either form
+  const Numbers above = Kind::choose(down, 2 * gap, slope + root), below = Kind::choose(down, root - slope, acceleration);
+  return Kind::choose(below > 0, above / below, all_of<Kind>(kNever));
+}
+
+template <typename Kind, typename Numbers = typename Kind::Numbers>
+ORCHARD_INLINE Numbers contact_of(const Horns<Numbers>& p, typename Kind::Mask open, const Numbers& limit,
+                                  double resolution) noexcept {
+  const Numbers never = all_of<Kind>(kNever);
+  Numbers t = all_of<Kind>(0), found = never;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    std::array<Numbers, 3> at;
+    for (std::size_t d = 0; d < 3; ++d) at[d] = p.offset[d] + t * p.velocity[d];
+    const Numbers distance = Kind::sqrt(dot_of(at, at));
+    const Numbers gap = distance - (p.radius + t * (p.growth + t * p.acceleration / 2));
+    const Numbers slope = dot_of(at, p.velocity) / distance - (p.growth + t * p.acceleration);
+    const Numbers step = closing<Kind>(gap, slope, p.acceleration), next = t + step;
+    const auto apart = gap > 0, in_time = next <= limit;
+    found = Kind::choose(open, Kind::choose(apart, Kind::choose(in_time, next, never), t), found);
+    open = open & apart & in_time & (step > all_of<Kind>(resolution));
+    if (!Kind::any(open)) break;
+    t = Kind::choose(open, next, t);  // that of the others may be infinite
+  }
+  return found;
+}
+
+// As the root is concave, |offset + v t| <= |offset| + (t offset . v + t^2 v^2 / 2) / |offset|; it is at most
+// |offset| + t |v|, too. `radius`: less all slack.
+template <typename Kind, typename Numbers = typename Kind::Numbers>
+ORCHARD_INLINE Numbers lasting_of(const Horns<Numbers>& p, const Numbers& limit) noexcept {
+  const Numbers distance = Kind::sqrt(dot_of(p.offset, p.offset)), speed = Kind::sqrt(dot_of(p.velocity, p.velocity));
+  const Numbers spare = p.radius - distance, parting = dot_of(p.offset, p.velocity) / distance;
+  const auto first = [&](const Numbers& slope, const Numbers& acceleration) ORCHARD_INLINE_LAMBDA {
+    return Kind::choose(spare > 0, closing<Kind>(spare, slope, acceleration), all_of<Kind>(0));
+  };
+  const Numbers sure = first(-(speed + p.growth), p.acceleration);
+  const Numbers tangent = first(-(parting + p.growth), p.acceleration + speed * speed / distance);
+  const auto better = (sure < tangent) & (sure < limit) & (distance > all_of<Kind>(kMinLength));
+  return least<Kind>(limit, Kind::choose(better, tangent, sure));
+}
 
 // Lemma 4.2 for one body of the pair: its sphere stays behind a plane, so that the other one has to cross it.
 double half_space_contact(const Motion& a, const Motion& b, double slack) noexcept {
@@ -27,93 +93,115 @@ double half_space_contact(const Motion& a, const Motion& b, double slack) noexce
     share = std::min(1.0, share + 1e-7);  // the root of a rounding error
   }
   const double slope = dot(b.velocity - a.velocity, d) - a.drift - b.drift;
-  return detail::first_closing(gap, slope, share * b.acceleration);
+  return closing<OneDouble>(gap, slope, share * b.acceleration);
 }
 
-}  // namespace
-
-bool is_valid(const Motion& m) noexcept {
-  // Without branches, and mostly enough: NaN stays in a sum and fails the comparison.
-  const double squares = dot(m.position, m.position) + dot(m.velocity, m.velocity) + dot(m.half_space, m.half_space) +
-                         (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
-  const bool in_range = squares <= kMaxNumber * kMaxNumber, signs = m.radius >= 0 && m.acceleration >= 0;
-  if (in_range && signs && m.drift >= 0 && !std::isnan(m.expiry)) return true;
-  const auto fits = [](double x) { return std::fabs(x) <= kMaxNumber; };
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!fits(m.position[i]) || !fits(m.velocity[i]) || !fits(m.half_space[i])) return false;
-  }
-  const auto bound = [&](double x) { return fits(x) && x >= 0; };
-  return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
-}
-
-Motion speed_bounded(const Vec3& position, double radius, double max_speed, double expiry) noexcept {
-  Motion motion;
-  motion.position = position;
-  motion.radius = radius;
-  motion.drift = max_speed;
-  motion.expiry = expiry;
-  return motion;
-}
-
-Motion position_bounded(const Vec3& center, double reach, double radius, double expiry) noexcept {
-  constexpr double outward = 1 + 0x1p-50;  // for the rounding of the sum
-  Motion motion;
-  motion.position = center;
-  motion.radius = (reach + radius) * outward;
-  motion.expiry = expiry;
-  return motion;
-}
-
-namespace detail {
-
-double motion_slack(const Motion& a, const Motion& b, double duration) noexcept {
-  const auto reach = [&](const Motion& m) {
-    return largest(m.position) + m.radius + duration * (largest(m.velocity) + m.drift + duration * m.acceleration / 2);
-  };
-  return kMotionSlack * (reach(a) + reach(b)) + kMinLength;
-}
-
-double first_closing(double gap, double slope, double acceleration) noexcept {
-  if (!(gap > 0)) return 0;
-  const double root = std::sqrt(slope * slope + 2 * acceleration * gap);
-  if (slope < 0) return 2 * gap / (root - slope);  // no cancellation in either form
-  return acceleration > 0 ? (slope + root) / acceleration : kNever;
-}
-
-// As the root is concave, |offset + v t| <= |offset| + (t offset . v + t^2 v^2 / 2) / |offset|; it is at most
-// |offset| + t |v|, too.
-double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept {
-  const Vec3 offset = b.position - a.position, velocity = b.velocity - a.velocity;
-  const double distance = std::sqrt(dot(offset, offset)), speed = std::sqrt(dot(velocity, velocity));
-  const double spare = a.radius + b.radius - distance - motion_slack(a, b, limit) - slack;
-  const double growth = a.drift + b.drift, acceleration = a.acceleration + b.acceleration;
-  double sure = first_closing(spare, -(speed + growth), acceleration);
-  if (sure < limit && distance > kMinLength) {
-    const double parting = dot(offset, velocity) / distance;
-    sure = std::max(sure, first_closing(spare, -(parting + growth), acceleration + speed * speed / distance));
-  }
-  return std::min(limit, sure);
-}
-
+// A contact at a time not after the limit, by the two bodies' half-spaces: not before both allow it, and infinity if
+// that is after the limit.
 double tightened(const Motion& a, const Motion& b, double contact, double limit, double slack) noexcept {
   const double tight = std::max({contact, half_space_contact(a, b, slack), half_space_contact(b, a, slack)});
   return tight <= limit ? tight : kNever;
 }
 
-double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {
-  double t = 0;
-  for (int round = 0; round < kMaxHornRounds; ++round) {
-    const Vec3 apart = pair.offset + t * pair.velocity;
-    const double distance = std::sqrt(dot(apart, apart));
-    const double gap = distance - (pair.radius + t * (pair.growth + t * pair.acceleration / 2));
-    if (!(gap > 0)) return t;
-    const double slope = dot(apart, pair.velocity) / distance - (pair.growth + t * pair.acceleration);
-    const double step = first_closing(gap, slope, pair.acceleration);
-    t += step;
-    if (!(t <= limit)) return kNever;
-    if (step <= resolution) break;
+// Of as many pairs as the kind has numbers. False if a motion may not be valid.
+template <typename Kind, typename Numbers = typename Kind::Numbers>
+ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, double resolution, double slack,
+                               double* seconds, bool* touching) noexcept {
+  const auto every_other = [&](std::size_t first) ORCHARD_INLINE_LAMBDA {
+    return Kind::motions([=](std::size_t i) ORCHARD_INLINE_LAMBDA { return motions + 2 * i + first; });
+  };
+  const MotionLanes<Numbers> a = every_other(0), b = every_other(1);
+  if (Kind::kLanes > 1 && !Kind::all(are_valid<Kind>(a) & are_valid<Kind>(b))) return false;
+  Numbers limit;
+  std::memcpy(&limit, limits, sizeof limit);
+  Horns<Numbers> p;
+  auto half_spaces = all_of<Kind>(0);
+  for (std::size_t d = 0; d < 3; ++d) {
+    p.offset[d] = b.position[d] - a.position[d];
+    p.velocity[d] = b.velocity[d] - a.velocity[d];
+    half_spaces = half_spaces + (a.half_space[d] * a.half_space[d] + b.half_space[d] * b.half_space[d]);
   }
-  return t;
+  const Numbers radii = a.radius + b.radius, slacks = slack_of<Kind>(a, b, limit) + all_of<Kind>(slack);
+  p.growth = a.drift + b.drift;
+  p.acceleration = a.acceleration + b.acceleration;
+  const Numbers squared = dot_of(p.offset, p.offset);
+  const auto touch = squared <= radii * radii;
+  Numbers time = all_of<Kind>(0);
+  if (Kind::any(touch)) {
+    p.radius = radii - slacks;
+    time = lasting_of<Kind>(p, limit);
+  }
+  if (!Kind::all(touch)) {
+    p.radius = radii + slacks;
+    time = Kind::choose(touch, time, contact_of<Kind>(p, squared > radii * radii, limit, resolution));
+  }
+  std::memcpy(seconds, &time, sizeof time);
+  const bool tighten = Kind::any(half_spaces > 0);  // few bodies have one
+  for (std::size_t i = 0; i < Kind::kLanes; ++i) {
+    touching[i] = Kind::lane(touch, i);
+    if (!tighten || touching[i] || !(seconds[i] <= limits[i])) continue;
+    const Motion &first = motions[2 * i], &second = motions[2 * i + 1];
+    seconds[i] = tightened(first, second, seconds[i], limits[i], motion_slack(first, second, limits[i]) + slack);
+  }
+  return true;
+}
+
+#ifdef ORCHARD_VECTORS
+ORCHARD_INLINE bool find_by_fours(std::span<const Motion> motions, std::span<const double> limits, double resolution,
+                                  double slack, PairTimes& times) noexcept {
+  std::array<Motion, 8> rest;
+  std::array<double, 4> rest_limits;
+  for (std::size_t i = 0; i < limits.size(); i += 4) {
+    const Motion* some = &motions[2 * i];
+    const double* until = &limits[i];
+    if (i + 4 > limits.size()) {
+      rest = {};
+      rest_limits = {};
+      std::copy(motions.begin() + static_cast<std::ptrdiff_t>(2 * i), motions.end(), rest.begin());
+      std::copy(limits.begin() + static_cast<std::ptrdiff_t>(i), limits.end(), rest_limits.begin());
+      some = rest.data();
+      until = rest_limits.data();
+    }
+    if (!find_times<FourDoubles>(some, until, resolution, slack, &times.seconds[i], &times.touching[i])) return false;
+  }
+  return true;
+}
+#endif
+
+}  // namespace
+
+double motion_slack(const Motion& a, const Motion& b, double duration) noexcept {
+  const auto one = [](const Motion& m) { return OneDouble::motions([&](std::size_t) { return &m; }); };
+  return slack_of<OneDouble>(one(a), one(b), duration);
+}
+
+double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {
+  return contact_of<OneDouble>(pair, true, limit, resolution);
+}
+
+void find_pair_times(std::span<const Motion> motions, std::span<const double> limits, double resolution, double slack,
+                     PairTimes& times) noexcept {
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    find_times<OneDouble>(&motions[2 * i], &limits[i], resolution, slack, &times.seconds[i], &times.touching[i]);
+  }
+}
+
+bool find_pair_times_at_once(std::span<const Motion> motions, std::span<const double> limits, double resolution,
+                             double slack, PairTimes& times) noexcept {
+  bool valid = false;
+#ifdef ORCHARD_MACHINES
+  constexpr Machine kLeast = Machine::avx2;
+#else
+  constexpr Machine kLeast = Machine::base;
+#endif
+#ifdef ORCHARD_VECTORS
+  const auto timeless = [](const Motion& motion) { return std::isnan(motion.expiry); };
+  if (machine() < kLeast || std::any_of(motions.begin(), motions.end(), timeless)) return false;
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { valid = find_by_fours(motions, limits, resolution, slack, times); });
+#else
+  (void)motions, (void)limits, (void)resolution, (void)slack, (void)times, (void)kLeast;
+#endif
+  return valid;
 }
 
 }  // namespace detail
@@ -123,7 +211,7 @@ double earliest_contact(const Motion& a, const Motion& b, double limit, double r
   const detail::HornPair pair{b.position - a.position, b.velocity - a.velocity, a.radius + b.radius + slack,
                               a.drift + b.drift, a.acceleration + b.acceleration};
   const double contact = detail::horn_contact(pair, limit, resolution);
-  return contact <= limit ? detail::tightened(a, b, contact, limit, slack) : kNever;
+  return contact <= limit ? detail::tightened(a, b, contact, limit, slack) : detail::kNever;
 }
 
 }  // namespace orchard::runtime

@@ -1,30 +1,42 @@
 #pragma once
+#include <array>
+#include <span>
+
 #include "orchard/runtime/motion.h"
 
+// When two bodies can touch, and how long they surely overlap, by the horns that their bounds allow (8.2).
 namespace orchard::runtime::detail {
 
-// Two horns as one: the points meet when |offset + velocity t| <= radius + growth t + acceleration t^2 / 2.
-struct HornPair {
-  Vec3 offset, velocity;
-  double radius, growth, acceleration;
+// Two horns as one: the points meet when |offset + velocity t| <= radius + growth t + acceleration t^2 / 2. Of one
+// pair, or of four by coordinate.
+template <typename Numbers>
+struct Horns {
+  std::array<Numbers, 3> offset, velocity;
+  Numbers radius, growth, acceleration;
 };
-
-inline constexpr int kMaxHornRounds =
-    100;  // a grazing contact halves the gap per round; stopping early is early, not late
+using HornPair = Horns<double>;
 
 // The first such t in [0, limit], never late and less than `resolution` early; infinity if there is none.
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept;
 
-// A contact at a time not after the limit, by the two bodies' half-spaces: not before both allow it, and infinity if
-// that is after the limit. `slack`: with that for rounding.
-double tightened(const Motion& a, const Motion& b, double contact, double limit, double slack) noexcept;
+inline constexpr std::size_t kPairsAtOnce = 16;
 
-// The first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0; infinity if there is none. acceleration >= 0.
-double first_closing(double gap, double slope, double acceleration) noexcept;
+struct PairTimes {
+  std::array<bool, kPairsAtOnce> touching;  // spheres_touch()
+  // Of those that touch, how long they surely go on to overlap, as the bounds do not let them get apart sooner; of the
+  // others earliest_contact(); until their limits.
+  std::array<double, kPairsAtOnce> seconds;
+};
 
-// How long two overlapping spheres surely go on to overlap, at most `limit`: the bounds do not let them get apart
-// sooner. `slack` as of earliest_contact().
-double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept;
+// Pair i, of at most kPairsAtOnce, is that of motions[2 i] and motions[2 i + 1], and has limits[i] seconds. `slack` and
+// `resolution` as of earliest_contact(). The motions are valid.
+void find_pair_times(std::span<const Motion> motions, std::span<const double> limits, double resolution, double slack,
+                     PairTimes& times) noexcept;
+
+// The same, to the last bit, for four pairs at once, where the machine has vectors of four numbers. Does nothing and
+// returns false where it has none, or a motion may not be valid.
+bool find_pair_times_at_once(std::span<const Motion> motions, std::span<const double> limits, double resolution,
+                             double slack, PairTimes& times) noexcept;
 
 // Squares of less vanish: spheres_touch() takes it for 0.
 inline constexpr double kMinLength = 1e-150;

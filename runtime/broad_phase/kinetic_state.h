@@ -1,8 +1,8 @@
 #pragma once
 #include "broad_phase/box_index.h"
 #include "broad_phase/changes.h"
+#include "broad_phase/horn.h"
 #include "broad_phase/overlap_list.h"
-#include "broad_phase/pair_times.h"
 #include "broad_phase/windows.h"
 
 namespace orchard::runtime::detail {

@@ -13,6 +13,38 @@ double above(double value, double bound) noexcept { return value > bound ? value
 
 }  // namespace
 
+bool is_valid(const Motion& m) noexcept {
+  // Without branches, and mostly enough: NaN stays in a sum and fails the comparison.
+  const double squares = dot(m.position, m.position) + dot(m.velocity, m.velocity) + dot(m.half_space, m.half_space) +
+                         (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
+  const bool in_range = squares <= kMaxNumber * kMaxNumber, signs = m.radius >= 0 && m.acceleration >= 0;
+  if (in_range && signs && m.drift >= 0 && !std::isnan(m.expiry)) return true;
+  const auto fits = [](double x) { return std::fabs(x) <= kMaxNumber; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!fits(m.position[i]) || !fits(m.velocity[i]) || !fits(m.half_space[i])) return false;
+  }
+  const auto bound = [&](double x) { return fits(x) && x >= 0; };
+  return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
+}
+
+Motion speed_bounded(const Vec3& position, double radius, double max_speed, double expiry) noexcept {
+  Motion motion;
+  motion.position = position;
+  motion.radius = radius;
+  motion.drift = max_speed;
+  motion.expiry = expiry;
+  return motion;
+}
+
+Motion position_bounded(const Vec3& center, double reach, double radius, double expiry) noexcept {
+  constexpr double outward = 1 + 0x1p-50;  // for the rounding of the sum
+  Motion motion;
+  motion.position = center;
+  motion.radius = (reach + radius) * outward;
+  motion.expiry = expiry;
+  return motion;
+}
+
 MotionBoundExcess motion_bound_excess(const Motion& bound, double bound_time, const Motion& given, double time,
                                       double position_slack) noexcept {
   MotionBoundExcess excess;

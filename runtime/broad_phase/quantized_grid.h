@@ -87,11 +87,9 @@ class QuantizedGrid {
   bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
 
  private:
-  template <typename Kind>
-  struct Validity;
   template <typename Kind, typename Row>
-  void make_some(const Row& row, const double* durations, BoxBlock& boxes, std::size_t first,
-                 Validity<Kind>& valid) const noexcept;
+  typename Kind::Mask make_some(const Row& row, const double* durations, BoxBlock& boxes,
+                                std::size_t first) const noexcept;
   template <typename Kind>
   bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
 
