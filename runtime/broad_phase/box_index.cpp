@@ -1,17 +1,6 @@
 #include "broad_phase/box_index.h"
 
 namespace orchard::runtime::detail {
-namespace {
-
-static_assert((kMaxCellsPerAxis & (kMaxCellsPerAxis - 1)) == 0);
-
-template <typename All>
-void forget_oversized(All& all, BodyIndex body) noexcept {
-  std::erase_if(all, [body](const auto& large) { return large.body == body; });
-}
-
-}  // namespace
-
 void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
@@ -27,23 +16,16 @@ void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
 
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
-  constexpr std::size_t kAtOnce = SweptGrid::Removals::kBodies;
-  std::array<SweptGrid::Removals, 2> removals;  // of those at hand, and of the next ones
-  const auto load = [&](std::size_t begin) {
-    const std::size_t end = std::min(bodies.size(), begin + kAtOnce);
-    for (std::size_t i = begin; i < end; ++i) {
-      const BodyIndex body = bodies[i];
-      if (i + kAtOnce < bodies.size()) prefetch(&boxes_[bodies[i + kAtOnce]]);
-      if (places_[body] == Place::oversized) forget_oversized(oversized_, body);
-      if (places_[body] == Place::inside)
-        grid_.prepare_removal(body, boxes_[body].whole(), removals[begin / kAtOnce % 2]);
-      places_[body] = Place::nowhere;
-    }
-  };
-  load(0);
-  for (std::size_t begin = 0; begin < bodies.size(); begin += kAtOnce) {
-    load(begin + kAtOnce);
-    grid_.remove(removals[begin / kAtOnce % 2]);
+  constexpr std::size_t kAhead = 16;
+  const auto is_inside = [&](std::size_t i) { return i < bodies.size() && places_[bodies[i]] == Place::inside; };
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + 2 * kAhead < bodies.size()) prefetch(&boxes_[bodies[i + 2 * kAhead]]);
+    if (is_inside(i + kAhead)) grid_.prepare_removal(boxes_[bodies[i + kAhead]].whole());
+    const BodyIndex body = bodies[i];
+    if (places_[body] == Place::oversized)
+      std::erase_if(oversized_, [=](const Oversized& o) { return o.body == body; });
+    if (is_inside(i)) grid_.remove(body, boxes_[body].whole());
+    places_[body] = Place::nowhere;
   }
 }
 
@@ -70,16 +52,16 @@ void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<Bod
   }
 }
 
-void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs, GridCounts& counts) {
+void BoxIndex::insert_one(BodyIndex body, const QuantizedAabb& box, SweptGrid::Visits& room,
+                          std::vector<BodyPair>& pairs, GridCounts& counts) {
   if (fits_grid(box)) {
-    boxes_[body] = PackedAabb(box);
-    places_[body] = Place::inside;
-    extent_.include(box);
     BoxBlock block;
     block.set(0, box);
-    SweptGrid::Batch batch;
-    grid_.encode(batch, {&body, 1}, block, 0);
-    grid_.insert(batch, boxes_, pairs, counts);
+    block.around = box;
+    note({&body, 1}, block, extent_);
+    room.clear();
+    grid_.encode({&body, 1}, block, room);
+    grid_.insert(room.visits(), boxes_, pairs, counts);
     ++counts.bodies;
     return meet_oversized({&body, 1}, pairs);
   }

@@ -47,7 +47,8 @@ class BoxIndex {
   void include(const QuantizedAabb& extent) noexcept { extent_.include(extent); }
   void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) const;
   // All of that for one body, whether or not its box fits.
-  void insert_one(BodyIndex body, const QuantizedAabb& box, std::vector<BodyPair>& pairs, GridCounts& counts);
+  void insert_one(BodyIndex body, const QuantizedAabb& box, SweptGrid::Visits& room, std::vector<BodyPair>& pairs,
+                  GridCounts& counts);
 
   // As in BroadPhaseAlgorithm, with the quantized grid of the step.
   Near near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;

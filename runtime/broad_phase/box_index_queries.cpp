@@ -74,17 +74,9 @@ struct BoxIndex::GridRay {
 };
 
 void BoxIndex::append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const {
-  std::array<std::uint32_t, 3> cell{};
-  const auto first = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
-  const auto last = [&](std::size_t d) { return box.upper[d] >> kQuantumBits; };
-  const auto take = [&](BodyIndex body) {
+  grid_.visit_cells(box, [&](BodyIndex body) {
     if (boxes_[body].meets(box)) bodies.push_back(body);
-  };
-  for (cell[2] = first(2); cell[2] <= last(2); ++cell[2]) {
-    for (cell[1] = first(1); cell[1] <= last(1); ++cell[1]) {
-      for (cell[0] = first(0); cell[0] <= last(0); ++cell[0]) grid_.visit_cell(cell, take);
-    }
-  }
+  });
 }
 
 std::size_t BoxIndex::fewest_cells() const noexcept { return std::max(kFewCells, places_.size()); }

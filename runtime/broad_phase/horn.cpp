@@ -36,7 +36,8 @@ template <typename Kind, typename Numbers = typename Kind::Numbers>
 ORCHARD_INLINE Numbers closing(const Numbers& gap, const Numbers& slope, const Numbers& acceleration) noexcept {
   const Numbers root = Kind::sqrt(slope * slope + 2 * acceleration * gap);
   const auto down = slope < 0;  // no cancellation in either form
-  const Numbers above = Kind::choose(down, 2 * gap, slope + root), below = Kind::choose(down, root - slope, acceleration);
+  const Numbers above = Kind::choose(down, 2 * gap, slope + root),
+                below = Kind::choose(down, root - slope, acceleration);
   return Kind::choose(below > 0, above / below, all_of<Kind>(kNever));
 }
 

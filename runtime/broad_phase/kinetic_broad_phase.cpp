@@ -22,8 +22,8 @@ KineticBroadPhase::KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& op
       budgeted_(state_, pairs_, updates_) {}
 
 void KineticBroadPhase::changed(BodyIndex body) {
-  const std::size_t n = state_.pool.slots();
-  if (state_.windows.size() < n) state_.make_room(n);
+  constexpr std::size_t kAtOnce = 16;
+  if (state_.windows.size() < state_.pool.slots()) state_.make_room(state_.windows.size() + kAtOnce);
   state_.changes.note(body);
 }
 

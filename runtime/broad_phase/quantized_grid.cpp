@@ -17,10 +17,6 @@ constexpr double kRoundingQuanta = 0x1p-8;          // covers some roundings of 
 }  // namespace
 
 void BoxBlock::store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept {
-  std::array<std::uint32_t, kBlock> lengths;  // all of them together: vector instructions
-  for (std::size_t i = 0; i < lanes_for(places.size()); ++i) {
-    lengths[i] = (upper[0][i] - lower[0][i]) | (upper[1][i] - lower[1][i]) << 8 | (upper[2][i] - lower[2][i]) << 16;
-  }
   for (std::size_t i = 0; i < places.size(); ++i) {
     PackedAabb& box = to[places[i]];
     box.lower = {lower[0][i], lower[1][i], lower[2][i]};
@@ -61,6 +57,10 @@ ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
     boxes.around.upper[d] = static_cast<std::uint32_t>(most);
   }
   boxes.more_cells = more_cells;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto length = [&](std::size_t d) ORCHARD_INLINE_LAMBDA { return boxes.upper[d][i] - boxes.lower[d][i]; };
+    boxes.lengths[i] = length(0) | length(1) << 8 | length(2) << 16;
+  }
 }
 
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
@@ -103,7 +103,8 @@ ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std
   typename Kind::Mask good = all_of<Kind>(0) <= all_of<Kind>(0);
   for (std::size_t i = 0; i < whole; i += kLanes) {
     const Motion* const from = &motions[i];
-    good = good & make_some<Kind>([=](std::size_t k) ORCHARD_INLINE_LAMBDA { return from + k; }, &durations[i], boxes, i);
+    good =
+        good & make_some<Kind>([=](std::size_t k) ORCHARD_INLINE_LAMBDA { return from + k; }, &durations[i], boxes, i);
   }
   if (whole < count) {
     std::array<double, kLanes> some;

@@ -50,6 +50,7 @@ inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & 
 // By coordinate, so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
+  std::array<std::uint32_t, kBlock> lengths;  // as in PackedAabb
   // Of all boxes that were made together:
   QuantizedAabb around;      // what includes them
   std::uint32_t more_cells;  // bits of how many cells they take along an axis beyond one
@@ -64,6 +65,7 @@ struct BoxBlock {
       lower[d][i] = box.lower[d];
       upper[d][i] = box.upper[d];
     }
+    lengths[i] = PackedAabb(box).lengths;
   }
 };
 

@@ -1,278 +1,365 @@
 #include "broad_phase/swept_grid.h"
 
 #include <bit>
+#include <cassert>
 #include <cstring>
 
-#include "broad_phase/cell_entry.h"
-#include "broad_phase/line_compare.h"
+#include "simd/machine.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
-// A body's box, and one of its cells. Quanta are below 2^31: the difference of two that are apart is negative.
+// For tables of 2^6 lines, 2^7 and so on: what the second and the third coordinate of a cell are multiplied by; the
+// first one is added as it is. Found by trying at random such that cells that share a line lie far apart: about as far
+// as is possible in space, and in each plane of two axes from 2^10 lines on, but nowhere less than four cells along
+// some axis, so that the cells of one body never share a line.
+constexpr std::array<std::array<std::uint32_t, 2>, kMaxLineBits - kMinLineBits + 1> kLineFactors = {{
+    {4u, 16u},
+    {25u, 5u},
+    {13u, 173u},
+    {455u, 81u},
+    {417u, 595u},
+    {555u, 1525u},
+    {2269u, 1477u},
+    {4561u, 1073u},
+    {14965u, 12261u},
+    {615u, 29187u},
+    {20841u, 50579u},
+    {53795u, 31159u},
+    {226939u, 254255u},
+    {257047u, 373547u},
+    {473433u, 491881u},
+    {1623247u, 1298969u},
+    {705049u, 2785325u},
+    {6477005u, 1636555u},
+    {8975075u, 10600377u},
+    {20366405u, 28785053u},
+    {51419493u, 5405973u},
+    {14447183u, 113607059u},
+    {47377195u, 86274897u},
+}};
+
+// A box clipped to a cell, in three fields each: how far it begins from the cell's lower end, and ends from its upper
+// end. As a query these change places: two boxes meet if of each axis one's way to its begin and the other's from its
+// end make less than a cell together.
+constexpr std::uint32_t kEntryBits = 5, kFieldBits = kEntryBits + 1;
+constexpr std::uint32_t kCoarser = kQuantumBits - kEntryBits;  // bits of a quantum that are left out of entries
+constexpr std::uint32_t kLastInEntry = (1u << kEntryBits) - 1;
+static_assert(kIdShift == 6 * kFieldBits);
+static_assert(kMaxBodies < (1u << (64 - kIdShift)));
+
+ORCHARD_INLINE std::uint64_t entry_of(std::uint64_t from, std::uint64_t below, BodyIndex body) noexcept {
+  return std::uint64_t{body} << kIdShift | below << 3 * kFieldBits | from;
+}
+ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
+  constexpr std::uint64_t field = (std::uint64_t{1} << 3 * kFieldBits) - 1;
+  return (entry & field) << 3 * kFieldBits | (entry >> 3 * kFieldBits & field);
+}
+constexpr BodyIndex body_of(std::uint64_t entry) noexcept { return static_cast<BodyIndex>(entry >> kIdShift); }
+
+// Which of a line's entries meet the query, one bit for each: no field of their sum reaches its guard bit, and places
+// without an entry are nothing but guard bits.
+ORCHARD_INLINE std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+  std::uint64_t bits = 0;
 #ifdef ORCHARD_VECTORS
+  using Words __attribute__((vector_size(32))) = std::uint64_t;
+  std::array<Words, 2> halves;
+  std::memcpy(&halves, &line, sizeof halves);
+  const auto met = [&](const Words& half, const Words& as) ORCHARD_INLINE_LAMBDA {
+    return (((half + query) & kGuards) - 1) & (as << kIdShift);  // bits above the guards are set where none of these is
+  };
+  const Words all = met(halves[0], Words{1, 2, 4, 8}) | met(halves[1], Words{16, 32, 64, 0});
+  bits = ((all[0] | all[1]) | (all[2] | all[3])) >> kIdShift;
+#else
+  for (std::uint32_t i = 0; i < 7; ++i) bits |= std::uint64_t{((query + line.entries[i]) & kGuards) == 0} << i;
+#endif
+  return bits;
+}
+
+// Quanta along the three axes. They are below 2^31, so that two of them are compared at once.
+struct Quanta {
+  std::uint64_t xy, z;
+
+  static constexpr std::uint64_t kTop = 0x8000000080000000u;
+  // The top bits are set where it is at most the other one.
+  ORCHARD_INLINE Quanta at_most(const Quanta& other) const noexcept {
+    return {(other.xy | kTop) - xy, (other.z | kTop) - z};
+  }
+  ORCHARD_INLINE static Quanta lower(const PackedAabb& box) noexcept {
+    return {box.lower[0] | std::uint64_t{box.lower[1]} << 32, box.lower[2]};
+  }
+  ORCHARD_INLINE static Quanta upper(const PackedAabb& box) noexcept {
+    const Quanta from = lower(box);
+    return {from.xy + ((box.lengths & 0xff) | std::uint64_t{box.lengths & 0xff00} << 24), from.z + (box.lengths >> 16)};
+  }
+};
+
+// A body's box, and one of the cells that it takes: so many steps from its first one along each axis.
 class BoxInCell {
  public:
-  // In the fourth places there are zeros: nothing is apart there, nor elsewhere.
-  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint8_t steps) noexcept {
-    read(box, lower_, upper_);
-    cell_ = (lower_ >> kQuantumBits) + load<Numbers>(kSteps[steps]);
+  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint64_t steps) noexcept
+      : lower_(Quanta::lower(box)), upper_(Quanta::upper(box)) {
+    constexpr std::uint64_t within = kQuanta - 1;  // a cell
+    first_ = {
+        (lower_.xy & ~(within | within << 32)) + ((steps & 3) << kQuantumBits | (steps & 12) << (30 + kQuantumBits)),
+        (lower_.z & ~within) + (steps >> 4 << kQuantumBits)};
+    last_ = {first_.xy | within | within << 32, first_.z | within};
+    begins_ = first_.at_most(lower_);
   }
   // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
   ORCHARD_INLINE bool meets_here(const PackedAabb& other) const noexcept {
-    Numbers lower, upper;
-    read(other, lower, upper);
-    const Numbers apart = (upper_ - lower) | (upper - lower_);
-    const auto larger = reinterpret_cast<Signed>(lower_) > reinterpret_cast<Signed>(lower);
-    const Numbers corner = larger ? lower_ : lower;
-    const Numbers wrong = (apart & 0x80000000u) | ((corner >> kQuantumBits) ^ cell_);
-    const auto halves = reinterpret_cast<Halves>(wrong);
-    return (halves[0] | halves[1]) == 0;
+    const Quanta from = Quanta::lower(other);
+    const Quanta after = first_.at_most(from), before = from.at_most(last_), below = from.at_most(upper_),
+                 above = lower_.at_most(Quanta::upper(other));
+    return (~((after.xy | begins_.xy) & before.xy & below.xy & above.xy) & Quanta::kTop) == 0 &&
+           (~((after.z | begins_.z) & before.z & below.z & above.z) & Quanta::kTop) == 0;
   }
 
  private:
-  using Numbers __attribute__((vector_size(16))) = std::uint32_t;
-  using Signed __attribute__((vector_size(16))) = std::int32_t;
-  using Halves __attribute__((vector_size(16))) = std::uint64_t;
-  using Bytes __attribute__((vector_size(16))) = std::uint8_t;
-  using Shorts __attribute__((vector_size(16))) = std::uint16_t;
-  static constexpr auto kSteps = [] {  // along each axis
-    std::array<std::array<std::uint32_t, 4>, 64> all{};
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {i & 3, i >> 2 & 3, i >> 4, 0};
-    return all;
-  }();
-  ORCHARD_INLINE static void read(const PackedAabb& box, Numbers& lower, Numbers& upper) noexcept {
-    static_assert(offsetof(PackedAabb, lengths) == 12 && sizeof(PackedAabb) == sizeof lower);
-    Numbers all;
-    std::memcpy(&all, &box, sizeof all);
-    lower = all & Numbers{~0u, ~0u, ~0u, 0};
-    // The last four bytes, each as a number, by what is one instruction each; the fourth one is 0.
-    const Shorts shorts = reinterpret_cast<Shorts>(__builtin_shufflevector(
-        reinterpret_cast<Bytes>(all), Bytes{}, 8, 16, 9, 17, 10, 18, 11, 19, 12, 20, 13, 21, 14, 22, 15, 23));
-    const Shorts lengths = __builtin_shufflevector(shorts, Shorts{}, 4, 8, 5, 9, 6, 10, 7, 11);
-    upper = lower + reinterpret_cast<Numbers>(lengths);
-  }
-
-  Numbers lower_, upper_, cell_;
+  Quanta lower_, upper_, first_, last_;
+  Quanta begins_;  // along which axes it begins in the cell
 };
-#else
-class BoxInCell {
- public:
-  BoxInCell(const PackedAabb& box, std::uint8_t steps) noexcept : box_(box.whole()) {
-    for (std::uint32_t d = 0; d < 3; ++d) cell_[d] = (box.lower[d] >> kQuantumBits) + (steps >> 2 * d & 3u);
+
+// The neighbours of a cell that lie further along some axes, a bit each: which fields of what lies before the begin of
+// a box that goes on to one of them are 0 there, and the steps to there.
+template <typename Of>
+constexpr std::array<std::uint32_t, 8> by_corner(const Of& of) noexcept {
+  std::array<std::uint32_t, 8> all{};
+  for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    for (std::uint32_t d = 0; d < 3; ++d) all[corner] += (corner >> d & 1) * of(d);
   }
-  bool meets_here(const PackedAabb& narrow) const noexcept {
-    const QuantizedAabb other = narrow.whole();
-    std::uint32_t apart = 0, elsewhere = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-      apart |= (other.upper[d] - box_.lower[d]) | (box_.upper[d] - other.lower[d]);
-      elsewhere |= (std::max(box_.lower[d], other.lower[d]) >> kQuantumBits) ^ cell_[d];
+  return all;
+}
+constexpr auto kFieldsOf = by_corner([](std::uint32_t d) { return kLastInEntry << kFieldBits * d; });
+constexpr auto kStepsOf = by_corner([](std::uint32_t d) { return 1u << 2 * d; });
+
+// Where bodies' boxes lie in their first cells.
+struct Coded {
+  using Numbers = std::array<std::uint32_t, kBlock>;
+  Numbers from, below;  // in fields, as of a box that takes one cell
+  Numbers beyond;       // the fields of the axes along which the box takes the next cell, too
+  Numbers lines;        // those with the same last bits are one
+  Numbers axes;         // these axes, a bit each, and one above for more than two cells along any
+  std::uint32_t cells;  // that all take together
+};
+
+// A loop without branches that depend on the data.
+ORCHARD_INLINE void code(Coded& coded, const BoxBlock& block, std::size_t count,
+                         const std::array<std::uint32_t, 3>& factors) noexcept {
+  std::uint32_t cells = 0;
+  for (std::size_t i = 0; i < lanes_for(count); ++i) {
+    std::uint32_t from = 0, below = 0, beyond = 0, line = 0, axes = 0, taken = 1;
+    for (std::uint32_t d = 0; d < 3; ++d) {
+      const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
+      const std::uint32_t cell = lower >> kQuantumBits, more = (upper >> kQuantumBits) - cell;
+      const std::uint32_t two = (more | more >> 1) & 1;
+      from |= (lower >> kCoarser & kLastInEntry) << kFieldBits * d;
+      below |= (~upper >> kCoarser & kLastInEntry) << kFieldBits * d;
+      beyond |= two * (kLastInEntry << kFieldBits * d);
+      axes |= two << d | (more & 2) << 2;
+      line += d == 0 ? cell : cell * factors[d];
+      taken *= more + 1;
     }
-    return (apart >> 31 | elsewhere) == 0;
+    coded.from[i] = from, coded.below[i] = below, coded.beyond[i] = beyond;
+    coded.lines[i] = line, coded.axes[i] = axes;
+    cells += i < count ? taken : 0;
   }
-
- private:
-  const QuantizedAabb box_;
-  std::array<std::uint32_t, 3> cell_;
-};
-#endif
-
-// False, and it stays as it is, if it is full. Without a branch: what has no room is written where the counters are,
-// which are written again.
-ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
-  constexpr std::size_t kRoom = std::tuple_size_v<decltype(line.entries)>;
-  constexpr int kCountAt = std::endian::native == std::endian::little ? 0 : 32;  // among the counters' bits
-  static_assert(offsetof(CellLine, count) == sizeof line.entries &&
-                offsetof(CellLine, overflow) == offsetof(CellLine, count) + 4);
-  auto* const bytes = reinterpret_cast<unsigned char*>(&line);
-  std::uint64_t counters;
-  std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);
-  const std::uint32_t count = static_cast<std::uint32_t>(counters >> kCountAt);
-  const std::uint64_t room = count < kRoom ? 1 : 0;
-  std::memcpy(bytes + std::size_t{count} * sizeof entry, &entry, sizeof entry);
-  counters += room << kCountAt;
-  std::memcpy(bytes + sizeof line.entries, &counters, sizeof counters);
-  return room != 0;
+  coded.cells = cells;
 }
 
 }  // namespace
 
-// What is found waits on the stack for room in the vector.
-struct SweptGrid::Insertion {
-  static constexpr std::size_t kFound = 256;
+std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
+  return {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
+}
 
-  std::span<const PackedAabb> boxes;
-  std::vector<BodyPair>& pairs;
-  GridCounts& counts;
-  std::array<BodyPair, kFound> found;
-  std::size_t count = 0;
-
-  Insertion(std::span<const PackedAabb> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
-      : boxes(all), pairs(to), counts(of) {}
-  void hand_over() {
-    if (count == 0) return;
-    pairs.insert(pairs.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
-    counts.pairs += count;
-    count = 0;
+void SweptGrid::begin_reset(std::size_t lines) {
+  in_order_ = false;
+  const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
+  const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
+  mask_ = (1u << bits) - 1;
+  part_shift_ = bits - static_cast<unsigned>(std::bit_width(kParts - 1));
+  factors_ = line_factors(bits);
+  for (Overflow& more : overflow_) more.lines.clear(), more.free = 0;
+  const std::size_t wanted = std::size_t{1} << bits;
+  if (lines_.capacity() > 4 * wanted) give_back(lines_);
+  if (lines_.size() != wanted) {
+    lines_.clear();  // what is there need not move
+    lines_.resize(wanted);
   }
-};
+}
 
-// Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
-// the boxes: in dense worlds no branch can be predicted.
-void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps) {
-  const BoxInCell box(insertion.boxes[body], steps);
-  if (insertion.count + line.entries.size() > Insertion::kFound) insertion.hand_over();
-  std::size_t count = insertion.count;
+// All lines are written in order: those that have not been used for long come faster this way than one by one later.
+void SweptGrid::empty_part(std::size_t part) noexcept {
+  if (in_order_) return;
+  const std::size_t size = lines_.size() / kParts;
+  std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
+}
+
+void SweptGrid::empty_parts(const Executor& executor) {
+  constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
+  if (in_order_) return;
+  if (lines_.size() < kMinToShare) {
+    std::fill(lines_.begin(), lines_.end(), kEmptyLine);
+  } else {
+    auto empty = [&](std::size_t part) { empty_part(part); };
+    run_jobs(executor, kParts, empty);
+  }
+  in_order_ = true;
+}
+
+void SweptGrid::release() {
+  in_order_ = true;
+  give_back(lines_);
+  for (Overflow& more : overflow_) give_back(more.lines);
+}
+
+std::size_t SweptGrid::memory_bytes() const noexcept {
+  std::size_t bytes = bytes_of(lines_);
+  for (const Overflow& more : overflow_) bytes += bytes_of(more.lines);
+  return bytes;
+}
+
+void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block, Visits& visits) const {
+  Coded coded;
+  const std::size_t count = std::min(bodies.size(), kBlock);
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { code(coded, block, count, factors_); });
+  Visit* visit = visits.make_room(coded.cells);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t entry = entry_of(coded.from[i], coded.below[i] & ~coded.beyond[i], bodies[i]);
+    *visit++ = {entry, coded.lines[i] & mask_, 0};
+  }
+  const auto lines_of = by_corner([&](std::uint32_t d) { return factors_[d]; });
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t axes = coded.axes[i];
+    if (axes >= 8) {
+      visit = visit_rest(bodies[i], block.get(i), visit);
+      continue;
+    }
+    for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
+      const std::uint32_t fields = kFieldsOf[corner];
+      const std::uint32_t from = coded.from[i] & ~fields, below = coded.below[i] & (~coded.beyond[i] | fields);
+      *visit++ = {entry_of(from, below, bodies[i]), (coded.lines[i] + lines_of[corner]) & mask_,
+                  static_cast<Steps>(kStepsOf[corner])};
+    }
+  }
+}
+
+// All cells but the first one.
+SweptGrid::Visit* SweptGrid::visit_rest(BodyIndex body, const QuantizedAabb& box, Visit* visit) const noexcept {
+  for_each_cell(box, [&](const Cell& cell, std::uint32_t line) {
+    std::uint32_t from = 0, below = 0, steps = 0;
+    for (std::uint32_t d = 0; d < 3; ++d) {
+      const std::uint32_t begin = cell[d] << kQuantumBits, end = begin + (kQuanta - 1);
+      from |= (box.lower[d] > begin ? (box.lower[d] - begin) >> kCoarser : 0) << kFieldBits * d;
+      below |= (box.upper[d] < end ? (end - box.upper[d]) >> kCoarser : 0) << kFieldBits * d;
+      steps |= (cell[d] - (box.lower[d] >> kQuantumBits)) << 2 * d;
+    }
+    if (steps != 0) *visit++ = {entry_of(from, below, body), line, static_cast<Steps>(steps)};
+  });
+  return visit;
+}
+
+void SweptGrid::split(const Visits& visits, VisitsByPart& parts) const {
+  const std::span<const Visit> all = visits.visits();
+  std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
+  for (std::size_t i = 0; i < kParts; ++i) ends[i] = parts[i].make_room(all.size());
+  for (const Visit& visit : all) *ends[part_of(visit.line)]++ = visit;
+  for (std::size_t i = 0; i < kParts; ++i) parts[i].end_at(ends[i]);
+}
+
+// Of the entries hit, those whose box really meets the body's, and in this cell first.
+void SweptGrid::report(const CellLine& line, std::uint64_t hits, const Visit& visit, std::span<const PackedAabb> boxes,
+                       std::vector<BodyPair>& pairs) {
+  const BodyIndex body = body_of(visit.entry);
+  const BoxInCell box(boxes[body], visit.steps);
   for (; hits != 0; hits &= hits - 1) {
-    const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits))];
-    const auto other = static_cast<BodyIndex>(entry >> kIdShift);
-    insertion.found[count] = {std::min(body, other), std::max(body, other)};
-    count += box.meets_here(insertion.boxes[other]);
+    const BodyIndex other = body_of(line.entries[static_cast<std::size_t>(std::countr_zero(hits))]);
+    if (box.meets_here(boxes[other])) pairs.push_back({std::min(body, other), std::max(body, other)});
   }
-  insertion.count = count;
 }
 
 // Where the line is full: in those that it overflows to.
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& visit) {
-  const std::uint64_t query = query_from(visit.entry);
-  CellLine* line = &lines_[visit.line];
+ORCHARD_INLINE void SweptGrid::insert_beyond(const Visit& visit, std::span<const PackedAabb> boxes,
+                                             std::vector<BodyPair>& pairs, GridCounts& counts) {
   Overflow& overflow = overflow_[part_of(visit.line)];
+  CellLine* line = &lines_[visit.line];
   while (line->overflow != 0) {
     line = &overflow.lines[line->overflow - 1];
-    ++insertion.counts.lines_read;
-    const std::uint64_t met = Kind::meeting(*line, query);
-    if (met != 0) report(insertion, *line, met, static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
+    const std::uint64_t met = meeting(*line, query_from(visit.entry));
+    if (met != 0) report(*line, met, visit, boxes, pairs);
+    ++counts.lines_read;
   }
-  if (line->count < line->entries.size()) {
-    line->entries[line->count++] = visit.entry;
-  } else {
-    append(lines_[visit.line], visit.entry, overflow);
-  }
-}
-
-// What is put off until the rest of some visits is in: those that meet others, and those that find their line full.
-struct SweptGrid::PutOff {
-  static constexpr unsigned kHitsAt = 16;  // bits, above the visit's number
-
-  std::array<std::uint32_t, Batch::kMaxVisits + 1> meeting;  // what does not count is written, too
-  std::array<std::uint16_t, Batch::kMaxVisits + 1> full;
-  std::size_t meetings, fulls;
-};
-
-// Without branches, as in dense worlds no branch can be predicted.
-template <typename Kind, typename Line, typename Entry, typename Query>
-ORCHARD_INLINE void SweptGrid::put_all(PutOff& put_off, std::size_t count, const Line& line_at, const Entry& entry_at,
-                                       const Query& query_at) noexcept {
-  std::size_t meetings = 0, fulls = 0;
-  CellLine* const lines = lines_.data();
-  for (std::size_t k = 0; k < count; ++k) {
-    CellLine& line = lines[line_at(k)];
-    // Nothing is written before all seven entries have been read together: that would have to wait for the small
-    // writes.
-    const std::uint64_t met = Kind::meeting(line, query_at(k));
-    const bool room = put(line, entry_at(k));
-    put_off.meeting[meetings] = static_cast<std::uint32_t>(k | met << PutOff::kHitsAt);
-    meetings += met != 0;
-    put_off.full[fulls] = static_cast<std::uint16_t>(k);
-    fulls += !room;
-  }
-  put_off.meetings = meetings;
-  put_off.fulls = fulls;
-}
-
-// Entries stay where they are meanwhile.
-template <typename Of>
-void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, const Of& visit_at) {
-  for (std::size_t i = 0; i < put_off.meetings; ++i) {
-    const Visit visit = visit_at(put_off.meeting[i] & ((1u << PutOff::kHitsAt) - 1));
-    report(insertion, lines_[visit.line], put_off.meeting[i] >> PutOff::kHitsAt,
-           static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
-  }
-  if (put_off.fulls > 0) {
-    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
-      for (std::size_t i = 0; i < put_off.fulls; ++i) insert_beyond<Kind>(insertion, visit_at(put_off.full[i]));
-    });
-  }
-}
-
-void SweptGrid::insert(const Batch& batch, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
-                       GridCounts& counts) {
-  Insertion insertion(boxes, pairs, counts);
-  PutOff put_off;
-  counts.entries += batch.end;
-  counts.lines_read += batch.end;
-  with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
-    const std::uint32_t* const lines = batch.lines.data();
-    const std::uint64_t *const entries = batch.entries.data(), *const queries = batch.queries.data();
-    const auto line_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return lines[k]; };
-    const auto entry_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return entries[k]; };
-    const auto query_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return queries[k]; };
-    put_all<Kind>(put_off, batch.end, line_at, entry_at, query_at);
-  });
-  finish_visits(insertion, put_off, [&](std::size_t k) {
-    return Visit{batch.entries[k], batch.lines[k], batch.steps[k]};
-  });
-  std::array<Visit, kMaxVisits> rest;  // of what takes many cells, all but the first one
-  for (std::size_t i = 0; i < batch.larges; ++i) {
-    const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]].whole(), rest.data());
-    insert_visits(insertion, std::span<const Visit>(rest.data(), end));
-  }
-  insertion.hand_over();
-}
-
-void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const PackedAabb> boxes,
-                        VisitsByPart& visits) const {
-  Batch batch;
-  std::array<Visit, kMaxVisits> rest;
-  for (std::size_t first = 0; first < bodies.size(); first += kBatch) {
-    encode(batch, bodies.subspan(first, std::min(kBatch, bodies.size() - first)), block, first);
-    std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
-    for (std::size_t i = 0; i < kParts; ++i) {
-      visits[i].make_room(batch.end);
-      ends[i] = visits[i].end();
-    }
-    const unsigned shift = part_shift_;
-    for (std::size_t k = 0; k < batch.end; ++k) {
-      Visit*& end = ends[batch.lines[k] >> shift];
-      *end++ = {batch.entries[k], batch.lines[k], batch.steps[k]};
-    }
-    for (std::size_t i = 0; i < kParts; ++i) visits[i].end_at(ends[i]);
-    for (std::size_t i = 0; i < batch.larges; ++i) {
-      const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]].whole(), rest.data());
-      for (Visits& part : visits) part.make_room(kMaxVisits);
-      for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
-    }
-  }
-}
-
-void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
-  constexpr std::size_t kAhead = 32;
-  PutOff put_off;
-  insertion.counts.entries += visits.size();
-  insertion.counts.lines_read += visits.size();
-  for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), Batch::kMaxVisits))) {
-    const std::size_t count = std::min(visits.size(), Batch::kMaxVisits);
-    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
-      const Visit* const all = visits.data();
-      const std::size_t size = visits.size();
-      const auto line_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
-        if (k + kAhead < size) prefetch(&lines_[all[k + kAhead].line]);
-        return all[k].line;
-      };
-      const auto entry_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return all[k].entry; };
-      const auto query_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return query_from(all[k].entry); };
-      put_all<Kind>(put_off, count, line_at, entry_at, query_at);
-    });
-    finish_visits(insertion, put_off, [&](std::size_t k) { return visits[k]; });
-  }
+  if (line->count == kLineRoom) line = &add_line(*line, overflow);
+  line->entries[line->count++] = visit.entry;
 }
 
 void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
                        GridCounts& counts) {
-  Insertion insertion(boxes, pairs, counts);
-  insert_visits(insertion, visits);
-  insertion.hand_over();
+  const std::size_t before = pairs.size();
+  counts.entries += visits.size();
+  counts.lines_read += visits.size();
+  per_machine([&]() ORCHARD_INLINE_LAMBDA {
+    constexpr std::size_t kAhead = 32;
+    CellLine* const lines = lines_.data();
+    const Visit* const all = visits.data();
+    const std::size_t count = visits.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k + kAhead < count) prefetch(&lines[all[k + kAhead].line]);
+      CellLine& line = lines[all[k].line];
+      const std::uint64_t met = meeting(line, query_from(all[k].entry));
+      if (met != 0) report(line, met, all[k], boxes, pairs);
+      if (line.count < kLineRoom) {
+        line.entries[line.count++] = all[k].entry;
+      } else {
+        insert_beyond(all[k], boxes, pairs, counts);
+      }
+    }
+  });
+  counts.pairs += pairs.size() - before;
+}
+
+// After the last one of a chain.
+CellLine& SweptGrid::add_line(CellLine& last, Overflow& overflow) {
+  std::vector<CellLine>& lines = overflow.lines;
+  std::uint32_t added = overflow.free;
+  if (added != 0) {
+    overflow.free = lines[added - 1].overflow;
+    last.overflow = added;
+  } else {
+    const bool inner = !lines.empty() && &lines.front() <= &last && &last <= &lines.back();
+    const std::size_t index = inner ? static_cast<std::size_t>(&last - lines.data()) : 0;
+    grow(lines, lines.size() + 1);
+    added = static_cast<std::uint32_t>(lines.size());
+    (inner ? lines[index] : last).overflow = added;
+  }
+  return lines[added - 1] = kEmptyLine;
+}
+
+// The last entry of the chain takes the place.
+void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
+  CellLine *line = &first, *before_last = nullptr;
+  std::uint64_t* found = nullptr;
+  for (;; line = &overflow.lines[line->overflow - 1]) {
+    for (std::uint32_t i = 0; found == nullptr && i < line->count; ++i) {
+      if (body_of(line->entries[i]) == body) found = &line->entries[i];
+    }
+    if (line->overflow == 0) break;
+    before_last = line;
+  }
+  assert(found != nullptr);
+  if (found == nullptr) return;
+  *found = line->entries[--line->count];
+  line->entries[line->count] = kGuards;
+  if (line->count > 0 || before_last == nullptr) return;
+  const std::uint32_t freed = std::exchange(before_last->overflow, 0);
+  overflow.lines[freed - 1].overflow = overflow.free;
+  overflow.free = freed;
+}
+
+void SweptGrid::remove(BodyIndex body, const QuantizedAabb& box) noexcept {
+  for_each_cell(box,
+                [&](const Cell&, std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); });
 }
 
 }  // namespace orchard::runtime::detail

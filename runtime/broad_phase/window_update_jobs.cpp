@@ -72,6 +72,7 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
   const std::size_t share = (bodies.size() + kChunks - 1) / kChunks;
   const std::size_t size = (share + kBlock - 1) / kBlock * kBlock;
   Block update = block_at(now, from);
+  update.by_part = true;
   run_all(kChunks, [&](std::size_t i) {
     const std::size_t begin = std::min(bodies.size(), i * size), end = std::min(bodies.size(), begin + size);
     Block block = update;

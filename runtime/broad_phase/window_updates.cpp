@@ -154,11 +154,10 @@ void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodie
   if (count == 0) return;
   bodies = bodies.first(count);
   state_.boxes.note(bodies, block.boxes, chunk.extent);
-  for (std::size_t i = 0, first = 0; block.batches != nullptr && first < count; ++i, first += SweptGrid::kBatch) {
-    const std::size_t some = std::min(SweptGrid::kBatch, count - first);
-    state_.boxes.lines().encode((*block.batches)[i], bodies.subspan(first, some), block.boxes, first);
-  }
-  if (block.batches == nullptr) state_.boxes.lines().scatter(bodies, block.boxes, state_.boxes.packed(), chunk.visits);
+  SweptGrid::Visits& visits = block.by_part ? chunk.block_visits : chunk.visits[0];
+  if (block.by_part) visits.clear();
+  state_.boxes.lines().encode(bodies, block.boxes, visits);
+  if (block.by_part) state_.boxes.lines().split(visits, chunk.visits);
   const bool alike = same && block.ends[0] != kNeverStep;
   if (alike) {
     state_.windows.set_alike(bodies, block.from, block.ends[0]);
@@ -173,7 +172,7 @@ void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodie
     chunk.note_run(block.ends[i], more);
     i += more;
   }
-  const std::size_t stride = block.batches != nullptr ? MotionMeans::kStride : kBlock;  // of so many more few will do
+  const std::size_t stride = block.by_part ? kBlock : MotionMeans::kStride;  // of so many more few will do
   for (std::size_t i = 0; i < count; i += stride) chunk.sampled.push_back(motions[i]);
   chunk.placed.insert(chunk.placed.end(), bodies.begin(), bodies.end());
 }
@@ -257,7 +256,7 @@ void WindowUpdates::place_left(Chunk& chunk, Block& block) {
     }
     planner_.note_sample({&left.motion, 1});
     const QuantizedAabb box = shrink(block, state_.windows[left.body], left.motion);
-    state_.boxes.insert_one(left.body, box, near_, state_.counts);
+    state_.boxes.insert_one(left.body, box, chunk.block_visits, near_, state_.counts);
     const Step end = state_.windows[left.body].end;
     if (end != kNeverStep) state_.wheel.set_due(left.body, end);
     state_.windows.votes().vote(end, 1);
@@ -267,16 +266,12 @@ void WindowUpdates::place_left(Chunk& chunk, Block& block) {
 void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
   near_.clear();
   Block block = block_at(now, from);
-  std::array<SweptGrid::Batch, kBlock / SweptGrid::kBatch> batches;
-  block.batches = &batches;
   Chunk& chunk = *chunk_;
   for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
     place_chunk(chunk, block, bodies.subspan(done, std::min(kBlock, bodies.size() - done)));
     fold(chunk);
     GridCounts counts;
-    for (std::size_t i = 0; i * SweptGrid::kBatch < chunk.placed.size(); ++i) {
-      state_.boxes.lines().insert(batches[i], state_.boxes.packed(), near_, counts);
-    }
+    state_.boxes.lines().insert(chunk.visits[0].visits(), state_.boxes.packed(), near_, counts);
     state_.counts += counts;
     if (!chunk.left.empty()) place_left(chunk, block);
     if (tested && near_.size() >= kNearAtOnce) test_near(now);

@@ -75,8 +75,7 @@ struct WindowUpdates::Block {
   std::array<double, kBlock> durations;  // until then, of which the last step is not
   BoxBlock boxes;
   WindowRule::LastEnd last;
-  std::array<SweptGrid::Batch, kBlock / SweptGrid::kBatch>* batches =
-      nullptr;  // to be inserted at once; null: scattered
+  bool by_part = false;  // whether visits are split by the grid's parts, for several threads
 };
 
 struct WindowUpdates::Chunk {
@@ -88,7 +87,8 @@ struct WindowUpdates::Chunk {
     BodyIndex body;
     Motion motion;
   };
-  SweptGrid::VisitsByPart visits;
+  SweptGrid::VisitsByPart visits;  // to each part, or all in the first one
+  SweptGrid::Visits block_visits;  // of the block under way
   std::vector<BodyIndex> placed;   // in order
   std::vector<Run> runs;           // of these, those one after the other whose windows end together
   std::vector<BodyIndex> unknown;  // what holds from the later step on
@@ -110,7 +110,8 @@ struct WindowUpdates::Chunk {
     asked = 0;
   }
   std::size_t memory_bytes() const noexcept {
-    std::size_t bytes = bytes_of(placed, runs, unknown, left, sampled, motions) + answers.memory_bytes();
+    std::size_t bytes =
+        bytes_of(placed, runs, unknown, left, sampled, motions) + answers.memory_bytes() + block_visits.memory_bytes();
     for (const auto& part : visits) bytes += part.memory_bytes();
     return bytes;
   }

@@ -60,7 +60,6 @@ TEST(Rounds, AreComparedAcrossTheEndOfTheirNumbers) {
   EXPECT_FALSE(is_later(last - 3, PairEvent({0, 1}, last + 2).created));
 }
 
-// One by one and four at once.
 TEST(PackedAabb, IsTheWholeBoxUpToFourCells) {
   test::Draw draw(2);
   BoxBlock block;
@@ -113,7 +112,7 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
     SweptGrid grid;
     grid.begin_reset(kBodies / 2);
     grid.empty_parts({});
-    SweptGrid::Batch batch;
+    SweptGrid::Visits visits;
     GridCounts counts;
     std::vector<PackedAabb> boxes(kBodies);
     std::vector<BodyPair> pairs;
@@ -130,10 +129,9 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
         boxes[ids[i]] = PackedAabb(box);
         block.set(i, box);
       }
-      for (std::size_t first = 0; first < kBlock; first += SweptGrid::kBatch) {
-        grid.encode(batch, std::span(ids).subspan(first, SweptGrid::kBatch), block, first);
-        grid.insert(batch, boxes, pairs, counts);
-      }
+      visits.clear();
+      grid.encode(ids, block, visits);
+      grid.insert(visits.visits(), boxes, pairs, counts);
     }
     EXPECT_LT(static_cast<double>(counts.lines_read), 1.5 * static_cast<double>(counts.entries)) << cells[0];
   }
