@@ -42,7 +42,7 @@ void KineticBroadPhase::take_away_gone() noexcept {
   for (std::size_t i = 0; i < gone_.size(); ++i) {
     if (i + kAhead < gone_.size()) prefetch(&state_.windows[gone_[i + kAhead]]);
     const BodyIndex body = gone_[i];
-    if (state_.windows[body].length > 0) planner_.note_cancelled();
+    if (state_.windows[body].bounded) planner_.note_cancelled();
     state_.windows[body] = {.end = kNeverStep};  // no next update, until the slot's next body
     state_.windows.void_events(body);
   }
@@ -50,8 +50,9 @@ void KineticBroadPhase::take_away_gone() noexcept {
   if (gone_.capacity() > kKept) give_back(gone_);
 }
 
-void KineticBroadPhase::note_cancelled(BodyIndex body, Step now) {
-  if (state_.windows.note_cancelled(body, now)) planner_.note_cancelled();
+void KineticBroadPhase::note_cancelled(BodyIndex body) {
+  const Window& window = state_.windows[body];
+  if (window.bounded && window.end >= 0) planner_.note_cancelled();
 }
 
 void KineticBroadPhase::collect_due(Step now) {
@@ -67,14 +68,13 @@ void KineticBroadPhase::collect_due(Step now) {
     Window& window = state_.windows[due_.entries[i]];
     if (window.end != now || state_.changes.has(due_.entries[i])) continue;  // updated since
     window.end = kUpdateDue;
-    window.rely_longer();
     due_.bodies.push_back(due_.entries[i]);
   }
   const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
   std::size_t count = due_.bodies.size();
   due_.bodies.resize(count + state_.changes.size());
   state_.changes.take(load, [&](BodyIndex body) {
-    note_cancelled(body, now);
+    note_cancelled(body);
     due_.bodies[count++] = body;
   });
   due_.bodies.resize(count);
@@ -85,10 +85,8 @@ void KineticBroadPhase::collect_all(Step now) {
   for (BodyIndex body = 0; body < state_.pool.slots(); ++body) {
     if (state_.changes.has(body)) {
       state_.changes.forget(body);
-      note_cancelled(body, now);
-    } else if (state_.windows[body].end == now) {
-      state_.windows[body].rely_longer();
-    } else {
+      note_cancelled(body);
+    } else if (state_.windows[body].end != now) {
       continue;
     }
     due_.bodies.push_back(body);
@@ -97,13 +95,13 @@ void KineticBroadPhase::collect_all(Step now) {
 }
 
 // What has not been updated for this step yet is in due_.bodies already; the rest changed since, or was added.
-void KineticBroadPhase::complete_due(Step now) {
+void KineticBroadPhase::complete_due() {
   if (state_.changes.empty() && state_.pool.size() == state_.pool.slots()) return;  // nor is anybody gone
   std::erase_if(due_.bodies, [&](BodyIndex body) { return !state_.pool.alive(body) || state_.changes.has(body); });
   const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
   state_.changes.take(load, [&](BodyIndex body) {
     state_.boxes.take_away(body);
-    note_cancelled(body, now);
+    note_cancelled(body);
     due_.bodies.push_back(body);
   });
 }
@@ -124,9 +122,8 @@ bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
   if (outcome == Planner::Outcome::interrupted) return false;
   state_.counts = {};
   if (outcome == Planner::Outcome::same) return true;
-  const Vec3* const surveyed = planner_.surveyed_middle();
-  state_.grid.set(surveyed != nullptr ? *surveyed : state_.grid.at(now).origin(), planner_.velocity(),
-                  planner_.plan().cell_size, 2 * state_.options.position_slack, state_.options.time_step, now);
+  state_.grid.set(planner_.spread().middle, planner_.velocity(), planner_.plan().cell_size,
+                  2 * state_.options.position_slack, state_.options.time_step, now);
   state_.windows.plan(planner_.plan().window, state_.grid.moves());
   return true;
 }
@@ -153,7 +150,7 @@ void KineticBroadPhase::place_all() {
 
 void KineticBroadPhase::note_spheres() {
   const WindowPlan& plan = planner_.plan();
-  pairs_.spheres().begin(plan.window == 1 || plan.pairs_per_body >= kManyPairs, state_.pool.slots());
+  pairs_.spheres().begin(plan.slow && plan.pairs_per_body >= kManyPairs, state_.pool.slots());
 }
 
 void KineticBroadPhase::make_room_for_boxes() {
@@ -191,10 +188,17 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
   pairs_.test(now, due_.pairs);
   pairs_.take_overlaps_ahead();
   if (!rebuild_all) return;
-  const bool lasts = planner_.plan().window >= kMinStepsBeforeCommonExpiry;
-  const bool common =
-      state_.pool.size() >= kMinBodiesAtCommonExpiry && 4 * state_.windows.votes().votes() > state_.pool.size();
-  common_expiry_ = lasts && common ? state_.windows.votes().voted() : kNeverStep;
+  common_expiry_ = planner_.plan().window >= kMinStepsBeforeCommonExpiry ? find_common_expiry(now) : kNeverStep;
+}
+
+// Where most windows end, if these are many.
+Step KineticBroadPhase::find_common_expiry(Step now) const noexcept {
+  for (Step step = state_.wheel.next_after(now); step != kNeverStep; step = state_.wheel.next_after(step)) {
+    const std::size_t bodies = state_.wheel.bodies_due(step);
+    if (bodies >= kMinBodiesAtCommonExpiry && 2 * bodies > state_.pool.size()) return step;
+    if (step >= now + kLongestWindow - 1) break;
+  }
+  return kNeverStep;
 }
 
 // A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
@@ -237,12 +241,11 @@ void KineticBroadPhase::step_by_sorting(Step now) {
   if (!sorting_) begin_sorting();
   state_.windows.start_over();
   all_are_due();
-  sorted_.begin(due_.bodies.size(), state_.grid.at(now).origin(), planner_.spacing());
+  sorted_.begin(due_.bodies.size(), state_.grid.at(now).origin(), planner_.spread().spacing);
   for (std::size_t done = 0; done < due_.bodies.size(); done += kBlock) {
     auto block = std::span(due_.bodies).subspan(done, std::min(kBlock, due_.bodies.size() - done));
     const std::span<const Motion> motions = updates_.ask_valid(now, block);
-    for (const BodyIndex body : block) state_.windows.set(body, now, now + 1);
-    planner_.note(motions);
+    for (const BodyIndex body : block) state_.windows.set(body, now + 1);
     sorted_.add(block, motions);
   }
   sorted_.find();
@@ -299,7 +302,7 @@ void KineticBroadPhase::begin(Step now) {
   due_.entries.clear();
   due_.pairs.clear();
   state_.wheel.take(now, due_.entries, due_.pairs);
-  if (prepared_) return complete_due(now);
+  if (prepared_) return complete_due();
   due_.bodies.clear();
   sorting_ ? collect_all(now) : collect_due(now);
   first_ = false;

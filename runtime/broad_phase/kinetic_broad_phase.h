@@ -10,8 +10,8 @@ namespace orchard::runtime::detail {
 // update due there finds the pair again. A pair that overlaps has an event at the first step at which it can have
 // parted; until then it stays in the list that is reported.
 //
-// A body whose bounds are cancelled at every step gets windows of one step, and longer ones again once these go well.
-// Where no window is longer, boxes and events are of no use: the spheres are sorted again at each step.
+// Where bounds are cancelled at every step, windows have one step. Where none is longer, boxes and events are of no
+// use: the spheres are sorted again at each step.
 //
 // Where most windows end at one step, the *common expiry*, all boxes are rebuilt then, and half of that work is done
 // a step ahead: a bound that holds up to the step before the common expiry still answers for it, while the next bound
@@ -40,13 +40,14 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   void begin(Step now);
   void collect_due(Step now);
   void collect_all(Step now);
-  void complete_due(Step now);
-  void note_cancelled(BodyIndex body, Step now);
+  void complete_due();
+  void note_cancelled(BodyIndex body);
   StepReport end(Step now, unsigned incomplete_from, const BudgetTracker& tracker);
 
   void step_in_full(Step now, bool completing);
   unsigned step_within(Step now, BudgetTracker& tracker);
   void step_by_sorting(Step now);
+  Step find_common_expiry(Step now) const noexcept;
   bool worth_a_rebuild(std::size_t due) const noexcept;
   bool worth_sorting(Step now) const noexcept;
   bool prepare(Step now);

@@ -53,7 +53,11 @@ void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Ste
 inline void NearPairs::find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b,
                                     Horizon& horizon) const noexcept {
   const Clock& clock = state_.pool.clock;
-  const Step sooner = std::min(state_.windows.known_until(pair.a, now), state_.windows.known_until(pair.b, now));
+  const auto known_until = [&](BodyIndex body) {  // one that waits for its update by its present motion only
+    const Step end = state_.windows[body].end;
+    return end == kUpdateDue ? now + kLongestWindow : end;
+  };
+  const Step sooner = std::min(known_until(pair.a), known_until(pair.b));
   const Step left = std::min(sooner, now + kLongestWindow) - now;
   const double expiry = std::min(a.expiry, b.expiry);
   const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
@@ -148,15 +152,11 @@ void NearPairs::test(Step now, std::span<PairEvent> events) {
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const {
   const Round round = state_.windows.round();
   outcome.tests.clear();
-  std::uint64_t compared = 0;
   for (const BodyPair& pair : pairs) {
     const bool known =
         spheres_.any() && state_.windows[pair.a].updated == round && state_.windows[pair.b].updated == round;
-    compared += known;
     if (!known || !settle_by_spheres(now, pair, outcome)) outcome.tests.emplace_back(pair, round);
   }
-  outcome.compared += compared;
-  outcome.settled += pairs.size() - outcome.tests.size();
   test(now, outcome.tests, outcome);
 }
 
@@ -177,10 +177,9 @@ void NearPairs::take(Outcome& outcome) {
   doubtful_.insert(doubtful_.end(), outcome.doubtful.begin(), outcome.doubtful.end());
   for (const BodyIndex body : outcome.refused) state_.refuse(body);
   state_.pool.motions.count_asked(outcome.asked);
-  spheres_.count(outcome.compared, outcome.settled);
   outcome.touching.clear(), outcome.parted.clear(), outcome.later.clear(), outcome.ahead.clear();
   outcome.doubtful.clear(), outcome.refused.clear();
-  outcome.asked = outcome.compared = outcome.settled = 0;
+  outcome.asked = 0;
 }
 
 void NearPairs::take_overlaps_ahead() {

@@ -29,7 +29,7 @@ class NearPairs {
     std::vector<Later> later;
     std::vector<PairEvent> doubtful;
     std::vector<BodyIndex> refused;
-    std::uint64_t asked = 0, compared = 0, settled = 0;
+    std::uint64_t asked = 0;
     std::vector<PairEvent> tests;  // and what the tests work with
     std::vector<Motion> motions;
     MotionQueries::Answers answers;

@@ -13,15 +13,7 @@ constexpr double kMinFloat = 0x1p-126;  // below, floats are rounded by more tha
 }  // namespace
 
 void SphereNotes::begin(bool wanted, std::size_t slots) {
-  constexpr std::uint64_t kTells = 64, kWorthIt = 4;  // pairs compared, and of so many one that is settled
-  constexpr unsigned kInVain = 8;
-  if (in_vain_ > 0) {
-    --in_vain_;
-  } else if (compared_ >= kTells && kWorthIt * settled_ < compared_) {
-    in_vain_ = kInVain;
-  }
-  compared_ = settled_ = 0;
-  if (wanted && in_vain_ == 0) {
+  if (wanted) {
     grow(spheres_, slots);
   } else {
     spheres_.clear();  // their room stays: the next plan may want them again

@@ -5,7 +5,7 @@
 namespace orchard::runtime::detail {
 
 // The spheres of bodies at the last update of all windows, for worlds in which many pairs are near: most of them need
-// no other test. Where that was not so the last time, it is tried again some updates later.
+// no other test.
 class SphereNotes {
  public:
   explicit SphereNotes(double position_slack) noexcept : slack_(position_slack) {}
@@ -22,8 +22,6 @@ class SphereNotes {
   enum class Answer : std::uint8_t { unknown, apart, touching };
   // Of two bodies noted: whether they surely touch, or surely do not, until their windows end, or `now_only`.
   Answer compare(const BodyPair& pair, bool now_only) const noexcept;
-  // How many pairs were compared, and how many of these needed no other test.
-  void count(std::uint64_t compared, std::uint64_t settled) noexcept { compared_ += compared, settled_ += settled; }
   std::size_t memory_bytes() const noexcept { return bytes_of(spheres_); }
 
  private:
@@ -32,9 +30,7 @@ class SphereNotes {
     float radius, reach;          // reach: as far as the centre may get until the body's window ends, and all slack
   };
   double slack_;
-  std::vector<Sphere> spheres_;               // by body; empty unless many pairs are near
-  std::uint64_t compared_ = 0, settled_ = 0;  // pairs since begin()
-  unsigned in_vain_ = 0;                      // updates of all windows without notes, to come
+  std::vector<Sphere> spheres_;  // by body; empty unless many pairs are near
 };
 
 }  // namespace orchard::runtime::detail

@@ -63,12 +63,12 @@ ORCHARD_INLINE std::uint64_t meeting(const CellLine& line, std::uint64_t query) 
   std::uint64_t bits = 0;
 #ifdef ORCHARD_VECTORS
   using Words __attribute__((vector_size(32))) = std::uint64_t;
-  std::array<Words, 2> halves;
-  std::memcpy(&halves, &line, sizeof halves);
-  const auto met = [&](const Words& half, const Words& as) ORCHARD_INLINE_LAMBDA {
+  const auto met = [&](std::size_t at, const Words& as) ORCHARD_INLINE_LAMBDA {
+    Words half;
+    std::memcpy(&half, reinterpret_cast<const char*>(&line) + at, sizeof half);
     return (((half + query) & kGuards) - 1) & (as << kIdShift);  // bits above the guards are set where none of these is
   };
-  const Words all = met(halves[0], Words{1, 2, 4, 8}) | met(halves[1], Words{16, 32, 64, 0});
+  const Words all = met(0, Words{1, 2, 4, 8}) | met(32, Words{16, 32, 64, 0});
   bits = ((all[0] | all[1]) | (all[2] | all[3])) >> kIdShift;
 #else
   for (std::uint32_t i = 0; i < 7; ++i) bits |= std::uint64_t{((query + line.entries[i]) & kGuards) == 0} << i;

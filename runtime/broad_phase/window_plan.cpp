@@ -27,14 +27,12 @@ constexpr double kWorthLonger = 0.9;         // cost: a long window makes the st
 constexpr double kWindowGrowth = 1.4;        // between the windows tried
 
 // Of the box of a mean body, along each axis.
-Vec3 box_of(const MotionMeans& mean, double duration) noexcept {
+Vec3 box_of(const MeanMotion& mean, double duration) noexcept {
   const double spread = duration * (mean.drift + duration * mean.acceleration / 2);
   Vec3 box;
   for (std::size_t d = 0; d < 3; ++d) box[d] = 2 * mean.radius + spread + std::max(spread, mean.speed[d] * duration);
   return box;
 }
-
-double speed_per_axis(const Vec3& v) noexcept { return (std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2])) / 3; }
 
 // For how many of a window's steps a bound holds, on average.
 double lasting(double window, double cancelled) noexcept {
@@ -43,61 +41,46 @@ double lasting(double window, double cancelled) noexcept {
 
 }  // namespace
 
-void MotionMeans::add(const Motion& m) noexcept {
-  // Of all seen so far each is among the places with the same chance, as far as a multiplication mixes.
-  const auto seen = static_cast<std::uint64_t>(count);
-  // Few enough of them for 32 bits, whose remainder takes half as long.
-  const std::uint64_t mixed = (seen * 0x9e3779b97f4a7c15u) >> 32;
-  const std::uint64_t place =
-      seen < kPlaces ? seen : static_cast<std::uint32_t>(mixed) % static_cast<std::uint32_t>(seen + 1);
-  if (place < kPlaces) places[place] = m.position, velocities[place] = m.velocity;
-  count += 1;
-  radius += m.radius;
-  for (std::size_t d = 0; d < 3; ++d) speed[d] += std::fabs(m.velocity[d] - frame[d]);
-  drift += m.drift;
-  acceleration += m.acceleration;
-}
-
-double MotionMeans::mean_speed(const Vec3& relative_to) const noexcept {
-  double sum = 0;
-  for (std::size_t i = 0; i < sampled(); ++i) sum += speed_per_axis(velocities[i] - relative_to);
-  return sum / static_cast<double>(std::max<std::size_t>(1, sampled()));
+MeanMotion mean_of(std::span<const Motion> sample, const Vec3& velocity) noexcept {
+  MeanMotion mean;
+  const double share = 1 / static_cast<double>(std::max<std::size_t>(1, sample.size()));
+  for (const Motion& m : sample) {
+    mean.radius += share * m.radius;
+    mean.drift += share * m.drift;
+    mean.acceleration += share * m.acceleration;
+    for (std::size_t d = 0; d < 3; ++d) mean.speed[d] += share * std::fabs(m.velocity[d] - velocity[d]);
+  }
+  return mean;
 }
 
 // The median along each axis: a few that fly elsewhere do not matter.
-Vec3 MotionMeans::crowd_velocity() const noexcept {
+Vec3 crowd_velocity(std::span<const Motion> sample) noexcept {
   constexpr double kMuchSlower = 0.5;
-  const std::size_t n = sampled();
-  if (n == 0) return {};
+  if (sample.empty()) return {};
   Vec3 median{};
-  std::array<double, kPlaces> along;
+  std::array<double, kSample> along;
+  const auto middle = static_cast<std::ptrdiff_t>(sample.size() / 2);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < n; ++i) along[i] = velocities[i][axis];
-    std::nth_element(along.begin(), along.begin() + n / 2, along.begin() + n);
-    median[axis] = along[n / 2];
+    for (std::size_t i = 0; i < sample.size(); ++i) along[i] = sample[i].velocity[axis];
+    std::nth_element(along.begin(), along.begin() + middle, along.begin() + static_cast<std::ptrdiff_t>(sample.size()));
+    median[axis] = along[static_cast<std::size_t>(middle)];
   }
-  return mean_speed(median) < kMuchSlower * mean_speed({}) ? median : Vec3{};
-}
-
-void MotionMeans::refer_to(const Vec3& velocity) noexcept {
-  if (velocity == frame) return;
-  frame = velocity;
-  speed = {};
-  const double each = count / static_cast<double>(std::max<std::size_t>(1, sampled()));
-  for (std::size_t i = 0; i < sampled(); ++i) {
-    for (std::size_t d = 0; d < 3; ++d) speed[d] += each * std::fabs(velocities[i][d] - velocity[d]);
-  }
+  const auto speed = [&](const Vec3& frame) {
+    const Vec3 mean = mean_of(sample, frame).speed;
+    return mean[0] + mean[1] + mean[2];
+  };
+  return speed(median) < kMuchSlower * speed({}) ? median : Vec3{};
 }
 
 namespace {
 
 // The spacing of most of them, where they lie in clusters.
-double spacing_in_clusters(std::span<const Vec3> sample, std::size_t bodies, std::size_t axes) {
-  std::array<double, MotionMeans::kPlaces> nearest{};
+double spacing_in_clusters(std::span<const Motion> sample, std::size_t bodies, std::size_t axes) {
+  std::array<double, kSample> nearest{};
   for (std::size_t i = 0; i < sample.size(); ++i) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < sample.size(); ++k) {
-      const Vec3 apart = sample[k] - sample[i];
+      const Vec3 apart = sample[k].position - sample[i].position;
       least = std::min(least, k == i ? least : dot(apart, apart));
     }
     nearest[i] = least;
@@ -109,15 +92,15 @@ double spacing_in_clusters(std::span<const Vec3> sample, std::size_t bodies, std
 }
 
 // With spacing and thin of bodies spread evenly.
-Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
+Spread spread_evenly(std::span<const Motion> sample, std::size_t bodies) {
   const std::size_t n = sample.size();
   Spread spread;
-  if (n > 0) spread.middle = sample[0];
+  if (n > 0) spread.middle = sample[0].position;
   if (n < 2) return spread;
   Vec3 lower{}, upper{};
-  std::array<double, MotionMeans::kPlaces> sorted;  // as far as is needed
+  std::array<double, kSample> sorted;  // as far as is needed
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i][axis];
+    for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i].position[axis];
     const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
     const std::size_t low = n / 8, high = n - 1 - low;
     std::nth_element(at(0), at(low), at(n));
@@ -129,7 +112,8 @@ Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
     spread.middle[axis] = (first + last) / 2;
   }
   double inside = 0;
-  for (const Vec3& p : sample.first(n)) {
+  for (const Motion& motion : sample) {
+    const Vec3& p = motion.position;
     bool in = true;
     for (std::size_t axis = 0; axis < 3; ++axis) in = in && lower[axis] <= p[axis] && p[axis] <= upper[axis];
     inside += in;
@@ -152,22 +136,18 @@ Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
 
 }  // namespace
 
-Spread spread_of(std::span<const Vec3> sample, std::size_t bodies) {
-  const auto some = sample.first(std::min(sample.size(), MotionMeans::kPlaces));
+Spread spread_of(std::span<const Motion> sample, std::size_t bodies) {
+  const auto some = sample.first(std::min(sample.size(), kSample));
   Spread spread = spread_evenly(some, bodies);
-  if (some.size() < MotionMeans::kPlaces || bodies < kMinClustered) return spread;
+  if (some.size() < kSample || bodies < kMinClustered) return spread;
   const auto thin = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), true));
   const double clustered = spacing_in_clusters(some, bodies, 3 - thin);
   if (clustered < kClustered * spread.spacing) spread.spacing = clustered;
   return spread;
 }
 
-WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Spread& spread, double time_step,
+WindowPlan plan_window(const MeanMotion& mean, std::size_t bodies, const Spread& spread, double time_step,
                        double correction, Step fixed_window, double cancelled) noexcept {
-  MotionMeans mean = means;
-  const double n = std::max(1.0, means.count);
-  for (double* sum : {&mean.radius, &mean.drift, &mean.acceleration}) *sum /= n;
-  for (double& sum : mean.speed) sum /= n;
   double spacing = spread.spacing;
   if (!(spacing > 0) || !std::isfinite(spacing)) spacing = std::max(4 * mean.radius, 1e-300);
   // Where clusters are tiny in their world, cells as small as these would leave the others outside of the quantized
@@ -205,7 +185,7 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
     const double more =
         pairs < kManyPairsPerBody ? kLinesPerCell * (cells - kCellsAsEver) * static_cast<double>(bodies) : 0;
     const double lines = std::max(as_ever, std::min(more, kLinesInCache));
-    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
+    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, longest <= 2.5 * mean.radius, cell > longest};
   };
   if (fixed_window > 0) {
     consider(std::min(fixed_window, kLongestWindow));

@@ -4,35 +4,23 @@
 
 namespace orchard::runtime::detail {
 
-// What decides how long a window pays: means over the bodies updated.
-struct MotionMeans {
-  static constexpr std::size_t kPlaces = 48;
+inline constexpr std::size_t kSample = 48;  // bodies, at most, that a plan is made by
 
-  double count = 0, radius = 0, drift = 0, acceleration = 0;  // sums
-  Vec3 speed{};                                               // sums, along each axis
-  std::array<Vec3, kPlaces> places{}, velocities{};           // of some of them, no matter which
-  Vec3 frame{};                                               // whose velocity speeds are relative to
-
-  void add(const Motion& motion) noexcept;
-  static constexpr std::size_t kStride = 16;  // of those updated, one in so many is looked at
-  void add(std::span<const Motion> updated) noexcept {
-    for (std::size_t i = 0; i < updated.size(); i += kStride) add(updated[i]);
-  }
-  // The velocity that most of them have about in common; 0 unless they are much slower relative to it.
-  Vec3 crowd_velocity() const noexcept;
-  void refer_to(const Vec3& velocity) noexcept;  // speeds are relative to it from now on
-  std::span<const Vec3> sample() const noexcept { return std::span(places).first(sampled()); }
-
- private:
-  std::size_t sampled() const noexcept { return std::min(kPlaces, static_cast<std::size_t>(count)); }
-  double mean_speed(const Vec3& relative_to) const noexcept;  // of the sample, per axis
+// What decides how long a window pays: means over a sample of the bodies.
+struct MeanMotion {
+  double radius = 0, drift = 0, acceleration = 0;
+  Vec3 speed{};  // along each axis, relative to a velocity
 };
+MeanMotion mean_of(std::span<const Motion> sample, const Vec3& velocity) noexcept;
+// The velocity that most of them have about in common; 0 unless they are much slower relative to it.
+Vec3 crowd_velocity(std::span<const Motion> sample) noexcept;
 
 struct WindowPlan {
   double cell_size = 1;
   Step window = 1;
   std::size_t lines = 1;
   double pairs_per_body = 0;  // predicted for one update of all windows
+  bool slow = false;          // bodies move by less than their radius within a window
   bool roomy = false;         // cells are larger than boxes: smaller ones would have fewer bodies in each
 };
 
@@ -45,14 +33,13 @@ struct Spread {
 };
 
 // The spacing is (volume / bodies)^(1/3), in flat worlds (area / bodies)^(1/2) and in thin ones length / bodies, of a
-// sample's inner part, so that a few bodies far away do not matter. O(1): of a sample of more than MotionMeans::kPlaces
-// the rest is left out.
-Spread spread_of(std::span<const Vec3> sample, std::size_t bodies);
+// sample's inner part, so that a few bodies far away do not matter. At most kSample of them are taken.
+Spread spread_of(std::span<const Motion> sample, std::size_t bodies);
 
 // The window with the least cost per step: a long one makes more boxes meet, a short one updates bodies more often.
 // `correction` multiplies the predicted number of pairs; fixed_window 0 leaves the choice. `cancelled`: of the bodies,
 // the share whose bounds end before their time at a step, for which a long window would be in vain.
-WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Spread& spread, double time_step,
+WindowPlan plan_window(const MeanMotion& mean, std::size_t bodies, const Spread& spread, double time_step,
                        double correction, Step fixed_window, double cancelled) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -71,56 +71,35 @@ WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept
   return block;
 }
 
-// True if all windows end at the same step.
+// False if a motion has no time of expiry.
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
                              std::span<const Motion> motions) const noexcept {
-  const Windows& windows = state_.windows;
-  const WindowRule& rule = windows.rule();
-  const auto duration = [&](Step end) {
-    return end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
-  };
-  const auto end_of = [&](std::size_t i) {
-    return rule.end_of(block.from, windows[bodies[i]], state_.pool.statics.has(bodies[i]), motions[i], block.last);
-  };
-  const Step planned = rule.end_of(block.from, motions[0], block.last);
-  const Step common = end_of(0);
-  std::uint64_t other = 0;  // bits of expiries that differ
-  for (const Motion& motion : motions) {
-    other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
-  }
-  const bool alike = other == 0 && std::isfinite(motions[0].expiry);
-  if (alike && !state_.pool.statics.any() && !rule.any_short) {
-    if (block.common != common) {
-      block.common = common;
-      block.ends.fill(common);
-      block.durations.fill(duration(common));
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const bool alike = !state_.pool.statics.any();  // those whose bounds expire at the same time, if they do
+  bool all = true;
+  double known = kNone, duration = 0;  // the expiry of the body before
+  Step end = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double expiry = motions[i].expiry;
+    const bool at_rest = rests(motions[i]);
+    if (expiry != known || at_rest) {
+      end = state_.windows.end_of(block.from, bodies[i], motions[i]);
+      duration = end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
+      known = alike && !at_rest ? expiry : kNone;
+      all = all && !std::isnan(expiry);
     }
-    return true;
+    block.ends[i] = end;
+    block.durations[i] = duration;
   }
-  block.common = kUpdateDue;
-  // Whether one may rest and another not, or some may rest as long as they are cancelled again and again.
-  const bool may_rest = !rule.all_end && motions[0].expiry == std::numeric_limits<double>::infinity();
-  bool same = !state_.pool.statics.any() && !(may_rest && rule.any_short);
-  for (std::size_t i = 0; may_rest && same && i < bodies.size(); ++i) same = rests(motions[i]) == rests(motions[0]);
-  for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions[i].expiry == motions[0].expiry;
-  for (std::size_t i = 0; rule.any_short && same && i < bodies.size(); ++i) {
-    same = std::min(planned, block.from + windows[bodies[i]].lasting) == common;
-  }
-  block.ends.fill(common);
-  block.durations.fill(duration(common));
-  for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
-    block.ends[i] = end_of(i);
-    block.durations[i] = duration(block.ends[i]);
-  }
-  return same;
+  return all;
 }
 
 // Boxes until the ends of the windows; false if a motion is not valid.
-bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bool same_ends) const noexcept {
-  const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
-  bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
+bool WindowUpdates::make_boxes(Block& block, std::span<const BodyIndex> bodies,
+                               std::span<const Motion> motions) const noexcept {
+  const bool timed = set_ends(block, bodies, motions);
   const auto durations = std::span(block.durations).first(motions.size());
-  valid = block.quantized_grid.boxes(motions, durations, block.boxes) && valid;
+  const bool valid = block.quantized_grid.boxes(motions, durations, block.boxes) && timed;
   const auto is_one = [](const Motion& motion) { return is_valid(motion); };
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
@@ -140,10 +119,8 @@ void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodie
     }
     count = front;
   };
-  bool same = true;
   for (bool fit = false; !fit && count > 0;) {
-    same = set_ends(block, bodies.first(count), motions.first(count));
-    const bool valid = make_boxes(block, motions.first(count), same);
+    const bool valid = make_boxes(block, bodies.first(count), motions.first(count));
     fit = valid && all_fit_grid(block.boxes);
     if (!valid) {
       leave_unless([&](std::size_t i) { return is_valid(motions[i]); });
@@ -158,22 +135,10 @@ void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodie
   if (block.by_part) visits.clear();
   state_.boxes.lines().encode(bodies, block.boxes, visits);
   if (block.by_part) state_.boxes.lines().split(visits, chunk.visits);
-  const bool alike = same && block.ends[0] != kNeverStep;
-  if (alike) {
-    state_.windows.set_alike(bodies, block.from, block.ends[0]);
-  } else {
-    state_.windows.set(bodies, block.from, std::span(block.ends).first(count));
-  }
+  for (std::size_t i = 0; i < count; ++i) state_.windows.set(bodies[i], block.ends[i]);
   for (std::size_t i = 0; pairs_.spheres().any() && i < count; ++i) {
     pairs_.spheres().note(bodies[i], motions[i], block.quantized_grid, block.durations[i]);
   }
-  for (std::size_t i = 0; i < count;) {
-    const std::size_t more = alike ? count : 1;
-    chunk.note_run(block.ends[i], more);
-    i += more;
-  }
-  const std::size_t stride = block.by_part ? kBlock : MotionMeans::kStride;  // of so many more few will do
-  for (std::size_t i = 0; i < count; i += stride) chunk.sampled.push_back(motions[i]);
   chunk.placed.insert(chunk.placed.end(), bodies.begin(), bodies.end());
 }
 
@@ -203,14 +168,14 @@ void WindowUpdates::fold(Chunk& chunk) {
   std::span<const BodyIndex> placed = chunk.placed;
   state_.overlaps.mark_updated(placed);
   state_.boxes.meet_oversized(placed, near_);
-  for (const Chunk::Run& run : chunk.runs) {
-    if (run.end != kNeverStep && run.bodies == 1) state_.wheel.set_due(placed[0], run.end);
-    if (run.end != kNeverStep && run.bodies > 1) state_.wheel.set_due(placed.first(run.bodies), run.end);
-    state_.windows.votes().vote(run.end, run.bodies);
-    placed = placed.subspan(run.bodies);
+  while (!placed.empty()) {  // those one after the other whose windows end together
+    const Step end = state_.windows[placed[0]].end;
+    const auto other = [&](BodyIndex body) { return state_.windows[body].end != end; };
+    const auto run = static_cast<std::size_t>(std::find_if(placed.begin(), placed.end(), other) - placed.begin());
+    if (end != kNeverStep) state_.wheel.set_due(placed.first(run), end);
+    placed = placed.subspan(run);
   }
   for (const BodyIndex body : chunk.unknown) state_.changes.note(body);
-  planner_.note_sample(chunk.sampled);
   state_.boxes.include(chunk.extent);
   state_.counts.bodies += chunk.placed.size();
   state_.pool.motions.count_asked(chunk.asked);
@@ -235,7 +200,6 @@ QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& 
     box = box_for(steps);
   }
   window.end = block.from + steps;
-  window.length = static_cast<std::uint8_t>(steps);
   return box;
 }
 
@@ -247,19 +211,16 @@ void WindowUpdates::place_left(Chunk& chunk, Block& block) {
       state_.refuse(left.body);
       continue;
     }
-    const bool same = set_ends(block, body, {&left.motion, 1});
-    make_boxes(block, {&left.motion, 1}, same);
-    state_.windows.set(left.body, block.from, block.ends[0]);
+    make_boxes(block, body, {&left.motion, 1});
+    state_.windows.set(left.body, block.ends[0]);
     state_.overlaps.mark_updated(body);
     if (pairs_.spheres().any()) {
       pairs_.spheres().note(left.body, left.motion, block.quantized_grid, block.durations[0]);
     }
-    planner_.note_sample({&left.motion, 1});
     const QuantizedAabb box = shrink(block, state_.windows[left.body], left.motion);
     state_.boxes.insert_one(left.body, box, chunk.block_visits, near_, state_.counts);
     const Step end = state_.windows[left.body].end;
     if (end != kNeverStep) state_.wheel.set_due(left.body, end);
-    state_.windows.votes().vote(end, 1);
   }
 }
 

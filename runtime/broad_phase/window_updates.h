@@ -41,7 +41,7 @@ class WindowUpdates {
   std::span<Motion> ask(Step now, std::span<const BodyIndex> bodies);
   std::size_t known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept;
   bool set_ends(Block& block, std::span<const BodyIndex> bodies, std::span<const Motion> motions) const noexcept;
-  bool make_boxes(Block& block, std::span<const Motion> motions, bool same_ends) const noexcept;
+  bool make_boxes(Block& block, std::span<const BodyIndex> bodies, std::span<const Motion> motions) const noexcept;
   Block block_at(Step now, Step from) const noexcept;
   void place(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const;
   void place_chunk(Chunk& chunk, Block& block, std::span<const BodyIndex> bodies) const;
@@ -70,19 +70,13 @@ struct WindowUpdates::Block {
   Step now;                              // the motions are of this step,
   Step from;                             // and count from this one
   QuantizedGrid quantized_grid;          // at `now`
-  Step common = kUpdateDue;              // what all ends are, and durations until then; kUpdateDue: they are not
   std::array<Step, kBlock> ends;         // of the bodies' windows
   std::array<double, kBlock> durations;  // until then, of which the last step is not
   BoxBlock boxes;
-  WindowRule::LastEnd last;
   bool by_part = false;  // whether visits are split by the grid's parts, for several threads
 };
 
 struct WindowUpdates::Chunk {
-  struct Run {
-    Step end;
-    std::size_t bodies;
-  };
   struct Left {
     BodyIndex body;
     Motion motion;
@@ -90,28 +84,21 @@ struct WindowUpdates::Chunk {
   SweptGrid::VisitsByPart visits;  // to each part, or all in the first one
   SweptGrid::Visits block_visits;  // of the block under way
   std::vector<BodyIndex> placed;   // in order
-  std::vector<Run> runs;           // of these, those one after the other whose windows end together
   std::vector<BodyIndex> unknown;  // what holds from the later step on
   std::vector<Left> left;          // not valid, or too large: placed one by one
-  std::vector<Motion> sampled;     // for the plan
   std::vector<Motion> motions;     // of the block under way
   QuantizedAabb extent;
   MotionQueries::Answers answers;
   std::uint64_t asked;
 
-  void note_run(Step end, std::size_t bodies) {
-    if (runs.empty() || runs.back().end != end) runs.push_back({end, 0});
-    runs.back().bodies += bodies;
-  }
   void clear() noexcept {
     for (auto& part : visits) part.clear();
-    placed.clear(), runs.clear(), unknown.clear(), left.clear(), sampled.clear();
+    placed.clear(), unknown.clear(), left.clear();
     extent = kNoBox;
     asked = 0;
   }
   std::size_t memory_bytes() const noexcept {
-    std::size_t bytes =
-        bytes_of(placed, runs, unknown, left, sampled, motions) + answers.memory_bytes() + block_visits.memory_bytes();
+    std::size_t bytes = bytes_of(placed, unknown, left, motions) + answers.memory_bytes() + block_visits.memory_bytes();
     for (const auto& part : visits) bytes += part.memory_bytes();
     return bytes;
   }

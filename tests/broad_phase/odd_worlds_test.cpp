@@ -71,5 +71,24 @@ TEST(OddWorlds, FarLargerThanTheirClustersDoNotCompareAllWithAll) {
   }
 }
 
+// A twentieth of the bodies is asked for at each step: what is planned when the others' bounds expire is for all.
+TEST(OddWorlds, AreNotPlannedByTheFewBodiesThatAreCancelledAgainAndAgain) {
+  const std::uint64_t first = orchard::test::first_seed();
+  for (std::uint64_t seed = first; seed < first + 3 * orchard::test::more(); ++seed) {
+    const test::MovingBodies bodies({.bodies = 2000, .ball = 250, .end = 2}, seed);
+    BroadPhase world(bodies.source(), {.time_step = kOddStep});
+    std::vector<BodyId> ids;
+    for (std::size_t i = 0; i < bodies.size(); ++i) ids.push_back(world.add());
+    std::size_t before = 0, most = 0;  // bytes
+    for (int step = 0; step <= 110; ++step) {
+      for (std::size_t i = 0; step > 0 && i < ids.size(); i += 20) world.cancel(ids[i]);
+      world.advance(kOddStep * step);
+      if (step == 90) before = world.memory_bytes();
+      most = std::max(most, world.memory_bytes());
+    }
+    EXPECT_LT(static_cast<double>(most), 1.3 * static_cast<double>(before)) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace orchard::runtime
