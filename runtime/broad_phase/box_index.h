@@ -65,7 +65,7 @@ class BoxIndex {
   std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
 
   std::vector<Place> places_;      // by body
-  UnsetVector<PackedAabb> boxes_;  // of those in the grid
+  std::vector<PackedAabb> boxes_;  // of those in the grid
   struct Oversized {
     BodyIndex body;
     QuantizedAabb box;

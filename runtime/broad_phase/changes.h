@@ -18,13 +18,6 @@ class Changes {
   const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
   bool empty() const noexcept { return changed_.empty(); }
   std::size_t size() const noexcept { return changed_.size(); }  // at most
-  // All of them leave, as they came. For callers that know that no body has been forgotten.
-  void take_all(std::vector<BodyIndex>& bodies) {
-    bodies.assign(changed_.begin(), changed_.end());
-    std::fill(pending_.begin(), pending_.end(), std::uint8_t{0});
-    changed_.clear();
-    if (changed_.capacity() > kKept) give_back(changed_);
-  }
   void append_to(std::vector<BodyIndex>& bodies) const {
     for (const BodyIndex body : changed_) {
       if (pending_[body]) bodies.push_back(body);
@@ -42,7 +35,7 @@ class Changes {
       use(body);
     }
     changed_.clear();
-    if (changed_.capacity() > kKept) changed_.shrink_to_fit();
+    if (changed_.capacity() > kKept) give_back(changed_);
   }
   std::size_t memory_bytes() const noexcept { return bytes_of(pending_, changed_); }
 

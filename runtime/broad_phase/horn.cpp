@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "broad_phase/motion_lanes.h"
-#include "simd/machine.h"
 
 namespace orchard::runtime {
 namespace detail {
@@ -106,15 +105,14 @@ double tightened(const Motion& a, const Motion& b, double contact, double limit,
 
 // Of as many pairs as the kind has numbers. False if a motion may not be valid.
 template <typename Kind, typename Numbers = typename Kind::Numbers>
-ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, double resolution, double slack,
+ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, const PairPrecision& precision,
                                double* seconds, bool* touching) noexcept {
   const auto every_other = [&](std::size_t first) ORCHARD_INLINE_LAMBDA {
     return Kind::motions([=](std::size_t i) ORCHARD_INLINE_LAMBDA { return motions + 2 * i + first; });
   };
   const MotionLanes<Numbers> a = every_other(0), b = every_other(1);
-  if (Kind::kLanes > 1 && !Kind::all(are_valid<Kind>(a) & are_valid<Kind>(b))) return false;
-  Numbers limit;
-  std::memcpy(&limit, limits, sizeof limit);
+  if (!precision.valid && !Kind::all(are_valid<Kind>(a) & are_valid<Kind>(b))) return false;
+  const Numbers limit = load_lanes<Kind>(limits);
   Horns<Numbers> p;
   auto half_spaces = all_of<Kind>(0);
   for (std::size_t d = 0; d < 3; ++d) {
@@ -122,7 +120,7 @@ ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, doub
     p.velocity[d] = b.velocity[d] - a.velocity[d];
     half_spaces = half_spaces + (a.half_space[d] * a.half_space[d] + b.half_space[d] * b.half_space[d]);
   }
-  const Numbers radii = a.radius + b.radius, slacks = slack_of<Kind>(a, b, limit) + all_of<Kind>(slack);
+  const Numbers radii = a.radius + b.radius, slacks = slack_of<Kind>(a, b, limit) + all_of<Kind>(precision.slack);
   p.growth = a.drift + b.drift;
   p.acceleration = a.acceleration + b.acceleration;
   const Numbers squared = dot_of(p.offset, p.offset);
@@ -134,28 +132,31 @@ ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, doub
   }
   if (!Kind::all(touch)) {
     p.radius = radii + slacks;
-    time = Kind::choose(touch, time, contact_of<Kind>(p, squared > radii * radii, limit, resolution));
+    time = Kind::choose(touch, time, contact_of<Kind>(p, squared > radii * radii, limit, precision.resolution));
   }
   std::memcpy(seconds, &time, sizeof time);
+  const std::uint32_t touches = Kind::bits(touch);
   const bool tighten = Kind::any(half_spaces > 0);  // few bodies have one
   for (std::size_t i = 0; i < Kind::kLanes; ++i) {
-    touching[i] = Kind::lane(touch, i);
+    touching[i] = (touches >> i & 1) != 0;
     if (!tighten || touching[i] || !(seconds[i] <= limits[i])) continue;
     const Motion &first = motions[2 * i], &second = motions[2 * i + 1];
-    seconds[i] = tightened(first, second, seconds[i], limits[i], motion_slack(first, second, limits[i]) + slack);
+    seconds[i] =
+        tightened(first, second, seconds[i], limits[i], motion_slack(first, second, limits[i]) + precision.slack);
   }
   return true;
 }
 
-#ifdef ORCHARD_VECTORS
-ORCHARD_INLINE bool find_by_fours(std::span<const Motion> motions, std::span<const double> limits, double resolution,
-                                  double slack, PairTimes& times) noexcept {
-  std::array<Motion, 8> rest;
-  std::array<double, 4> rest_limits;
-  for (std::size_t i = 0; i < limits.size(); i += 4) {
+template <typename Kind>
+ORCHARD_INLINE bool find_all_times(std::span<const Motion> motions, std::span<const double> limits,
+                                   const PairPrecision& precision, PairTimes& times) noexcept {
+  constexpr std::size_t kLanes = Kind::kLanes;
+  std::array<Motion, 2 * kLanes> rest;
+  std::array<double, kLanes> rest_limits;
+  for (std::size_t i = 0; i < limits.size(); i += kLanes) {
     const Motion* some = &motions[2 * i];
     const double* until = &limits[i];
-    if (i + 4 > limits.size()) {
+    if (i + kLanes > limits.size()) {
       rest = {};
       rest_limits = {};
       std::copy(motions.begin() + static_cast<std::ptrdiff_t>(2 * i), motions.end(), rest.begin());
@@ -163,11 +164,10 @@ ORCHARD_INLINE bool find_by_fours(std::span<const Motion> motions, std::span<con
       some = rest.data();
       until = rest_limits.data();
     }
-    if (!find_times<FourDoubles>(some, until, resolution, slack, &times.seconds[i], &times.touching[i])) return false;
+    if (!find_times<Kind>(some, until, precision, &times.seconds[i], &times.touching[i])) return false;
   }
   return true;
 }
-#endif
 
 }  // namespace
 
@@ -180,28 +180,13 @@ double horn_contact(const HornPair& pair, double limit, double resolution) noexc
   return contact_of<OneDouble>(pair, true, limit, resolution);
 }
 
-void find_pair_times(std::span<const Motion> motions, std::span<const double> limits, double resolution, double slack,
+bool find_pair_times(std::span<const Motion> motions, std::span<const double> limits, const PairPrecision& precision,
                      PairTimes& times) noexcept {
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    find_times<OneDouble>(&motions[2 * i], &limits[i], resolution, slack, &times.seconds[i], &times.touching[i]);
-  }
-}
-
-bool find_pair_times_at_once(std::span<const Motion> motions, std::span<const double> limits, double resolution,
-                             double slack, PairTimes& times) noexcept {
-  bool valid = false;
-#ifdef ORCHARD_MACHINES
-  constexpr Machine kLeast = Machine::avx2;
-#else
-  constexpr Machine kLeast = Machine::base;
-#endif
-#ifdef ORCHARD_VECTORS
   const auto timeless = [](const Motion& motion) { return std::isnan(motion.expiry); };
-  if (machine() < kLeast || std::any_of(motions.begin(), motions.end(), timeless)) return false;
-  per_machine([&]() ORCHARD_INLINE_LAMBDA { valid = find_by_fours(motions, limits, resolution, slack, times); });
-#else
-  (void)motions, (void)limits, (void)resolution, (void)slack, (void)times, (void)kLeast;
-#endif
+  if (!precision.valid && std::any_of(motions.begin(), motions.end(), timeless)) return false;
+  bool valid = false;
+  with_best_lanes([&]<typename Kind>()
+                      ORCHARD_INLINE_LAMBDA { valid = find_all_times<Kind>(motions, limits, precision, times); });
   return valid;
 }
 

@@ -28,15 +28,15 @@ struct PairTimes {
   std::array<double, kPairsAtOnce> seconds;
 };
 
-// Pair i, of at most kPairsAtOnce, is that of motions[2 i] and motions[2 i + 1], and has limits[i] seconds. `slack` and
-// `resolution` as of earliest_contact(). The motions are valid.
-void find_pair_times(std::span<const Motion> motions, std::span<const double> limits, double resolution, double slack,
-                     PairTimes& times) noexcept;
+struct PairPrecision {
+  double resolution, slack;  // as of earliest_contact()
+  bool valid = false;        // whether all motions are known to be valid
+};
 
-// The same, to the last bit, for four pairs at once, where the machine has vectors of four numbers. Does nothing and
-// returns false where it has none, or a motion may not be valid.
-bool find_pair_times_at_once(std::span<const Motion> motions, std::span<const double> limits, double resolution,
-                             double slack, PairTimes& times) noexcept;
+// Pair i, of at most kPairsAtOnce, is that of motions[2 i] and motions[2 i + 1], and has limits[i] seconds. Returns
+// false if a motion may not be valid: nothing has been found then. The same bits on every machine.
+bool find_pair_times(std::span<const Motion> motions, std::span<const double> limits, const PairPrecision& precision,
+                     PairTimes& times) noexcept;
 
 // Squares of less vanish: spheres_touch() takes it for 0.
 inline constexpr double kMinLength = 1e-150;

@@ -1,6 +1,7 @@
 #include "broad_phase/kinetic_broad_phase.h"
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace orchard::runtime::detail {
@@ -27,27 +28,14 @@ void KineticBroadPhase::changed(BodyIndex body) {
   state_.changes.note(body);
 }
 
-// Their boxes are all over memory: they are taken out together, at the next step.
 void KineticBroadPhase::removed(BodyIndex body) {
-  if (gone_.size() >= state_.windows.size()) take_away_gone();
-  append(gone_, body);
+  state_.boxes.take_away(body);
+  if (state_.windows[body].bounded) planner_.note_cancelled();
+  state_.windows[body].end = kNeverStep;  // no next update, until the slot's next body
+  state_.windows.void_events(body);
   budgeted_.leave(body);
   state_.changes.forget(body);
   state_.overlaps.mark(body, OverlapList::kUpdated);
-}
-
-void KineticBroadPhase::take_away_gone() noexcept {
-  constexpr std::size_t kAhead = 16, kKept = 1024;
-  state_.boxes.take_away(gone_);
-  for (std::size_t i = 0; i < gone_.size(); ++i) {
-    if (i + kAhead < gone_.size()) prefetch(&state_.windows[gone_[i + kAhead]]);
-    const BodyIndex body = gone_[i];
-    if (state_.windows[body].bounded) planner_.note_cancelled();
-    state_.windows[body] = {.end = kNeverStep};  // no next update, until the slot's next body
-    state_.windows.void_events(body);
-  }
-  gone_.clear();
-  if (gone_.capacity() > kKept) give_back(gone_);
 }
 
 void KineticBroadPhase::note_cancelled(BodyIndex body) {
@@ -57,8 +45,6 @@ void KineticBroadPhase::note_cancelled(BodyIndex body) {
 
 void KineticBroadPhase::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
-  // Then all bodies are new, each is noted at least once, and none has had a window.
-  if (first_ && state_.changes.size() == state_.pool.size()) return state_.changes.take_all(due_.bodies);
   make_room(due_.bodies, state_.changes.size());
   for (std::size_t i = 0; i < due_.entries.size(); ++i) {
     if (i + kAhead < due_.entries.size()) {
@@ -78,20 +64,6 @@ void KineticBroadPhase::collect_due(Step now) {
     due_.bodies[count++] = body;
   });
   due_.bodies.resize(count);
-}
-
-// After a step by sorting: all windows were of one step.
-void KineticBroadPhase::collect_all(Step now) {
-  for (BodyIndex body = 0; body < state_.pool.slots(); ++body) {
-    if (state_.changes.has(body)) {
-      state_.changes.forget(body);
-      note_cancelled(body);
-    } else if (state_.windows[body].end != now) {
-      continue;
-    }
-    due_.bodies.push_back(body);
-  }
-  state_.changes.forget_all();
 }
 
 // What has not been updated for this step yet is in due_.bodies already; the rest changed since, or was added.
@@ -117,7 +89,11 @@ bool KineticBroadPhase::worth_a_rebuild(std::size_t due) const noexcept {
 // False if a budget interrupted it.
 bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
   GridCounts counts = state_.counts;
-  if (sorting_) counts = {.bodies = state_.pool.size(), .pairs = sorted_.boxes_met()};
+  if (sorting_) {  // balls of the same size touch in so many of the cases in which their boxes meet
+    constexpr double kBallOfBox = std::numbers::pi / 6;
+    const double met = static_cast<double>(sorted_.pairs().size()) / kBallOfBox;
+    counts = {.bodies = state_.pool.size(), .pairs = static_cast<std::uint64_t>(met)};
+  }
   const Planner::Outcome outcome = planner_.replan(now, counts, tracker);
   if (outcome == Planner::Outcome::interrupted) return false;
   state_.counts = {};
@@ -251,7 +227,7 @@ void KineticBroadPhase::step_by_sorting(Step now) {
   sorted_.find();
   if (state_.pool.filters_pairs())
     sorted_.drop_pairs([&](const BodyPair& pair) { return !state_.pool.may_pair(pair); });
-  state_.overlaps.assign(sorted_.pairs(), state_.pool.slots());
+  state_.overlaps.start_over(sorted_.pairs());
   if (!sorted_.suits()) sorts_from_ = now + kNotSorted;
 }
 
@@ -304,12 +280,11 @@ void KineticBroadPhase::begin(Step now) {
   state_.wheel.take(now, due_.entries, due_.pairs);
   if (prepared_) return complete_due();
   due_.bodies.clear();
-  sorting_ ? collect_all(now) : collect_due(now);
-  first_ = false;
+  collect_due(now);
+  if (sorting_) all_are_due();  // all windows were of one step
 }
 
 StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
-  take_away_gone();
   if (state_.pool.size() == 0) {
     forget_all();
     return {kNeverStep, {}};
@@ -379,7 +354,7 @@ bool KineticBroadPhase::along(Step now, const Vec3& origin, const Vec3& way, dou
 }
 
 std::size_t KineticBroadPhase::memory_bytes() const noexcept {
-  return sizeof(*this) + state_.memory_bytes() + bytes_of(gone_) + planner_.memory_bytes() + pairs_.memory_bytes() +
+  return sizeof(*this) + state_.memory_bytes() + planner_.memory_bytes() + pairs_.memory_bytes() +
          updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
          bytes_of(due_.bodies, due_.entries, due_.pairs);
 }

@@ -35,11 +35,9 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   double cell_size() const noexcept override { return planner_.plan().cell_size; }
 
  private:
-  void take_away_gone() noexcept;
   void forget_all() noexcept;
   void begin(Step now);
   void collect_due(Step now);
-  void collect_all(Step now);
   void complete_due();
   void note_cancelled(BodyIndex body);
   StepReport end(Step now, unsigned incomplete_from, const BudgetTracker& tracker);
@@ -61,14 +59,12 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   void append_loose(std::vector<BodyIndex>& bodies) const;
 
   KineticState state_;
-  std::vector<BodyIndex> gone_;  // since the last step, whatever has their indices now
   Planner planner_;
   NearPairs pairs_;
   WindowUpdates updates_;
   BudgetedWork budgeted_;
   SortedSpheres sorted_;
 
-  bool first_ = true;                  // no step has been done
   bool sorting_ = false;               // the last step was done by sorting: there are no boxes, and all bodies are due
   Step sorts_from_ = kNeverStep / -2;  // at steps before, nothing is sorted
   Step interrupted_at_ = kNeverStep / -2;    // by a budget

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "orchard/runtime/motion.h"
-#include "simd/vector_support.h"
+#include "simd/machine.h"
 
 // The motion of one body, or of four at once by coordinate: the kinds that the inner loops are compiled for. Both give
 // the same bits.
@@ -24,7 +24,7 @@ struct OneDouble {
   static double sqrt(double a) noexcept { return std::sqrt(a); }
   static bool all(bool mask) noexcept { return mask; }
   static bool any(bool mask) noexcept { return mask; }
-  static bool lane(bool mask, std::size_t) noexcept { return mask; }
+  static std::uint32_t bits(bool mask) noexcept { return mask ? 1 : 0; }
   static void truncate(double a, std::uint32_t* to) noexcept {
     *to = static_cast<std::uint32_t>(static_cast<std::int32_t>(a));
   }
@@ -51,7 +51,10 @@ struct FourDoubles {
   }
   ORCHARD_INLINE static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
   ORCHARD_INLINE static bool any(const Mask& mask) noexcept { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
-  ORCHARD_INLINE static bool lane(const Mask& mask, std::size_t i) noexcept { return mask[i] != 0; }
+  ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
+    const Mask met = mask & Mask{1, 2, 4, 8};
+    return static_cast<std::uint32_t>((met[0] | met[1]) | (met[2] | met[3]));
+  }
   ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
     using Integers __attribute__((vector_size(16))) = std::int32_t;
     const Integers integers = __builtin_convertvector(a, Integers);
@@ -90,6 +93,29 @@ struct FourDoubles {
 };
 #endif
 
+// work.template operator()<Kind>() for the kind that suits the machine. Without wide vectors a choice among four
+// numbers takes longer than four choices.
+template <typename Work>
+void with_best_lanes(const Work& work) {
+#ifdef ORCHARD_MACHINES
+  constexpr Machine kLeast = Machine::avx2;
+#else
+  constexpr Machine kLeast = Machine::base;
+#endif
+#ifdef ORCHARD_VECTORS
+  if (machine() >= kLeast) {
+    return per_machine([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<FourDoubles>(); });
+  }
+#endif
+  work.template operator()<OneDouble>();
+}
+
+template <typename Kind>
+ORCHARD_INLINE typename Kind::Numbers load_lanes(const double* from) noexcept {
+  typename Kind::Numbers result;
+  std::memcpy(&result, from, sizeof result);
+  return result;
+}
 template <typename Kind>
 ORCHARD_INLINE typename Kind::Numbers all_of(double x) noexcept {
   return spread<typename Kind::Numbers>(x);

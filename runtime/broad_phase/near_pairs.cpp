@@ -101,23 +101,22 @@ std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Mot
 // Pair i, of at most kTestsAtOnce, has the motions 2 i and 2 i + 1 at this step.
 void NearPairs::settle_all(Step now, std::span<PairEvent> events, Outcome& outcome) const {
   const std::span<Motion> motions = outcome.motions;
-  const double slack = 4 * state_.options.position_slack;  // of two bodies, now and later
-  const double resolution = kEventResolution * state_.options.time_step;
+  PairPrecision precision{kEventResolution * state_.options.time_step,
+                          4 * state_.options.position_slack};  // of two bodies, now and later
   std::array<Horizon, kTestsAtOnce> horizons;
   std::array<double, kTestsAtOnce> limits;
-  const auto find_horizons = [&] {
+  PairTimes times;
+  const auto find = [&] {
     for (std::size_t i = 0; i < events.size(); ++i) {
       find_horizon(now, events[i].pair, motions[2 * i], motions[2 * i + 1], horizons[i]);
       limits[i] = state_.pool.clock.seconds_between(now, now + horizons[i].whole);
     }
+    return find_pair_times(motions.first(2 * events.size()), std::span(limits).first(events.size()), precision, times);
   };
-  PairTimes times;
-  find_horizons();
-  if (!find_pair_times_at_once(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution,
-                               slack, times)) {
+  if (!find()) {
     events = events.first(refuse_invalid(events, motions, outcome));
-    find_horizons();
-    find_pair_times(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution, slack, times);
+    precision.valid = true;
+    find();
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
     settle(now, events[i], horizons[i], limits[i], times.touching[i], times.seconds[i], outcome);

@@ -43,19 +43,6 @@ void OverlapList::sort_by_body(std::span<const BodyPair> from, std::span<BodyPai
   for (const BodyPair& pair : from) to[begins_[pair.*body + 1]++] = pair;
 }
 
-void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
-  clear();
-  pairs_.resize(pairs.size());
-  if (pairs.size() > kPairsWithRoom * slots) {
-    std::copy(pairs.begin(), pairs.end(), pairs_.begin());
-    return std::sort(pairs_.begin(), pairs_.end());
-  }
-  added_.resize(pairs.size());
-  sort_by_body(pairs, added_, slots, &BodyPair::b);
-  sort_by_body(added_, pairs_, slots, &BodyPair::a);
-  added_.clear();
-}
-
 void OverlapList::clear_marks() noexcept {
   if (first_marked_ <= last_marked_) {
     std::fill(marks_.begin() + first_marked_, marks_.begin() + last_marked_ + 1, std::uint8_t{0});
@@ -72,8 +59,8 @@ void OverlapList::forget_marked() {
   if (refuses_) std::erase_if(from_scratch_ ? pairs_ : added_, refused);
 }
 
-void OverlapList::start_over() noexcept {
-  pairs_.clear();
+void OverlapList::start_over(std::span<const BodyPair> pairs) {
+  pairs_.assign(pairs.begin(), pairs.end());
   added_.clear();
   clear_marks();
   from_scratch_ = true;

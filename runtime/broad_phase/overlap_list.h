@@ -34,9 +34,8 @@ class OverlapList {
     }
     first_marked_ = first, last_marked_ = last;
   }
-  // The list is these from now on, in any order, each once; what was said of the step under way is void.
-  void assign(std::span<const BodyPair> pairs, std::size_t slots);
-  void start_over() noexcept;  // until the end of the step nothing counts but what is added from now on
+  // Until the end of the step nothing counts but these, in any order, and what is added from now on.
+  void start_over(std::span<const BodyPair> pairs = {});
   // Moves the pairs for which it holds out of the list, at once.
   template <typename Leaves>
   void take_out(const Leaves& leaves, std::vector<BodyPair>& taken) {

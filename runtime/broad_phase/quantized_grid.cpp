@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "broad_phase/horn.h"
 #include "broad_phase/motion_lanes.h"
-#include "simd/machine.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -72,8 +70,7 @@ ORCHARD_INLINE typename Kind::Mask QuantizedGrid::make_some(const Row& row, cons
   using Numbers = typename Kind::Numbers;
   const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return all_of<Kind>(x); };
   const MotionLanes<Numbers> of = Kind::motions(row);
-  Numbers time;
-  std::memcpy(&time, durations, sizeof time);
+  const Numbers time = load_lanes<Kind>(durations);
   const Numbers per_length = all(per_length_), zero = all(0), last = all(kLastQuantum);
   const Numbers per_speed = time * per_length, half = time * all(0.5);
   const Numbers wide = per_speed * (of.drift + half * of.acceleration);
@@ -118,14 +115,9 @@ ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std
 
 bool QuantizedGrid::boxes(std::span<const Motion> motions, std::span<const double> durations,
                           BoxBlock& boxes) const noexcept {
-#ifdef ORCHARD_VECTORS
-  if (machine() != Machine::portable) {
-    bool good = false;
-    per_machine([&]() ORCHARD_INLINE_LAMBDA { good = make_all<FourDoubles>(motions, durations, boxes); });
-    return good;
-  }
-#endif
-  return make_all<OneDouble>(motions, durations, boxes);
+  bool good = false;
+  with_best_lanes([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { good = make_all<Kind>(motions, durations, boxes); });
+  return good;
 }
 
 }  // namespace orchard::runtime::detail

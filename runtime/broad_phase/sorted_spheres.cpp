@@ -1,12 +1,10 @@
 #include "broad_phase/sorted_spheres.h"
 
 #include <bit>
-#include <cstring>
 
 #include "broad_phase/horn.h"
+#include "broad_phase/motion_lanes.h"
 #include "broad_phase/swept_grid.h"
-#include "simd/machine.h"
-#include "simd/vector_support.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -16,47 +14,10 @@ constexpr double kOriginCell = 0x1p30;      // cells: the origin's; beyond twice
 constexpr double kCellsPerSpacing = 2;      // smaller cells do not have fewer bodies
 constexpr std::size_t kLargeShare = 256;    // one in so many bodies may be larger than a cell
 constexpr std::size_t kMaxTests = 64;       // for each body and pair: with more of them boxes are the better choice
-constexpr std::uint32_t kSampled = 16;      // of the bodies, every so many are looked at for the number of near ones
 constexpr std::size_t kLanes = 4;           // that may be read beyond the last sphere
 constexpr std::uint32_t kLarge = ~0u;       // in no line
 
 }  // namespace
-
-// Which of the spheres from `at` on a sphere touches, as bits.
-struct SortedSpheres::Plain {
-  static constexpr std::uint32_t kWidth = 4;
-  static std::uint32_t touching(const SortedSpheres& s, std::uint32_t at, std::uint32_t i) noexcept {
-    std::uint32_t bits = 0;
-    for (std::uint32_t k = 0; k < kWidth; ++k) {
-      const double dx = s.sorted_.x[at + k] - s.sorted_.x[i], dy = s.sorted_.y[at + k] - s.sorted_.y[i],
-                   dz = s.sorted_.z[at + k] - s.sorted_.z[i];
-      const double reach = s.sorted_.radius[at + k] + s.sorted_.radius[i];
-      bits |= static_cast<std::uint32_t>(dx * dx + dy * dy + dz * dz <= reach * reach) << k;
-    }
-    return bits;
-  }
-};
-
-#ifdef ORCHARD_VECTORS
-struct SortedSpheres::Four {
-  static constexpr std::uint32_t kWidth = 4;
-  using Numbers __attribute__((vector_size(32))) = double;
-  using Words __attribute__((vector_size(32))) = std::uint64_t;
-  ORCHARD_INLINE static Numbers at(const double* from) noexcept {
-    Numbers result;
-    std::memcpy(&result, from, sizeof result);
-    return result;
-  }
-  ORCHARD_INLINE static std::uint32_t touching(const SortedSpheres& s, std::uint32_t first, std::uint32_t i) noexcept {
-    const Numbers dx = at(&s.sorted_.x[first]) - s.sorted_.x[i], dy = at(&s.sorted_.y[first]) - s.sorted_.y[i],
-                  dz = at(&s.sorted_.z[first]) - s.sorted_.z[i];
-    const Numbers reach = at(&s.sorted_.radius[first]) + s.sorted_.radius[i];
-    const Words met = reinterpret_cast<Words>(dx * dx + dy * dy + dz * dz <= reach * reach) & Words{1, 2, 4, 8};
-    return static_cast<std::uint32_t>((met[0] | met[1]) | (met[2] | met[3]));
-  }
-};
-
-#endif
 
 void SortedSpheres::begin(std::size_t bodies, const Vec3& origin, double spacing) {
   const std::size_t lines = std::bit_ceil(std::max<std::size_t>(2 * bodies, std::size_t{1} << kMinLineBits));
@@ -70,7 +31,7 @@ void SortedSpheres::begin(std::size_t bodies, const Vec3& origin, double spacing
   spheres_.reserve(bodies);
   large_.clear();
   pairs_.clear();
-  boxes_met_ = tests_ = 0;
+  tests_ = 0;
   per_length_ = cell_ > 0 ? 1 / cell_ : 0;
 }
 
@@ -147,12 +108,17 @@ std::array<std::uint32_t, 4> SortedSpheres::neighbour_rows() const noexcept {
   return {factors_[1] - 1, factors_[2] - factors_[1] - 1, factors_[2] - 1, factors_[2] + factors_[1] - 1};
 }
 
-template <typename Lanes>
+template <typename Kind>
 ORCHARD_INLINE void SortedSpheres::compare(std::uint32_t i, Run run) {
+  constexpr std::uint32_t kWidth = Kind::kLanes;
   const BodyIndex body = sorted_.body[i];
-  for (std::uint32_t at = run.begin; at < run.end; at += Lanes::kWidth) {
-    std::uint32_t bits = Lanes::touching(*this, at, i);
-    if (run.end - at < Lanes::kWidth) bits &= (1u << (run.end - at)) - 1;
+  for (std::uint32_t at = run.begin; at < run.end; at += kWidth) {
+    const auto off = [&](const std::vector<double>& of)
+                         ORCHARD_INLINE_LAMBDA { return load_lanes<Kind>(&of[at]) - all_of<Kind>(of[i]); };
+    const auto dx = off(sorted_.x), dy = off(sorted_.y), dz = off(sorted_.z);
+    const auto reach = load_lanes<Kind>(&sorted_.radius[at]) + all_of<Kind>(sorted_.radius[i]);
+    std::uint32_t bits = Kind::bits(dx * dx + dy * dy + dz * dz <= reach * reach);
+    if (run.end - at < kWidth) bits &= (1u << (run.end - at)) - 1;
     for (; bits != 0; bits &= bits - 1) {
       const BodyIndex other = sorted_.body[at + static_cast<std::uint32_t>(std::countr_zero(bits))];
       pairs_.push_back({std::min(body, other), std::max(body, other)});
@@ -160,18 +126,7 @@ ORCHARD_INLINE void SortedSpheres::compare(std::uint32_t i, Run run) {
   }
 }
 
-void SortedSpheres::sample(std::uint32_t i, std::span<const Run> runs) noexcept {
-  for (const Run& run : runs) {
-    for (std::uint32_t k = run.begin; k < run.end; ++k) {
-      const double reach = sorted_.radius[k] + sorted_.radius[i];
-      const double off = std::max({std::fabs(sorted_.x[k] - sorted_.x[i]), std::fabs(sorted_.y[k] - sorted_.y[i]),
-                                   std::fabs(sorted_.z[k] - sorted_.z[i])});
-      boxes_met_ += off <= reach ? kSampled : 0;
-    }
-  }
-}
-
-template <typename Lanes>
+template <typename Kind>
 ORCHARD_INLINE void SortedSpheres::find_all() {
   const std::array<std::uint32_t, 4> rows = neighbour_rows();
   std::array<Run, 5> runs;
@@ -186,8 +141,7 @@ ORCHARD_INLINE void SortedSpheres::find_all() {
     tests_ += (end - begin) * std::uint64_t{begins_[line + 2] - begin};
     for (std::uint32_t i = begin; i < end; ++i) {
       runs[0] = {i + 1, begins_[line + 2]};
-      for (const Run& run : runs) compare<Lanes>(i, run);
-      if (i % kSampled == 0) sample(i, runs);
+      for (const Run& run : runs) compare<Kind>(i, run);
     }
   }
 }
@@ -202,7 +156,6 @@ void SortedSpheres::compare_large() {
       const double reach = sphere.radius + large.radius;
       if (dot(apart, apart) > reach * reach) continue;
       pairs_.push_back({std::min(large.body, sphere.body), std::max(large.body, sphere.body)});
-      ++boxes_met_;
     }
   }
 }
@@ -211,15 +164,7 @@ std::span<const BodyPair> SortedSpheres::find() {
   const bool too_many = large_.size() > spheres_.size() / kLargeShare;
   if (!spheres_.empty() && (cell_ == 0 || too_many)) choose_cell();
   sort();
-  const Machine chosen = machine();
-#if defined(ORCHARD_MACHINES)
-  chosen >= Machine::avx2 ? work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { find_all<Four>(); }) : find_all<Plain>();
-#elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
-  chosen != Machine::portable ? find_all<Four>() : find_all<Plain>();
-#else
-  (void)chosen;
-  find_all<Plain>();
-#endif
+  with_best_lanes([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { find_all<Kind>(); });
   compare_large();
   return pairs_;
 }

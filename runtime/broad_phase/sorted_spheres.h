@@ -19,13 +19,11 @@ class SortedSpheres {
   std::span<const BodyPair> find();
   template <typename Goes>
   void drop_pairs(const Goes& goes) {  // as if they did not touch
-    boxes_met_ -= std::min<std::uint64_t>(boxes_met_, std::erase_if(pairs_, goes));
+    std::erase_if(pairs_, goes);
   }
   std::span<const BodyPair> pairs() const noexcept { return pairs_; }
 
-  // After find(). Pairs whose boxes meet, estimated from some of the bodies.
-  std::uint64_t boxes_met() const noexcept { return boxes_met_; }
-  bool suits() const noexcept;  // false: too many bodies are in too few cells
+  bool suits() const noexcept;  // after find(); false: too many bodies are in too few cells
   // Appends the bodies whose spheres may meet the box, and others, unless it has more cells than there are bodies:
   // false then.
   bool append_near(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
@@ -43,8 +41,6 @@ class SortedSpheres {
   struct Run {
     std::uint32_t begin, end;
   };
-  struct Plain;
-  struct Four;
 
   std::uint32_t coordinate(double x, std::size_t axis) const noexcept;
   std::uint32_t line_of(const Vec3& center) const noexcept;
@@ -52,11 +48,10 @@ class SortedSpheres {
   void choose_cell();
   void sort();
   std::array<std::uint32_t, 4> neighbour_rows() const noexcept;
-  template <typename Lanes>
+  template <typename Kind>
   void find_all();
-  template <typename Lanes>
+  template <typename Kind>
   void compare(std::uint32_t i, Run run);
-  void sample(std::uint32_t i, std::span<const Run> runs) noexcept;
   void compare_large();
 
   Vec3 origin_{};
@@ -72,7 +67,7 @@ class SortedSpheres {
   Columns sorted_;
   std::vector<std::uint32_t> large_;  // in spheres_
   std::vector<BodyPair> pairs_;
-  std::uint64_t boxes_met_ = 0, tests_ = 0;
+  std::uint64_t tests_ = 0;
 };
 
 }  // namespace orchard::runtime::detail

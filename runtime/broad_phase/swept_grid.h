@@ -140,7 +140,7 @@ class SweptGrid {
   static CellLine& add_line(CellLine& last, Overflow& more);
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
 
-  UnsetVector<CellLine> lines_;
+  std::vector<CellLine> lines_;
   std::array<Overflow, kParts> overflow_;
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;

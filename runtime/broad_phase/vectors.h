@@ -14,30 +14,6 @@
 // How the broad phase and the detector use memory.
 namespace orchard::runtime::detail {
 
-// Does not initialise what a vector grows by, for values that jobs write before they are read. This saves a pass, and
-// the threads of the jobs share the work of using new pages for the first time.
-template <typename T>
-struct UnsetAllocator : std::allocator<T> {
-  template <typename U>
-  struct rebind {
-    using other = UnsetAllocator<U>;
-  };
-  UnsetAllocator() noexcept = default;
-  template <typename U>
-  UnsetAllocator(const UnsetAllocator<U>&) noexcept {}
-  template <typename U, typename... Arguments>
-  void construct(U* place, Arguments&&... arguments) {
-    if constexpr (sizeof...(Arguments) == 0) {
-      static_assert(std::is_trivially_default_constructible_v<U>);
-      ::new (static_cast<void*>(place)) U;
-    } else {
-      ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
-    }
-  }
-};
-template <typename T>
-using UnsetVector = std::vector<T, UnsetAllocator<T>>;
-
 // Makes room in a vector that grows one by one. It grows by an eighth, because doubling would leave up to half of the
 // memory unused. What is added all at once gets exactly the room that it needs.
 template <typename T, typename Allocator>
