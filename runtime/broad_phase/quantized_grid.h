@@ -43,7 +43,7 @@ inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 inline constexpr QuantizedAabb kNoBox = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};  // around nothing
 
-inline constexpr std::size_t kBlock = 128;  // bodies that are worked on together, at most
+inline constexpr std::size_t kBlock = 64;  // bodies that are worked on together, at most
 // Loops over a block go on to a multiple of eight: whole vectors.
 inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
 

@@ -224,7 +224,7 @@ void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block,
   Coded coded;
   const std::size_t count = std::min(bodies.size(), kBlock);
   per_machine([&]() ORCHARD_INLINE_LAMBDA { code(coded, block, count, factors_); });
-  Visit* visit = visits.make_room(coded.cells);
+  Visit* visit = visits.append(coded.cells);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t entry = entry_of(coded.from[i], coded.below[i] & ~coded.beyond[i], bodies[i]);
     *visit++ = {entry, coded.lines[i] & mask_, 0};
@@ -263,9 +263,10 @@ SweptGrid::Visit* SweptGrid::visit_rest(BodyIndex body, const QuantizedAabb& box
 void SweptGrid::split(const Visits& visits, VisitsByPart& parts) const {
   const std::span<const Visit> all = visits.visits();
   std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
-  for (std::size_t i = 0; i < kParts; ++i) ends[i] = parts[i].make_room(all.size());
+  std::array<std::size_t, kParts> counts{};
+  for (const Visit& visit : all) ++counts[part_of(visit.line)];
+  for (std::size_t i = 0; i < kParts; ++i) ends[i] = parts[i].append(counts[i]);
   for (const Visit& visit : all) *ends[part_of(visit.line)]++ = visit;
-  for (std::size_t i = 0; i < kParts; ++i) parts[i].end_at(ends[i]);
 }
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first.

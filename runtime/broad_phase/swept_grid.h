@@ -65,11 +65,10 @@ class SweptGrid {
   class Visits {
    public:
     void clear() noexcept { end_ = 0; }
-    Visit* make_room(std::size_t more) {  // and appends what is written there; end_at(): up to where
+    Visit* append(std::size_t more) {  // so many, which are written where it says
       if (all_.size() < end_ + more) all_.resize(end_ + end_ / 8 + more);
       return all_.data() + std::exchange(end_, end_ + more);
     }
-    void end_at(const Visit* end) noexcept { end_ = static_cast<std::size_t>(end - all_.data()); }
     std::span<const Visit> visits() const noexcept { return std::span(all_).first(end_); }
     std::size_t memory_bytes() const noexcept { return bytes_of(all_); }
 
