@@ -2,24 +2,6 @@
 
 namespace orchard::runtime::detail {
 
-PairEvent PairQueue::pop() noexcept {
-  const PairEvent event = pairs_[first_++];
-  if (first_ == pairs_.size()) {
-    pairs_.clear();
-    first_ = 0;
-  } else if (2 * first_ > pairs_.size()) {
-    pairs_.erase(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(first_));
-    first_ = 0;
-  }
-  return event;
-}
-
-void PairQueue::move_to(std::vector<PairEvent>& pairs) {
-  pairs.insert(pairs.end(), pairs_.begin() + static_cast<std::ptrdiff_t>(first_), pairs_.end());
-  pairs_.clear();
-  first_ = tidied_ = 0;
-}
-
 Backlog::Rank& Backlog::rank(unsigned importance) {
   if (ranks_.size() <= importance) ranks_.resize(std::size_t{importance} + 1);
   return ranks_[importance];
@@ -27,40 +9,37 @@ Backlog::Rank& Backlog::rank(unsigned importance) {
 
 void Backlog::wait(BodyIndex body, std::uint8_t importance) {
   if (waits(body)) return;
-  grow(links_, std::size_t{body} + 1);
+  if (waits_in_.size() <= body) waits_in_.resize(std::size_t{body} + 1, kNoWhere);
   Rank& to = rank(importance);
-  links_[body] = {kNoIndex, to.last, importance, true};
-  (to.last == kNoIndex ? to.first : links_[to.last].next) = body;
-  to.last = body;
+  to.updates.tidy([&](BodyIndex other) { return waits_in_[other] == importance; });
+  to.updates.push(body);
+  waits_in_[body] = importance;
   ++to.bodies;
 }
 
 void Backlog::leave(BodyIndex body) noexcept {
   if (!waits(body)) return;
-  Link& link = links_[body];
-  Rank& from = ranks_[link.importance];
-  (link.before == kNoIndex ? from.first : links_[link.before].next) = link.next;
-  (link.next == kNoIndex ? from.last : links_[link.next].before) = link.before;
-  --from.bodies;
-  link = Link{};
+  --ranks_[waits_in_[body]].bodies;
+  waits_in_[body] = kNoWhere;
 }
 
 std::size_t Backlog::take(unsigned importance, std::span<BodyIndex> bodies) noexcept {
-  const Rank& from = ranks_[importance];
+  Rank& from = ranks_[importance];
   std::size_t count = 0;
-  while (count < bodies.size() && from.first != kNoIndex) {
-    bodies[count] = from.first;
-    leave(bodies[count++]);
+  while (count < bodies.size() && !from.updates.empty()) {
+    const BodyIndex body = from.updates.pop();
+    if (waits_in_[body] != importance) continue;
+    leave(body);
+    bodies[count++] = body;
   }
   return count;
 }
 
 void Backlog::take_all(std::vector<BodyIndex>& bodies, std::vector<PairEvent>& pairs) {
-  for (Rank& rank : ranks_) {
-    while (rank.first != kNoIndex) {
-      bodies.push_back(rank.first);
-      leave(rank.first);
-    }
+  for (unsigned importance = 0; importance < ranks_.size(); ++importance) {
+    Rank& rank = ranks_[importance];
+    make_room(bodies, bodies.size() + rank.bodies);
+    for (BodyIndex body; take(importance, {&body, 1}) > 0;) bodies.push_back(body);
     rank.found.move_to(pairs);
     rank.due.move_to(pairs);
     rank.lead = 0;
@@ -68,8 +47,8 @@ void Backlog::take_all(std::vector<BodyIndex>& bodies, std::vector<PairEvent>& p
 }
 
 void Backlog::append_bodies(std::vector<BodyIndex>& bodies) const {
-  for (const Rank& rank : ranks_) {
-    for (BodyIndex body = rank.first; body != kNoIndex; body = links_[body].next) bodies.push_back(body);
+  for (BodyIndex body = 0; body < waits_in_.size(); ++body) {
+    if (waits(body)) bodies.push_back(body);
   }
 }
 
@@ -84,8 +63,9 @@ bool Backlog::no_body_waits() const noexcept {
 }
 
 std::size_t Backlog::memory_bytes() const noexcept {
-  std::size_t bytes = ranks_.size() * sizeof(Rank) + bytes_of(links_);
-  for (const Rank& rank : ranks_) bytes += rank.found.memory_bytes() + rank.due.memory_bytes();
+  std::size_t bytes = ranks_.size() * sizeof(Rank) + bytes_of(waits_in_);
+  for (const Rank& rank : ranks_)
+    bytes += rank.updates.memory_bytes() + rank.found.memory_bytes() + rank.due.memory_bytes();
   return bytes;
 }
 

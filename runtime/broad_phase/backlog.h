@@ -5,29 +5,42 @@
 
 namespace orchard::runtime::detail {
 
-// Pairs in the order in which they came.
-class PairQueue {
+// Bodies or pairs in the order in which they came.
+template <typename T>
+class WorkQueue {
  public:
-  bool empty() const noexcept { return first_ == pairs_.size(); }
-  std::size_t size() const noexcept { return pairs_.size() - first_; }
-  void push(const PairEvent& event) { pairs_.push_back(event); }
-  const PairEvent& front() const noexcept { return pairs_[first_]; }
-  PairEvent pop() noexcept;
-  void move_to(std::vector<PairEvent>& pairs);  // the ends of them
-  // Drops what is of no use any more, once the queue has doubled: little work per pair, and no endless growth.
+  bool empty() const noexcept { return first_ == all_.size(); }
+  std::size_t size() const noexcept { return all_.size() - first_; }
+  void push(const T& one) { all_.push_back(one); }
+  const T& front() const noexcept { return all_[first_]; }
+  T pop() noexcept {
+    const T one = all_[first_++];
+    if (2 * first_ > all_.size()) forget_taken();
+    return one;
+  }
+  void move_to(std::vector<T>& to) {  // the end of it
+    to.insert(to.end(), all_.begin() + static_cast<std::ptrdiff_t>(first_), all_.end());
+    all_.clear();
+    first_ = tidied_ = 0;
+  }
+  // Drops what is of no use any more, once the queue has doubled: little work for each, and no endless growth.
   template <typename Useful>
   void tidy(const Useful& useful) {
     constexpr std::size_t kKept = 1024;
-    if (pairs_.size() < 2 * std::max(tidied_, kKept)) return;
-    pairs_.erase(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(first_));
-    first_ = 0;
-    std::erase_if(pairs_, [&](const PairEvent& event) { return !useful(event); });
-    tidied_ = pairs_.size();
+    if (all_.size() < 2 * std::max(tidied_, kKept)) return;
+    forget_taken();
+    std::erase_if(all_, [&](const T& one) { return !useful(one); });
+    tidied_ = all_.size();
   }
-  std::size_t memory_bytes() const noexcept { return bytes_of(pairs_); }
+  std::size_t memory_bytes() const noexcept { return bytes_of(all_); }
 
  private:
-  std::vector<PairEvent> pairs_;
+  void forget_taken() noexcept {
+    all_.erase(all_.begin(), all_.begin() + static_cast<std::ptrdiff_t>(first_));
+    first_ = 0;
+  }
+
+  std::vector<T> all_;
   std::size_t first_ = 0, tidied_ = 0;
 };
 
@@ -36,11 +49,11 @@ class PairQueue {
 class Backlog {
  public:
   struct Rank {
-    BodyIndex first = kNoIndex, last = kNoIndex;  // the bodies that wait for a window update: a list
-    PairQueue found;                              // near pairs that these updates found: tested before the next update
-    PairQueue due;                                // pairs whose test is due, and what other classes' updates found
-    std::int64_t lead = 0;                        // units of work that updates are ahead of tests
-    std::size_t bodies = 0;
+    WorkQueue<BodyIndex> updates;  // bodies that wait for a window update, and some that do not any more
+    std::size_t bodies = 0;        // that do
+    WorkQueue<PairEvent> found;    // near pairs that these updates found: tested before the next update
+    WorkQueue<PairEvent> due;      // pairs whose test is due, and what other classes' updates found
+    std::int64_t lead = 0;         // units of work that updates are ahead of tests
 
     bool updating() const noexcept { return bodies > 0 || !found.empty(); }
   };
@@ -48,7 +61,7 @@ class Backlog {
   Rank& rank(unsigned importance);
   void wait(BodyIndex body, std::uint8_t importance);  // at the end, unless it waits already
   void leave(BodyIndex body) noexcept;                 // nothing if it does not wait
-  bool waits(BodyIndex body) const noexcept { return body < links_.size() && links_[body].waits; }
+  bool waits(BodyIndex body) const noexcept { return body < waits_in_.size() && waits_in_[body] != kNoWhere; }
   // The first bodies of the class leave; returns how many.
   std::size_t take(unsigned importance, std::span<BodyIndex> bodies) noexcept;
   // Everything leaves, the more important classes first.
@@ -60,14 +73,10 @@ class Backlog {
   std::size_t memory_bytes() const noexcept;
 
  private:
-  struct Link {
-    BodyIndex next = kNoIndex, before = kNoIndex;
-    std::uint8_t importance = 0;
-    bool waits = false;
-  };
+  static constexpr std::uint16_t kNoWhere = 0xffff;
 
-  std::deque<Rank> ranks_;   // stay where they are when others come
-  std::vector<Link> links_;  // by body; empty until a body waits
+  std::deque<Rank> ranks_;               // stay where they are when others come
+  std::vector<std::uint16_t> waits_in_;  // by body: the class, or kNoWhere; empty until a body waits
 };
 
 }  // namespace orchard::runtime::detail

@@ -25,13 +25,6 @@ void StaticBodies::move(BodyIndex body, const Motion& place) noexcept {
   stored.radius = place.radius;
 }
 
-// What was taken from a list has room there; what was made new is the last one.
-void StaticBodies::undo_add(BodyIndex body) noexcept {
-  if (!has(body)) return;
-  slots_[body] + 1 == motions_.size() ? motions_.pop_back() : free_.push_back(slots_[body]);
-  slots_[body] = kNoSlot;
-}
-
 void StaticBodies::remove(BodyIndex body) noexcept {
   if (!has(body)) return;
   free_.push_back(slots_[body]);
@@ -45,6 +38,7 @@ BodyIndex BodyPool::add(std::uint8_t importance, const BodyFilter& filter, const
   const BodyIndex body = again ? free_.back() : static_cast<BodyIndex>(slots());
   const std::size_t slots_then = std::max(slots(), std::size_t{body} + 1);
   make_room(generations_, slots_then);
+  make_room(free_, free_.size() + 1);
   classes.make_room(slots_then, importance);
   statics.make_room(slots_then, place != nullptr);
   const bool filtered = filters.any_of_bodies() || filter != BodyFilter{};
@@ -58,19 +52,6 @@ BodyIndex BodyPool::add(std::uint8_t importance, const BodyFilter& filter, const
   statics.add(body, slots_then, place);
   ++size_;
   return body;
-}
-
-void BodyPool::undo_add(BodyIndex body) noexcept {
-  statics.undo_add(body);
-  classes.leave(body);
-  --size_;
-  if (--generations_[body] != 0) {
-    free_.push_back(body);
-    return;
-  }
-  assert(std::size_t{body} + 1 == slots());
-  generations_.pop_back();
-  classes.drop_last(), statics.drop_last(), filters.drop_last();
 }
 
 void BodyPool::make_room_to_remove(BodyIndex body) {

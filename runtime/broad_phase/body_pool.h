@@ -20,7 +20,6 @@ class ImportanceClasses {
     ++count_[importance];
   }
   void leave(BodyIndex body) noexcept { --count_[of_body_[body]]; }
-  void drop_last() noexcept { of_body_.pop_back(); }
   void change(BodyIndex body, std::uint8_t importance) {
     make_room(importance);
     leave(body);
@@ -56,6 +55,7 @@ class StaticBodies {
 
   void make_room(std::size_t bodies, bool is_static) {
     if (is_static && free_.empty()) detail::make_room(motions_, motions_.size() + 1);
+    if (is_static) detail::make_room(free_, free_.size() + 1);
     if (is_static || any()) detail::make_room(slots_, bodies);
   }
   void make_room_to_remove(BodyIndex body) {
@@ -63,11 +63,7 @@ class StaticBodies {
   }
   void add(BodyIndex body, std::size_t bodies, const Motion* place) noexcept;  // one that is not static has no place
   void move(BodyIndex body, const Motion& place) noexcept;
-  void undo_add(BodyIndex body) noexcept;
   void remove(BodyIndex body) noexcept;
-  void drop_last() noexcept {
-    if (any()) slots_.pop_back();
-  }
   std::size_t memory_bytes() const noexcept { return bytes_of(slots_, motions_, free_); }
 
  private:
@@ -83,9 +79,6 @@ class PairFilters {
   void make_room(std::size_t bodies) { grow(of_body_, bodies); }
   void set(BodyIndex body, const BodyFilter& filter) noexcept { of_body_[body] = filter; }  // after that
   void set_function(PairFilter function) noexcept { function_ = std::move(function); }
-  void drop_last() noexcept {
-    if (any_of_bodies()) of_body_.pop_back();
-  }
   BodyFilter of(BodyIndex body) const noexcept { return of_body_.empty() ? BodyFilter{} : of_body_[body]; }
   bool any_of_bodies() const noexcept { return !of_body_.empty(); }
   bool has_function() const noexcept { return static_cast<bool>(function_); }
@@ -157,9 +150,8 @@ class BodyPool {
   // Where there is no memory for it, a change changes nothing.
   // With a place: a static one. kNoIndex: full.
   BodyIndex add(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
-  void undo_add(BodyIndex body) noexcept;  // the one added last, which never was
   void make_room_to_remove(BodyIndex body);
-  void remove(BodyIndex body) noexcept;  // after make_room_to_remove()
+  void remove(BodyIndex body) noexcept;  // after make_room_to_remove(), or just after add()
 
   std::size_t slots() const noexcept { return generations_.size(); }  // indices are below
   std::size_t size() const noexcept { return size_; }

@@ -135,7 +135,7 @@ BodyId BroadPhase::add_body(std::uint8_t importance, const BodyFilter& filter, c
   detail::BodyPool& pool = state_->pool;
   const BodyIndex body = pool.add(importance, filter, place);
   if (body == kNoIndex) return kNoBody;
-  const auto undo = [&] { pool.undo_add(body); };
+  const auto undo = [&] { pool.remove(body); };
   detail::UndoUnlessDone undone(undo);
   state_->method->changed(body);
   undone.done();

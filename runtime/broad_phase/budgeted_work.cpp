@@ -35,7 +35,7 @@ void BudgetedWork::join(std::span<const BodyIndex> due, std::span<const PairEven
   reclassified_ = false;
   postpone(due);
   const auto test_later = [&](const BodyPair& pair, Round created) {
-    PairQueue& queue = backlog_.rank(state_.pool.classes.of(pair)).due;
+    WorkQueue<PairEvent>& queue = backlog_.rank(state_.pool.classes.of(pair)).due;
     queue.push({pair, created});
     queue.tidy([&](const PairEvent& old) { return state_.windows.valid(old); });
   };
@@ -105,7 +105,7 @@ std::size_t BudgetedWork::update_waiting(Step now, unsigned importance, std::siz
 }
 
 // What has been found is tested even if one of the two has been updated since.
-std::size_t BudgetedWork::test_waiting(Step now, PairQueue& queue, bool found, std::size_t most,
+std::size_t BudgetedWork::test_waiting(Step now, WorkQueue<PairEvent>& queue, bool found, std::size_t most,
                                        BudgetTracker& tracker) {
   tests_.clear();
   const std::size_t pairs = std::clamp<std::size_t>(most / 2, 1, NearPairs::kTestsAtOnce);

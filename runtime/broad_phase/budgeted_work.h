@@ -38,7 +38,7 @@ class BudgetedWork {
   void sort_pairs_again();
   bool work_through(Step now, unsigned importance, BudgetTracker& tracker);
   std::size_t update_waiting(Step now, unsigned importance, std::size_t most, BudgetTracker& tracker);
-  std::size_t test_waiting(Step now, PairQueue& queue, bool found, std::size_t most, BudgetTracker& tracker);
+  std::size_t test_waiting(Step now, WorkQueue<PairEvent>& queue, bool found, std::size_t most, BudgetTracker& tracker);
 
   KineticState& state_;
   NearPairs& pairs_;
