@@ -1,7 +1,7 @@
 #include "broad_phase/box_index.h"
 
 namespace orchard::runtime::detail {
-void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
+void BoxIndex::rebuild(std::size_t slots, std::size_t lines, const Executor& executor) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   extent_ = kNoBox;
@@ -9,7 +9,7 @@ void BoxIndex::rebuild(std::size_t slots, std::size_t lines) {
     grid_.release();
     give_back(boxes_);
   } else {
-    grid_.begin_reset(lines);
+    grid_.reset(lines, executor);
     grow(boxes_, slots);
   }
 }

@@ -4,28 +4,6 @@
 
 namespace orchard::runtime::detail {
 
-// The quantized grid of all boxes, which moves with the bodies.
-class MovingGrid {
- public:
-  void set(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
-           Step now) noexcept {
-    grid_ = QuantizedGrid(origin, velocity, cell_size, slack);
-    made_at_ = now;
-    time_step_ = time_step;
-  }
-  QuantizedGrid at(Step now) const noexcept {
-    QuantizedGrid grid = grid_;
-    grid.move_to(static_cast<double>(now - made_at_) * time_step_);
-    return grid;
-  }
-  bool moves() const noexcept { return grid_.moves(); }
-
- private:
-  QuantizedGrid grid_;
-  double time_step_ = 0;
-  Step made_at_ = 0;
-};
-
 // The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: in
 // the grid, or by themselves where they are larger than several cells.
 class BoxIndex {
@@ -34,9 +12,8 @@ class BoxIndex {
   void make_room_for_boxes(std::size_t slots) { grow(boxes_, slots); }
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
-  // Empties it, and makes it for so many slots, or lines, which are put in order later: SweptGrid::begin_reset().
-  // `lines` 0: for none, until it is rebuilt.
-  void rebuild(std::size_t slots, std::size_t lines);
+  // Empties it, and makes it for so many slots, or lines; `lines` 0: for none, until it is rebuilt.
+  void rebuild(std::size_t slots, std::size_t lines, const Executor& executor);
   void take_away(BodyIndex body) noexcept { take_away({&body, 1}); }
   void take_away(std::span<const BodyIndex> bodies) noexcept;
   // Takes note of bodies' boxes, which fit, and has `extent` include them. What remains is to put them into lines(),

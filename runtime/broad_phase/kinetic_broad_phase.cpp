@@ -98,8 +98,8 @@ bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
   if (outcome == Planner::Outcome::interrupted) return false;
   state_.counts = {};
   if (outcome == Planner::Outcome::same) return true;
-  state_.grid.set(planner_.spread().middle, planner_.velocity(), planner_.plan().cell_size,
-                  2 * state_.options.position_slack, state_.options.time_step, now);
+  state_.grid = QuantizedGrid(planner_.spread().middle, planner_.velocity(), planner_.plan().cell_size,
+                              2 * state_.options.position_slack, state_.pool.clock, now);
   state_.windows.plan(planner_.plan().window, state_.grid.moves());
   return true;
 }
@@ -120,7 +120,7 @@ void KineticBroadPhase::place_all() {
   sorting_ = false;
   state_.wheel.clear_bodies();
   state_.windows.start_over();
-  state_.boxes.rebuild(state_.pool.slots(), planner_.plan().lines);
+  state_.boxes.rebuild(state_.pool.slots(), planner_.plan().lines, state_.options.executor);
   all_are_due();
 }
 
@@ -188,7 +188,6 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   if (rebuild) {
     if (!replan(now, tracker)) return state_.pool.classes.next(0);
     place_all();
-    state_.boxes.lines().empty_parts(state_.options.executor);
     budgeted_.postpone(due_.bodies);
     due_.bodies.clear();
     common_expiry_ = kNeverStep;
@@ -209,7 +208,7 @@ void KineticBroadPhase::begin_sorting() {
   state_.wheel.clear();
   pairs_.forget_all();
   pairs_.spheres().release();
-  state_.boxes.rebuild(state_.pool.slots(), 0);
+  state_.boxes.rebuild(state_.pool.slots(), 0, {});
   state_.counts = {};
 }
 

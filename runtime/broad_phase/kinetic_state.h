@@ -28,7 +28,7 @@ struct KineticState {
   const BroadPhaseOptions options;
   Changes changes;
   Windows windows;
-  MovingGrid grid;  // in which the boxes are
+  QuantizedGrid grid;  // in which the boxes are; it moves with the bodies
   BoxIndex boxes;
   GridCounts counts;  // of their insertions, for the plan
   TimingWheel wheel;

@@ -6,21 +6,6 @@ namespace {
 constexpr std::size_t kFewPairs = 64;
 constexpr std::size_t kPairsWithRoom = 16;  // for each body
 
-// Looks pairs up that come in ascending order.
-class Finder {
- public:
-  explicit Finder(const std::vector<BodyPair>& sorted)
-      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()) {}
-  bool has(const BodyPair& pair) {
-    next_ = std::lower_bound(next_, end_, pair);
-    return next_ != end_ && *next_ == pair;
-  }
-  std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
-
- private:
-  const BodyPair *begin_, *next_, *end_;
-};
-
 }  // namespace
 
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
@@ -66,51 +51,24 @@ void OverlapList::start_over(std::span<const BodyPair> pairs) {
   from_scratch_ = true;
 }
 
-// Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
-void OverlapList::keep_changes() {
-  Finder touching(added_), in_list(pairs_), in_list_too(pairs_);
-  const auto keep = [](std::vector<BodyPair>& pairs, std::vector<std::uint32_t>& places, const Finder& finder,
-                       const auto& counts) {
-    places.clear();
-    std::size_t kept = 0;
-    for (const BodyPair pair : pairs) {
-      if (!counts(pair)) continue;
-      pairs[kept++] = pair;
-      places.push_back(finder.place());
-    }
-    pairs.resize(kept);
-  };
-  keep(dropped_, dropped_places_, in_list,
-       [&](const BodyPair& pair) { return !touching.has(pair) && in_list.has(pair); });
-  keep(added_, added_places_, in_list_too, [&](const BodyPair& pair) { return !in_list_too.has(pair); });
-}
-
-void OverlapList::remove_dropped() {
+// Both sorted. From the end, so that each part of the list moves once, and what lies before all changes not at all.
+void OverlapList::apply_changes() {
+  const std::size_t count = pairs_.size();
+  grow(pairs_, count + added_.size());
   const auto begin = pairs_.begin();
-  auto to = begin + dropped_places_.front(), from = to;
-  for (const std::uint32_t place : dropped_places_) {
-    to = std::move(from, begin + place, to);
-    from = begin + place + 1;
+  auto from = begin + static_cast<std::ptrdiff_t>(count), to = pairs_.end();
+  auto added = added_.end(), dropped = dropped_.end();
+  while (added != added_.begin() || dropped != dropped_.begin()) {
+    const bool adds = dropped == dropped_.begin() || (added != added_.begin() && !(added[-1] < dropped[-1]));
+    const BodyPair pair = adds ? *--added : *--dropped;
+    if (adds && dropped != dropped_.begin() && dropped[-1] == pair) --dropped;  // it touches
+    const auto after = std::upper_bound(begin, from, pair);
+    to = std::move_backward(after, from, to);
+    from = after;
+    if (from != begin && from[-1] == pair) --from;
+    if (adds) *--to = pair;
   }
-  pairs_.erase(std::move(from, pairs_.end(), to), pairs_.end());
-}
-
-// From the end: each part of the list moves once.
-void OverlapList::insert_added() {
-  auto from = pairs_.size();
-  grow(pairs_, from + added_.size());
-  auto to = pairs_.size();
-  auto dropped = dropped_places_.size();  // before the place
-  for (auto k = added_.size(); k > 0; --k) {
-    const auto begin = pairs_.begin();
-    while (dropped > 0 && dropped_places_[dropped - 1] >= added_places_[k - 1]) --dropped;
-    const std::size_t place = added_places_[k - 1] - dropped;
-    std::move_backward(begin + static_cast<std::ptrdiff_t>(place), begin + static_cast<std::ptrdiff_t>(from),
-                       begin + static_cast<std::ptrdiff_t>(to));
-    to -= from - place + 1;
-    from = place;
-    pairs_[to] = added_[k - 1];
-  }
+  pairs_.erase(from, to);
 }
 
 void OverlapList::update(std::size_t slots) {
@@ -126,9 +84,7 @@ void OverlapList::update(std::size_t slots) {
     added_.erase(std::unique(added_.begin(), added_.end()), added_.end());
     sort(dropped_, slots, room_);
     dropped_.erase(std::unique(dropped_.begin(), dropped_.end()), dropped_.end());
-    keep_changes();
-    if (!dropped_.empty()) remove_dropped();
-    if (!added_.empty()) insert_added();
+    apply_changes();
   }
   added_.clear();
   dropped_.clear();
@@ -144,7 +100,7 @@ void OverlapList::clear() noexcept {
 }
 
 std::size_t OverlapList::memory_bytes() const noexcept {
-  return bytes_of(pairs_, added_, dropped_, marks_, begins_, room_, added_places_, dropped_places_);
+  return bytes_of(pairs_, added_, dropped_, marks_, begins_, room_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -57,13 +57,10 @@ class OverlapList {
                     BodyIndex BodyPair::*body);
   void forget_marked();
   void clear_marks() noexcept;
-  void keep_changes();
-  void remove_dropped();
-  void insert_added();
+  void apply_changes();
 
   std::vector<BodyPair> pairs_, added_, dropped_;
-  std::vector<std::uint32_t> added_places_, dropped_places_;  // in pairs_, before it changes
-  std::vector<std::uint8_t> marks_;                           // by body
+  std::vector<std::uint8_t> marks_;  // by body
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool from_scratch_ = false, refuses_ = false;
   std::vector<std::uint32_t> begins_;  // by body, while many pairs are sorted

@@ -22,13 +22,25 @@ void BoxBlock::store(std::span<const std::uint32_t> places, std::span<PackedAabb
   }
 }
 
-QuantizedGrid::QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
-    : first_(origin), velocity_(velocity), per_length_(kQuanta / cell_size), slack_(slack) {
-  move_to(0);
+QuantizedGrid::QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack,
+                             const Clock& clock, Step now) noexcept
+    : first_(origin),
+      velocity_(velocity),
+      per_length_(kQuanta / cell_size),
+      time_step_(clock.time_step),
+      made_at_(now),
+      slack_(slack) {
+  move_to(now);
 }
 
-void QuantizedGrid::move_to(double seconds) noexcept {
-  origin_ = first_ + seconds * velocity_;
+QuantizedGrid QuantizedGrid::at(Step now) const noexcept {
+  QuantizedGrid grid = *this;
+  grid.move_to(now);
+  return grid;
+}
+
+void QuantizedGrid::move_to(Step now) noexcept {
+  origin_ = first_ + (static_cast<double>(now - made_at_) * time_step_) * velocity_;
   double size = 0;
   for (const double x : origin_) size = std::max(size, std::fabs(x));
   margin_ =

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "broad_phase/motion_bound_check.h"
+#include "broad_phase/clock.h"
 
 namespace orchard::runtime::detail {
 
@@ -74,10 +74,11 @@ struct BoxBlock {
 class QuantizedGrid {
  public:
   QuantizedGrid() = default;
-  // slack: what positions may be wrong by
-  QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept;
+  // Made at the step `now`. slack: what positions may be wrong by.
+  QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, const Clock& clock,
+                Step now) noexcept;
 
-  void move_to(double seconds) noexcept;                   // since it was made
+  QuantizedGrid at(Step now) const noexcept;               // where it has moved to
   const Vec3& origin() const noexcept { return origin_; }  // where it has moved to
   const Vec3& velocity() const noexcept { return velocity_; }
   bool moves() const noexcept { return velocity_ != kNoVelocity; }
@@ -95,9 +96,13 @@ class QuantizedGrid {
   template <typename Kind>
   bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
 
+  void move_to(Step now) noexcept;
+
   Vec3 first_{}, origin_{};  // where it was made, and where it is
   Vec3 velocity_{};
   double per_length_ = 1;  // quanta
+  double time_step_ = 0;
+  Step made_at_ = 0;
   double slack_ = 0;
   double margin_ = 0;  // quanta: rounding here, and kMotionSlack
 };

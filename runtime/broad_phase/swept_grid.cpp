@@ -173,8 +173,7 @@ std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
   return {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
 }
 
-void SweptGrid::begin_reset(std::size_t lines) {
-  in_order_ = false;
+void SweptGrid::reset(std::size_t lines, const Executor& executor) {
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
   const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
@@ -187,29 +186,16 @@ void SweptGrid::begin_reset(std::size_t lines) {
     lines_.clear();  // what is there need not move
     lines_.resize(wanted);
   }
-}
-
-// All lines are written in order: those that have not been used for long come faster this way than one by one later.
-void SweptGrid::empty_part(std::size_t part) noexcept {
-  if (in_order_) return;
-  const std::size_t size = lines_.size() / kParts;
-  std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
-}
-
-void SweptGrid::empty_parts(const Executor& executor) {
+  // All lines are written in order: those that have not been used for long come faster this way than one by one later.
   constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
-  if (in_order_) return;
-  if (lines_.size() < kMinToShare) {
-    std::fill(lines_.begin(), lines_.end(), kEmptyLine);
-  } else {
-    auto empty = [&](std::size_t part) { empty_part(part); };
-    run_jobs(executor, kParts, empty);
-  }
-  in_order_ = true;
+  const std::size_t size = wanted / kParts;
+  auto empty = [&](std::size_t part) {
+    std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
+  };
+  run_jobs(wanted < kMinToShare ? Executor{} : executor, kParts, empty);
 }
 
 void SweptGrid::release() {
-  in_order_ = true;
   give_back(lines_);
   for (Overflow& more : overflow_) give_back(more.lines);
 }

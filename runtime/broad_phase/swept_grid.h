@@ -78,13 +78,9 @@ class SweptGrid {
   };
   using VisitsByPart = std::array<Visits, kParts>;
 
-  // Makes room for at least `lines` lines, rounded up to a power of two. The lines are in memory as it is, until each
-  // part has been emptied; nothing else happens to the part before that.
-  void begin_reset(std::size_t lines);
-  void empty_part(std::size_t part) noexcept;  // unless they are in order
-  void all_parts_emptied() noexcept { in_order_ = true; }
-  void empty_parts(const Executor& executor);  // all of that
-  void release();                              // its memory, too
+  // Empties it, and makes room for at least `lines` lines, rounded up to a power of two.
+  void reset(std::size_t lines, const Executor& executor);
+  void release();  // its memory, too
 
   // Boxes are added in two steps. First it is encoded which visits at most kBlock bodies with the block's boxes make.
   // No box takes more than kMaxCellsPerAxis cells along an axis.
@@ -144,7 +140,6 @@ class SweptGrid {
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;
   std::array<std::uint32_t, 3> factors_{};
-  bool in_order_ = true;
 };
 
 }  // namespace orchard::runtime::detail

@@ -56,7 +56,6 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
   GridPart& part = shared_->parts[index];
   part.near.clear();
   part.counts = {};
-  state_.boxes.lines().empty_part(index);  // in the cache where it is used at once
   for (const Chunk& chunk : shared_->chunks) {
     state_.boxes.lines().insert(chunk.visits[index].visits(), state_.boxes.packed(), part.near, part.counts);
   }
@@ -82,7 +81,6 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
     if (i > 0) return find_in_part(now, i - 1);
     for (Chunk& chunk : shared_->chunks) fold(chunk);
   });
-  state_.boxes.lines().all_parts_emptied();
   for (GridPart& part : shared_->parts) {
     state_.counts += part.counts;
     if (state_.pool.filters.has_function()) {  // it is asked by one thread
@@ -95,22 +93,9 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
   test_near(now);
 }
 
-// Whether jobs are worth it: what they have to do is told by the bodies, and by the pairs that are near, of which so
-// many make up for a body. A thread that is alone takes a little longer with jobs unless there are many of either.
-bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
-  constexpr std::size_t kFewer = 4;
-  constexpr double kPairsOfBody = 48;
-  const std::size_t least = state_.options.min_bodies_for_jobs;
-  const double pairs = planner_.plan().pairs_per_body;
-  const double work = static_cast<double>(bodies) * (1 + pairs / kPairsOfBody);
-  return bodies > 0 && bodies >= least / kFewer && work >= static_cast<double>(least);
-}
-
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  if (!are_many(bodies.size()) || state_.pool.motions.check() != nullptr) {
-    state_.boxes.lines().empty_parts(state_.options.executor);
-    return update(now, from, bodies);
-  }
+  const bool many = !bodies.empty() && bodies.size() >= state_.options.min_bodies_for_jobs;
+  if (!many || state_.pool.motions.check() != nullptr) return update(now, from, bodies);
   if (!shared_) shared_ = std::make_unique<Shared>();
   near_.clear();
   const std::size_t waves = (bodies.size() + kMaxWave - 1) / kMaxWave;

@@ -7,15 +7,6 @@ namespace {
 
 constexpr std::size_t kNearAtOnce = 512;  // near pairs that are tested together
 
-// By a quarter at most, along each axis.
-bool hardly_longer(const QuantizedAabb& box, const QuantizedAabb& than) noexcept {
-  const auto length = [](const QuantizedAabb& of, std::size_t d) { return std::uint64_t{of.upper[d]} - of.lower[d]; };
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (4 * length(box, d) > 5 * length(than, d)) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::span<Motion> WindowUpdates::ask(Step now, std::span<const BodyIndex> bodies) {
@@ -181,8 +172,8 @@ void WindowUpdates::fold(Chunk& chunk) {
   state_.pool.motions.count_asked(chunk.asked);
 }
 
-// What is faster than the others is updated again sooner, so that its box takes few enough cells. One that is too large
-// for that is not updated sooner than its motion is worth.
+// What is faster than the others is updated again sooner, so that its box takes few enough cells, unless it is too
+// large for that in any case.
 QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& motion) const noexcept {
   Step steps = window.end == kNeverStep ? 1 : window.end - block.from;
   QuantizedAabb box = block.boxes.get(0);
@@ -193,9 +184,8 @@ QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& 
     block.quantized_grid.boxes({&motion, 1}, {&duration, 1}, made);
     return made.get(0);
   };
-  const QuantizedAabb least = box_for(1);
-  const bool large = !fits_grid(least);
-  while (steps > 1 && !(large ? hardly_longer(box, least) : fits_grid(box))) {
+  if (!fits_grid(box_for(1))) return box;
+  while (steps > 1 && !fits_grid(box)) {
     steps = (steps + 1) / 2;
     box = box_for(steps);
   }

@@ -52,7 +52,6 @@ class WindowUpdates {
   void test_near(Step now);
   void drop_what_is_none();
   void find_in_part(Step now, std::size_t index);
-  bool are_many(std::size_t bodies) const noexcept;
   void update_wave(Step now, Step from, std::span<const BodyIndex> bodies);
   template <typename Job>
   void run_all(std::size_t count, const Job& job);

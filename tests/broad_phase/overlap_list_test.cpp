@@ -110,8 +110,7 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   for (const std::array<double, 3>& cells : shapes) {
     test::Draw draw(1);
     SweptGrid grid;
-    grid.begin_reset(kBodies / 2);
-    grid.empty_parts({});
+    grid.reset(kBodies / 2, {});
     SweptGrid::Visits visits;
     GridCounts counts;
     std::vector<PackedAabb> boxes(kBodies);
