@@ -20,7 +20,7 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   const auto is_inside = [&](std::size_t i) { return i < bodies.size() && places_[bodies[i]] == Place::inside; };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (i + 2 * kAhead < bodies.size()) prefetch(&boxes_[bodies[i + 2 * kAhead]]);
-    if (is_inside(i + kAhead)) grid_.prepare_removal(boxes_[bodies[i + kAhead]].whole());
+    if (is_inside(i + kAhead)) grid_.prepare_removal(boxes_[bodies[i + kAhead]]);
     const BodyIndex body = bodies[i];
     if (places_[body] == Place::oversized)
       std::erase_if(oversized_, [=](const Oversized& o) { return o.body == body; });

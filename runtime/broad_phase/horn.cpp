@@ -136,13 +136,14 @@ ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, cons
   }
   std::memcpy(seconds, &time, sizeof time);
   const std::uint32_t touches = Kind::bits(touch);
+  std::array<double, Kind::kLanes> slack_of_each;
+  std::memcpy(&slack_of_each, &slacks, sizeof slacks);
   const bool tighten = Kind::any(half_spaces > 0);  // few bodies have one
   for (std::size_t i = 0; i < Kind::kLanes; ++i) {
     touching[i] = (touches >> i & 1) != 0;
     if (!tighten || touching[i] || !(seconds[i] <= limits[i])) continue;
     const Motion &first = motions[2 * i], &second = motions[2 * i + 1];
-    seconds[i] =
-        tightened(first, second, seconds[i], limits[i], motion_slack(first, second, limits[i]) + precision.slack);
+    seconds[i] = tightened(first, second, seconds[i], limits[i], slack_of_each[i]);
   }
   return true;
 }

@@ -57,23 +57,50 @@ ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
 }
 constexpr BodyIndex body_of(std::uint64_t entry) noexcept { return static_cast<BodyIndex>(entry >> kIdShift); }
 
-// Which of a line's entries meet the query, one bit for each: no field of their sum reaches its guard bit, and places
-// without an entry are nothing but guard bits.
-ORCHARD_INLINE std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+// For which of a line's entries of(entry) is 0, one bit for each. It gives numbers below 2^kIdShift.
+template <typename Of>
+ORCHARD_INLINE std::uint64_t zeros(const CellLine& line, const Of& of) noexcept {
   std::uint64_t bits = 0;
 #ifdef ORCHARD_VECTORS
   using Words __attribute__((vector_size(32))) = std::uint64_t;
-  const auto met = [&](std::size_t at, const Words& as) ORCHARD_INLINE_LAMBDA {
-    Words half;
-    std::memcpy(&half, reinterpret_cast<const char*>(&line) + at, sizeof half);
-    return (((half + query) & kGuards) - 1) & (as << kIdShift);  // bits above the guards are set where none of these is
+  const auto half = [&](std::size_t at, const Words& as) ORCHARD_INLINE_LAMBDA {
+    Words entries;
+    std::memcpy(&entries, reinterpret_cast<const char*>(&line) + at, sizeof entries);
+    return (of(entries) - 1) & (as << kIdShift);  // of 0 the high bits are set
   };
-  const Words all = met(0, Words{1, 2, 4, 8}) | met(32, Words{16, 32, 64, 0});
+  const Words all = half(0, Words{1, 2, 4, 8}) | half(32, Words{16, 32, 64, 0});
   bits = ((all[0] | all[1]) | (all[2] | all[3])) >> kIdShift;
 #else
-  for (std::uint32_t i = 0; i < 7; ++i) bits |= std::uint64_t{((query + line.entries[i]) & kGuards) == 0} << i;
+  for (std::uint32_t i = 0; i < kLineRoom; ++i) bits |= std::uint64_t{of(line.entries[i]) == 0} << i;
 #endif
   return bits;
+}
+
+// Which of a line's entries meet the query: no field of their sum reaches its guard bit, and places without an entry
+// are nothing but guard bits.
+ORCHARD_INLINE std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+  return zeros(line, [=](const auto& entries) ORCHARD_INLINE_LAMBDA { return (entries + query) & kGuards; });
+}
+// Which are of the body; of places without an entry that means nothing.
+ORCHARD_INLINE std::uint64_t those_of(const CellLine& line, std::uint64_t body) noexcept {
+  return zeros(line, [=](const auto& entries) ORCHARD_INLINE_LAMBDA { return (entries >> kIdShift) ^ body; });
+}
+
+// False, and it stays as it is, if it is full. Without a branch: what has no room is written where the counters are,
+// which are written again.
+ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
+  constexpr int kCountAt = std::endian::native == std::endian::little ? 0 : 32;  // among the counters' bits
+  static_assert(offsetof(CellLine, count) == sizeof line.entries &&
+                offsetof(CellLine, overflow) == offsetof(CellLine, count) + 4);
+  auto* const bytes = reinterpret_cast<unsigned char*>(&line);
+  std::uint64_t counters;
+  std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);
+  const auto count = static_cast<std::uint32_t>(counters >> kCountAt);
+  const std::uint64_t room = count < kLineRoom ? 1 : 0;
+  std::memcpy(bytes + std::size_t{count} * sizeof entry, &entry, sizeof entry);
+  counters += room << kCountAt;
+  std::memcpy(bytes + sizeof line.entries, &counters, sizeof counters);
+  return room != 0;
 }
 
 // Quanta along the three axes. They are below 2^31, so that two of them are compared at once.
@@ -179,6 +206,7 @@ void SweptGrid::reset(std::size_t lines, const Executor& executor) {
   mask_ = (1u << bits) - 1;
   part_shift_ = bits - static_cast<unsigned>(std::bit_width(kParts - 1));
   factors_ = line_factors(bits);
+  corner_lines_ = by_corner([&](std::uint32_t d) { return factors_[d]; });
   for (Overflow& more : overflow_) more.lines.clear(), more.free = 0;
   const std::size_t wanted = std::size_t{1} << bits;
   if (lines_.capacity() > 4 * wanted) give_back(lines_);
@@ -215,19 +243,27 @@ void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block,
     const std::uint64_t entry = entry_of(coded.from[i], coded.below[i] & ~coded.beyond[i], bodies[i]);
     *visit++ = {entry, coded.lines[i] & mask_, 0};
   }
-  const auto lines_of = by_corner([&](std::uint32_t d) { return factors_[d]; });
-  for (std::size_t i = 0; i < count; ++i) {
+  const auto add = [&](std::size_t i, std::uint32_t corner) {
+    const std::uint32_t fields = kFieldsOf[corner];
+    const std::uint32_t from = coded.from[i] & ~fields, below = coded.below[i] & (~coded.beyond[i] | fields);
+    *visit++ = {entry_of(from, below, bodies[i]), (coded.lines[i] + corner_lines_[corner]) & mask_,
+                static_cast<Steps>(kStepsOf[corner])};
+  };
+  // Which take more than a cell cannot be predicted, so no branch depends on it. Most of them take two.
+  std::array<std::uint32_t, kBlock> more;
+  std::size_t mores = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    more[mores] = i;
+    mores += coded.axes[i] != 0;
+  }
+  for (const std::uint32_t i : std::span(more).first(mores)) {
     const std::uint32_t axes = coded.axes[i];
     if (axes >= 8) {
       visit = visit_rest(bodies[i], block.get(i), visit);
       continue;
     }
-    for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
-      const std::uint32_t fields = kFieldsOf[corner];
-      const std::uint32_t from = coded.from[i] & ~fields, below = coded.below[i] & (~coded.beyond[i] | fields);
-      *visit++ = {entry_of(from, below, bodies[i]), (coded.lines[i] + lines_of[corner]) & mask_,
-                  static_cast<Steps>(kStepsOf[corner])};
-    }
+    add(i, axes);
+    for (std::uint32_t corner = (axes - 1) & axes; corner != 0; corner = (corner - 1) & axes) add(i, corner);
   }
 }
 
@@ -255,55 +291,94 @@ void SweptGrid::split(const Visits& visits, VisitsByPart& parts) const {
   for (const Visit& visit : all) *ends[part_of(visit.line)]++ = visit;
 }
 
-// Of the entries hit, those whose box really meets the body's, and in this cell first.
-void SweptGrid::report(const CellLine& line, std::uint64_t hits, const Visit& visit, std::span<const PackedAabb> boxes,
-                       std::vector<BodyPair>& pairs) {
+// What is found waits on the stack for room in the vector.
+struct SweptGrid::Insertion {
+  static constexpr std::size_t kFound = 256;
+
+  std::span<const PackedAabb> boxes;
+  std::vector<BodyPair>& pairs;
+  GridCounts& counts;
+  std::array<BodyPair, kFound> found;
+  std::size_t count = 0;
+
+  Insertion(std::span<const PackedAabb> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
+      : boxes(all), pairs(to), counts(of) {}
+  void hand_over() {
+    pairs.insert(pairs.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    counts.pairs += count;
+    count = 0;
+  }
+};
+
+// Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
+// the boxes: in dense worlds no branch can be predicted.
+void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t hits, const Visit& visit) {
   const BodyIndex body = body_of(visit.entry);
-  const BoxInCell box(boxes[body], visit.steps);
+  const BoxInCell box(insertion.boxes[body], visit.steps);
+  if (insertion.count + kLineRoom > Insertion::kFound) insertion.hand_over();
+  std::size_t count = insertion.count;
   for (; hits != 0; hits &= hits - 1) {
     const BodyIndex other = body_of(line.entries[static_cast<std::size_t>(std::countr_zero(hits))]);
-    if (box.meets_here(boxes[other])) pairs.push_back({std::min(body, other), std::max(body, other)});
+    insertion.found[count] = {std::min(body, other), std::max(body, other)};
+    count += box.meets_here(insertion.boxes[other]);
   }
+  insertion.count = count;
 }
 
 // Where the line is full: in those that it overflows to.
-ORCHARD_INLINE void SweptGrid::insert_beyond(const Visit& visit, std::span<const PackedAabb> boxes,
-                                             std::vector<BodyPair>& pairs, GridCounts& counts) {
+ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& visit) {
   Overflow& overflow = overflow_[part_of(visit.line)];
   CellLine* line = &lines_[visit.line];
   while (line->overflow != 0) {
     line = &overflow.lines[line->overflow - 1];
     const std::uint64_t met = meeting(*line, query_from(visit.entry));
-    if (met != 0) report(*line, met, visit, boxes, pairs);
-    ++counts.lines_read;
+    if (met != 0) report(insertion, *line, met, visit);
+    ++insertion.counts.lines_read;
   }
   if (line->count == kLineRoom) line = &add_line(*line, overflow);
   line->entries[line->count++] = visit.entry;
 }
 
+// First all are put into their lines, without branches; those that meet others there, and those that find their line
+// full, are put off until then. Entries stay where they are meanwhile.
 void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
                        GridCounts& counts) {
-  const std::size_t before = pairs.size();
+  constexpr std::size_t kAtOnce = 512, kAhead = 32;
+  constexpr unsigned kHitsAt = 16;                  // bits, above the visit's number
+  std::array<std::uint32_t, kAtOnce + 1> meetings;  // what does not count is written, too
+  std::array<std::uint16_t, kAtOnce + 1> full;
+  Insertion insertion(boxes, pairs, counts);
   counts.entries += visits.size();
   counts.lines_read += visits.size();
-  per_machine([&]() ORCHARD_INLINE_LAMBDA {
-    constexpr std::size_t kAhead = 32;
-    CellLine* const lines = lines_.data();
-    const Visit* const all = visits.data();
-    const std::size_t count = visits.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      if (k + kAhead < count) prefetch(&lines[all[k + kAhead].line]);
-      CellLine& line = lines[all[k].line];
-      const std::uint64_t met = meeting(line, query_from(all[k].entry));
-      if (met != 0) report(line, met, all[k], boxes, pairs);
-      if (line.count < kLineRoom) {
-        line.entries[line.count++] = all[k].entry;
-      } else {
-        insert_beyond(all[k], boxes, pairs, counts);
+  for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), kAtOnce))) {
+    const std::size_t count = std::min(visits.size(), kAtOnce), size = visits.size();
+    std::size_t met_count = 0, full_count = 0;
+    per_machine([&]() ORCHARD_INLINE_LAMBDA {
+      CellLine* const lines = lines_.data();
+      const Visit* const all = visits.data();
+      std::size_t meets = 0, fulls = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        if (k + kAhead < size) prefetch(&lines[all[k + kAhead].line]);
+        CellLine& line = lines[all[k].line];
+        const std::uint64_t entry = all[k].entry, met = meeting(line, query_from(entry));
+        const bool room = put(line, entry);
+        meetings[meets] = static_cast<std::uint32_t>(k | met << kHitsAt);
+        meets += met != 0;
+        full[fulls] = static_cast<std::uint16_t>(k);
+        fulls += !room;
       }
+      met_count = meets, full_count = fulls;
+    });
+    for (const std::uint32_t meeting : std::span(meetings).first(met_count)) {
+      const Visit& visit = visits[meeting & ((1u << kHitsAt) - 1)];
+      report(insertion, lines_[visit.line], meeting >> kHitsAt, visit);
     }
-  });
-  counts.pairs += pairs.size() - before;
+    if (full_count == 0) continue;
+    per_machine([&]() ORCHARD_INLINE_LAMBDA {
+      for (const std::uint16_t k : std::span(full).first(full_count)) insert_beyond(insertion, visits[k]);
+    });
+  }
+  insertion.hand_over();
 }
 
 // After the last one of a chain.
@@ -328,8 +403,10 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow)
   CellLine *line = &first, *before_last = nullptr;
   std::uint64_t* found = nullptr;
   for (;; line = &overflow.lines[line->overflow - 1]) {
-    for (std::uint32_t i = 0; found == nullptr && i < line->count; ++i) {
-      if (body_of(line->entries[i]) == body) found = &line->entries[i];
+    if (found == nullptr) {  // without branches that depend on where it is
+      const std::uint64_t bits = 1u << line->count | those_of(*line, body);
+      const auto index = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (index < line->count) found = &line->entries[index];
     }
     if (line->overflow == 0) break;
     before_last = line;
@@ -338,15 +415,26 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow)
   if (found == nullptr) return;
   *found = line->entries[--line->count];
   line->entries[line->count] = kGuards;
-  if (line->count > 0 || before_last == nullptr) return;
+  if (before_last == nullptr || line->count > 0) return;
   const std::uint32_t freed = std::exchange(before_last->overflow, 0);
   overflow.lines[freed - 1].overflow = overflow.free;
   overflow.free = freed;
 }
 
+// Mostly in one cell or two, which cannot be predicted.
 void SweptGrid::remove(BodyIndex body, const QuantizedAabb& box) noexcept {
-  for_each_cell(box,
-                [&](const Cell&, std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); });
+  std::uint32_t axes = 0, more = 0, first = 0;
+  for (std::uint32_t d = 0; d < 3; ++d) {
+    const std::uint32_t cell = box.lower[d] >> kQuantumBits, beyond = (box.upper[d] >> kQuantumBits) - cell;
+    axes |= (beyond & 1) << d;
+    more |= beyond >> 1;
+    first += cell * factors_[d];
+  }
+  const auto take = [&](std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); };
+  if (more != 0) return for_each_cell(box, [&](const Cell&, std::uint32_t line) { take(line); });
+  for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes)
+    take((first + corner_lines_[corner]) & mask_);
+  take(first & mask_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -90,8 +90,9 @@ class SweptGrid {
   // `boxes` is by body and has the new ones, too. With the visits to one part, by one thread for each at most.
   void insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
               GridCounts& counts);
-  void prepare_removal(const QuantizedAabb& box) const noexcept {  // starts loading
-    for_each_cell(box, [&](const Cell&, std::uint32_t line) { prefetch(&lines_[line]); });
+  void prepare_removal(const PackedAabb& box) const noexcept {  // starts loading the line of its first cell
+    const auto cell = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
+    prefetch(&lines_[(cell(0) + cell(1) * factors_[1] + cell(2) * factors_[2]) & mask_]);
   }
   void remove(BodyIndex body, const QuantizedAabb& box) noexcept;
 
@@ -127,11 +128,10 @@ class SweptGrid {
     std::uint32_t free = 0;  // 1 + index
   };
   Visit* visit_rest(BodyIndex body, const QuantizedAabb& box, Visit* visit) const noexcept;
-  static void report(const CellLine& line, std::uint64_t hits, const Visit& visit, std::span<const PackedAabb> boxes,
-                     std::vector<BodyPair>& pairs);
+  struct Insertion;
+  static void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, const Visit& visit);
+  void insert_beyond(Insertion& insertion, const Visit& visit);
   std::size_t part_of(std::uint32_t line) const noexcept { return line >> part_shift_; }
-  void insert_beyond(const Visit& visit, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
-                     GridCounts& counts);
   static CellLine& add_line(CellLine& last, Overflow& more);
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
 
@@ -140,6 +140,7 @@ class SweptGrid {
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;
   std::array<std::uint32_t, 3> factors_{};
+  std::array<std::uint32_t, 8> corner_lines_{};  // how much further the lines of a cell's neighbours are
 };
 
 }  // namespace orchard::runtime::detail
