@@ -23,7 +23,7 @@ KineticBroadPhase::KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& op
       budgeted_(state_, pairs_, updates_) {}
 
 void KineticBroadPhase::changed(BodyIndex body) {
-  constexpr std::size_t kAtOnce = 16;
+  constexpr std::size_t kAtOnce = 64;
   if (state_.windows.size() < state_.pool.slots()) state_.make_room(state_.windows.size() + kAtOnce);
   state_.changes.note(body);
 }

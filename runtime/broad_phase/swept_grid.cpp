@@ -163,16 +163,18 @@ constexpr auto kStepsOf = by_corner([](std::uint32_t d) { return 1u << 2 * d; })
 // Where bodies' boxes lie in their first cells.
 struct Coded {
   using Numbers = std::array<std::uint32_t, kBlock>;
-  Numbers from, below;  // in fields, as of a box that takes one cell
-  Numbers beyond;       // the fields of the axes along which the box takes the next cell, too
-  Numbers lines;        // those with the same last bits are one
-  Numbers axes;         // these axes, a bit each, and one above for more than two cells along any
-  std::uint32_t cells;  // that all take together
+  Numbers from, below;                        // in fields, as of a box that takes one cell
+  Numbers beyond;                             // the fields of the axes along which the box takes the next cell, too
+  Numbers lines;                              // those with the same last bits are one
+  Numbers axes;                               // these axes, a bit each, and one above for more than two cells along any
+  std::array<std::uint64_t, kBlock> entries;  // in the first cells
+  std::uint32_t cells;                        // that all take together
 };
 
 // A loop without branches that depend on the data.
-ORCHARD_INLINE void code(Coded& coded, const BoxBlock& block, std::size_t count,
+ORCHARD_INLINE void code(Coded& coded, const BoxBlock& block, std::span<const BodyIndex> bodies,
                          const std::array<std::uint32_t, 3>& factors) noexcept {
+  const std::size_t count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
   std::uint32_t cells = 0;
   for (std::size_t i = 0; i < lanes_for(count); ++i) {
     std::uint32_t from = 0, below = 0, beyond = 0, line = 0, axes = 0, taken = 1;
@@ -192,6 +194,9 @@ ORCHARD_INLINE void code(Coded& coded, const BoxBlock& block, std::size_t count,
     cells += i < count ? taken : 0;
   }
   coded.cells = cells;
+  for (std::size_t i = 0; i < count; ++i) {
+    coded.entries[i] = entry_of(coded.from[i], coded.below[i] & ~coded.beyond[i], bodies[i]);
+  }
 }
 
 }  // namespace
@@ -237,11 +242,10 @@ std::size_t SweptGrid::memory_bytes() const noexcept {
 void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block, Visits& visits) const {
   Coded coded;
   const std::size_t count = std::min(bodies.size(), kBlock);
-  per_machine([&]() ORCHARD_INLINE_LAMBDA { code(coded, block, count, factors_); });
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { code(coded, block, bodies, factors_); });
   Visit* visit = visits.append(coded.cells);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t entry = entry_of(coded.from[i], coded.below[i] & ~coded.beyond[i], bodies[i]);
-    *visit++ = {entry, coded.lines[i] & mask_, 0};
+    *visit++ = {coded.entries[i], coded.lines[i] & mask_, 0};
   }
   const auto add = [&](std::size_t i, std::uint32_t corner) {
     const std::uint32_t fields = kFieldsOf[corner];
@@ -354,20 +358,23 @@ void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb
     const std::size_t count = std::min(visits.size(), kAtOnce), size = visits.size();
     std::size_t met_count = 0, full_count = 0;
     per_machine([&]() ORCHARD_INLINE_LAMBDA {
-      CellLine* const lines = lines_.data();
+      CellLine* const lines = lines_.data();  // by themselves: what is written might be where they are
       const Visit* const all = visits.data();
-      std::size_t meets = 0, fulls = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        if (k + kAhead < size) prefetch(&lines[all[k + kAhead].line]);
+      const std::size_t last = count, prefetched = size;
+      std::uint32_t* meets = meetings.data();
+      std::uint16_t* fulls = full.data();
+      for (std::size_t k = 0; k < last; ++k) {
+        if (k + kAhead < prefetched) prefetch(&lines[all[k + kAhead].line]);
         CellLine& line = lines[all[k].line];
         const std::uint64_t entry = all[k].entry, met = meeting(line, query_from(entry));
         const bool room = put(line, entry);
-        meetings[meets] = static_cast<std::uint32_t>(k | met << kHitsAt);
+        *meets = static_cast<std::uint32_t>(k | met << kHitsAt);
         meets += met != 0;
-        full[fulls] = static_cast<std::uint16_t>(k);
+        *fulls = static_cast<std::uint16_t>(k);
         fulls += !room;
       }
-      met_count = meets, full_count = fulls;
+      met_count = static_cast<std::size_t>(meets - meetings.data());
+      full_count = static_cast<std::size_t>(fulls - full.data());
     });
     for (const std::uint32_t meeting : std::span(meetings).first(met_count)) {
       const Visit& visit = visits[meeting & ((1u << kHitsAt) - 1)];
