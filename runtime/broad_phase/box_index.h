@@ -30,7 +30,7 @@ class BoxIndex {
   // As in BroadPhaseAlgorithm, with the quantized grid of the step.
   Near near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
   bool along(const QuantizedGrid& grid, const Vec3& origin, const Vec3& way, double length,
-             std::vector<BodyIndex>& portion, PortionVisitor& visitor) const;
+             std::vector<BodyIndex>& portion, const VisitPortion& visit) const;
   std::size_t memory_bytes() const noexcept { return bytes_of(places_, boxes_, oversized_) + grid_.memory_bytes(); }
 
  private:
@@ -38,7 +38,7 @@ class BoxIndex {
   struct GridRay;
   void append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const;
   bool walk_slabs(const QuantizedGrid& grid, const GridRay& ray, std::vector<BodyIndex>& portion,
-                  PortionVisitor& visitor) const;
+                  const VisitPortion& visit) const;
   std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
 
   std::vector<Place> places_;      // by body

@@ -107,9 +107,9 @@ Near BoxIndex::near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3
 }
 
 // Slab after slab of cells across the axis along which the ray is fastest: it crosses few cells in each. False if the
-// visitor has had enough.
+// visit has had enough.
 bool BoxIndex::walk_slabs(const QuantizedGrid& grid, const GridRay& ray, std::vector<BodyIndex>& portion,
-                          PortionVisitor& visitor) const {
+                          const VisitPortion& visit) const {
   const std::size_t m = ray.axis;
   const auto slab_at = [&](double t) {
     return static_cast<std::int64_t>(std::floor(std::clamp(ray.at(m, t), 0.0, double{kLastQuantum}) / kQuanta));
@@ -131,14 +131,14 @@ bool BoxIndex::walk_slabs(const QuantizedGrid& grid, const GridRay& ray, std::ve
     append_in_cells(box, portion);
     if (slab == last) break;
     if (portion.size() < kPortion) continue;
-    if (!visitor.visit(portion, time_at(far - spare) / grid.quanta(1))) return false;
+    if (!visit(portion, time_at(far - spare) / grid.quanta(1))) return false;
     portion.clear();
   }
   return true;
 }
 
 bool BoxIndex::along(const QuantizedGrid& grid, const Vec3& origin, const Vec3& way, double length,
-                     std::vector<BodyIndex>& portion, PortionVisitor& visitor) const {
+                     std::vector<BodyIndex>& portion, const VisitPortion& visit) const {
   GridRay ray{{}, way, 0, grid.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {
     ray.origin[d] = grid.quantum(origin[d], d);
@@ -153,14 +153,14 @@ bool BoxIndex::along(const QuantizedGrid& grid, const Vec3& origin, const Vec3& 
   if (any && ray.begin <= ray.end) {
     const double slabs = std::fabs(ray.at(ray.axis, ray.end) - ray.at(ray.axis, ray.begin)) / kQuanta;
     if (kCellsPerSlab * slabs <= static_cast<double>(fewest_cells())) {
-      if (!walk_slabs(grid, ray, portion, visitor)) return true;
+      if (!walk_slabs(grid, ray, portion, visit)) return true;
     } else {
       for (BodyIndex body = 0; body < places_.size(); ++body) {
         if (places_[body] == Place::inside && ray.meets(boxes_[body].whole())) portion.push_back(body);
       }
     }
   }
-  visitor.visit(portion, length);
+  visit(portion, length);
   return true;
 }
 

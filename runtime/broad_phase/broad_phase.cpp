@@ -202,14 +202,18 @@ BodyFilter BroadPhase::filter_of(BodyId body) const noexcept {
   return contains(body) ? state_->pool.filters.of(body.index) : BodyFilter{};
 }
 
-void BroadPhase::set_pair_filter(PairFilter filter) {
-  if (!may_change()) return;
-  detail::BodyPool& pool = state_->pool;
+void BroadPhase::change_all() {
+  const detail::BodyPool& pool = state_->pool;
   for (BodyIndex body = 0; body < pool.slots(); ++body) {
     if (pool.alive(body)) state_->method->changed(body);
   }
+}
+
+void BroadPhase::set_pair_filter(PairFilter filter) {
+  if (!may_change()) return;
+  change_all();
   wake_for_change();
-  pool.filters.set_function(std::move(filter));
+  state_->pool.filters.set_function(std::move(filter));
 }
 
 // What was due at the steps in between is void once each body has been asked for again.
@@ -217,12 +221,9 @@ std::uint64_t BroadPhase::skip_to(double t) {
   if (!may_change() || !(std::fabs(t) <= max_time_)) return 0;
   const Step from = step_reported() + 1, to = state_->pool.clock.step_at(t);
   if (to <= from || state_->next >= to) return 0;
-  detail::BodyPool& pool = state_->pool;
-  for (BodyIndex body = 0; body < pool.slots(); ++body) {
-    if (pool.alive(body)) state_->method->changed(body);
-  }
+  change_all();
   state_->method->skip();
-  state_->next = pool.size() > 0 ? to : kNeverStep;
+  state_->next = state_->pool.size() > 0 ? to : kNeverStep;
   state_->woken = true;  // what changes from now on takes part at that step, too
   note_next_step();
   return static_cast<std::uint64_t>(to - from);

@@ -16,14 +16,8 @@ enum class Near : std::uint8_t {
   all      // there are no others
 };
 
-class PortionVisitor {
- public:
-  // All bodies that are met up to `until` have been visited by now. False: it is enough.
-  virtual bool visit(std::span<const BodyIndex> bodies, double until) = 0;
-
- protected:
-  ~PortionVisitor() = default;
-};
+// All bodies that are met up to `until` have been visited by now. False: it is enough.
+using VisitPortion = std::function<bool(std::span<const BodyIndex> bodies, double until)>;
 
 // A way to find what happens next. Steps are processed in ascending order; those in between had nothing to do.
 // Where step() throws, the method is not asked again. Where the others do, they have changed nothing.
@@ -54,8 +48,8 @@ class BroadPhaseAlgorithm {
   // Visits all bodies whose spheres origin + t way may meet, |way| = 1 and 0 <= t <= length. `portion` is for its use.
   // False: it may be any body, and no body has been visited.
   virtual bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
-                     PortionVisitor& visitor) const {
-    (void)now, (void)origin, (void)way, (void)length, (void)portion, (void)visitor;
+                     const VisitPortion& visit) const {
+    (void)now, (void)origin, (void)way, (void)length, (void)portion, (void)visit;
     return false;
   }
   virtual double cell_size() const noexcept { return 0; }  // a length to begin a search with; 0: none

@@ -62,27 +62,6 @@ struct BodyQueries::Line {
   double along(double at) const noexcept { return unit > 0 ? at / unit : 0; }
 };
 
-// Of all bodies on the line, or of those that may be the first one.
-struct BodyQueries::Hits final : detail::PortionVisitor {
-  Hits(BodyQueries& with, const Line& on, const QueryFilter& which, bool only_first)
-      : queries(with), line(on), filter(which), first(only_first) {}
-  BodyQueries& queries;
-  const Line& line;
-  const QueryFilter& filter;
-  bool first;
-  double best = std::numeric_limits<double>::infinity();
-
-  bool visit(std::span<const BodyIndex> bodies, double until) override {
-    queries.use_motions(bodies, filter, [this](BodyIndex body, const Motion& motion) {
-      const double at = line.enters(motion.position, motion.radius);
-      if (at > best || at == std::numeric_limits<double>::infinity()) return;
-      if (first) best = at;
-      queries.hits_.push_back({body, first ? at : line.along(at)});
-    });
-    return !(best < until);
-  }
-};
-
 // That queries are about.
 std::int64_t BodyQueries::step() const noexcept { return std::max<detail::Step>(0, world_->step_reported()); }
 
@@ -139,11 +118,21 @@ std::span<const BodyIndex> BodyQueries::all_bodies() {
   return candidates_;
 }
 
+// Of all bodies on the line, or of those that may be the first one.
 std::span<const BodyHit> BodyQueries::along(const Line& line, const QueryFilter& filter, bool first) {
-  Hits hits(*this, line, filter, first);
+  double best = std::numeric_limits<double>::infinity();
+  const auto visit = [&](std::span<const BodyIndex> bodies, double until) {
+    use_motions(bodies, filter, [&](BodyIndex body, const Motion& motion) {
+      const double at = line.enters(motion.position, motion.radius);
+      if (at > best || at == std::numeric_limits<double>::infinity()) return;
+      if (first) best = at;
+      hits_.push_back({body, first ? at : line.along(at)});
+    });
+    return !(best < until);
+  };
   const detail::BroadPhaseAlgorithm& method = *world_->state_->method;
-  if (!method.along(step(), line.origin, line.way, line.length, candidates_, hits))
-    hits.visit(all_bodies(), line.length);
+  if (!method.along(step(), line.origin, line.way, line.length, candidates_, std::ref(visit)))
+    visit(all_bodies(), line.length);
   std::sort(hits_.begin(), hits_.end(), [](const BodyHit& a, const BodyHit& b) {
     return a.along != b.along ? a.along < b.along : a.body < b.body;
   });

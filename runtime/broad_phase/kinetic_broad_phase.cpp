@@ -346,10 +346,10 @@ Near KineticBroadPhase::near_box(Step now, const Vec3& lower, const Vec3& upper,
 }
 
 bool KineticBroadPhase::along(Step now, const Vec3& origin, const Vec3& way, double length,
-                              std::vector<BodyIndex>& portion, PortionVisitor& visitor) const {
+                              std::vector<BodyIndex>& portion, const VisitPortion& visit) const {
   portion.clear();
   append_loose(portion);
-  return !sorting_ && state_.boxes.along(state_.grid.at(now), origin, way, length, portion, visitor);
+  return !sorting_ && state_.boxes.along(state_.grid.at(now), origin, way, length, portion, visit);
 }
 
 std::size_t KineticBroadPhase::memory_bytes() const noexcept {

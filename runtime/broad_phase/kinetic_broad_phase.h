@@ -31,7 +31,7 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   std::size_t predict_load(Step now, std::span<StepsAhead> steps) const noexcept override;
   Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
-             PortionVisitor& visitor) const override;
+             const VisitPortion& visit) const override;
   double cell_size() const noexcept override { return planner_.plan().cell_size; }
 
  private:

@@ -34,7 +34,8 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
   const bool tells = steps >= kStepsToTell || (share > kNearlyAll && n > kFewBodies);
   const double cancelled = tells ? share : cancelled_;
-  if (!too_crowded && !other_number && !outdated(off, cancelled)) {
+  const bool few = n < kSmallSample;  // of whom asking more than once would cost more than any plan saves
+  if (!too_crowded && !other_number && (few || !outdated(off, cancelled))) {
     if (steps > kStepsCounted) {  // what was long ago counts less and less
       cancellations_ /= 2;
       planned_at_ = now - (now - planned_at_) / 2;

@@ -20,7 +20,7 @@ struct WindowPlan {
   Step window = 1;
   std::size_t lines = 1;
   double pairs_per_body = 0;  // predicted for one update of all windows
-  bool slow = false;          // bodies move by less than their radius within a window
+  bool slow = false;          // bodies move by less than half of their radius within a window
   bool roomy = false;         // cells are larger than boxes: smaller ones would have fewer bodies in each
 };
 

@@ -106,9 +106,9 @@ struct BroadPhaseOptions {
   // then called by several jobs at once, each for its own bodies, and must not throw. Steps within a budget and
   // `validate` do not use the executor.
   Executor executor{};
-  // The smallest number of updated bodies for which the executor is used; a quarter suffices if they have many near
-  // pairs. Reports do not depend on it. Lower values pay only from some thousand bodies on, because waking a thread
-  // takes time; and if a single thread runs all jobs and everything fits into its cache, jobs cost a tenth more.
+  // The smallest number of updated bodies for which the executor is used. Reports do not depend on it. Lower values pay
+  // only from some thousand bodies on, because waking a thread takes time; and if a single thread runs all jobs and
+  // everything fits into its cache, jobs cost a tenth more.
   std::size_t min_bodies_for_jobs = 16384;
 };
 
@@ -270,6 +270,7 @@ class BroadPhase {
   std::int64_t step_reported() const noexcept;
   void validate_up_to(std::int64_t step);
   void wake_for_change();
+  void change_all();
   void note_next_step();
 
   std::unique_ptr<State> state_;

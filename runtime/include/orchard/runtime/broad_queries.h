@@ -79,7 +79,6 @@ class BodyQueries {
 
  private:
   struct Line;  // A ray or a segment with a direction of length 1.
-  struct Hits;
   std::int64_t step() const noexcept;
   bool begin(bool valid);
   std::span<const BodyIndex> new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter);

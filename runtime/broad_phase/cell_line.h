@@ -1,0 +1,119 @@
+#pragma once
+#include <bit>
+#include <cstring>
+
+#include "broad_phase/swept_grid.h"
+#include "simd/vector_support.h"
+
+// What a cell's line has of a body, and how all of a line are compared with a box at once.
+namespace orchard::runtime::detail {
+
+// A box clipped to a cell, in three fields each: how far it begins from the cell's lower end, and ends from its upper
+// end. As a query these change places: two boxes meet if of each axis one's way to its begin and the other's from its
+// end make less than a cell together.
+inline constexpr std::uint32_t kEntryBits = 5, kFieldBits = kEntryBits + 1;
+inline constexpr std::uint32_t kCoarser = kQuantumBits - kEntryBits;  // bits of a quantum that are left out of entries
+inline constexpr std::uint32_t kLastInEntry = (1u << kEntryBits) - 1;
+static_assert(kIdShift == 6 * kFieldBits);
+static_assert(kMaxBodies < (1u << (64 - kIdShift)));
+
+ORCHARD_INLINE std::uint64_t entry_of(std::uint64_t from, std::uint64_t below, BodyIndex body) noexcept {
+  return std::uint64_t{body} << kIdShift | below << 3 * kFieldBits | from;
+}
+ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
+  constexpr std::uint64_t field = (std::uint64_t{1} << 3 * kFieldBits) - 1;
+  return (entry & field) << 3 * kFieldBits | (entry >> 3 * kFieldBits & field);
+}
+constexpr BodyIndex body_of(std::uint64_t entry) noexcept { return static_cast<BodyIndex>(entry >> kIdShift); }
+
+// For which of a line's entries of(entry) is 0, one bit for each. It gives numbers below 2^kIdShift.
+template <typename Of>
+ORCHARD_INLINE std::uint64_t zeros(const CellLine& line, const Of& of) noexcept {
+  std::uint64_t bits = 0;
+#ifdef ORCHARD_VECTORS
+  using Words __attribute__((vector_size(32))) = std::uint64_t;
+  const auto half = [&](std::size_t at, const Words& as) ORCHARD_INLINE_LAMBDA {
+    Words entries;
+    std::memcpy(&entries, reinterpret_cast<const char*>(&line) + at, sizeof entries);
+    return (of(entries) - 1) & (as << kIdShift);  // of 0 the high bits are set
+  };
+  const Words all = half(0, Words{1, 2, 4, 8}) | half(32, Words{16, 32, 64, 0});
+  bits = ((all[0] | all[1]) | (all[2] | all[3])) >> kIdShift;
+#else
+  for (std::uint32_t i = 0; i < kLineRoom; ++i) bits |= std::uint64_t{of(line.entries[i]) == 0} << i;
+#endif
+  return bits;
+}
+
+// Which of a line's entries meet the query: no field of their sum reaches its guard bit, and places without an entry
+// are nothing but guard bits.
+ORCHARD_INLINE std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+  return zeros(line, [=](const auto& entries) ORCHARD_INLINE_LAMBDA { return (entries + query) & kGuards; });
+}
+// Which are of the body; of places without an entry that means nothing.
+ORCHARD_INLINE std::uint64_t those_of(const CellLine& line, std::uint64_t body) noexcept {
+  return zeros(line, [=](const auto& entries) ORCHARD_INLINE_LAMBDA { return (entries >> kIdShift) ^ body; });
+}
+
+// False, and it stays as it is, if it is full. Without a branch: what has no room is written where the counters are,
+// which are written again.
+ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
+  constexpr int kCountAt = std::endian::native == std::endian::little ? 0 : 32;  // among the counters' bits
+  static_assert(offsetof(CellLine, count) == sizeof line.entries &&
+                offsetof(CellLine, overflow) == offsetof(CellLine, count) + 4);
+  auto* const bytes = reinterpret_cast<unsigned char*>(&line);
+  std::uint64_t counters;
+  std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);
+  const auto count = static_cast<std::uint32_t>(counters >> kCountAt);
+  const std::uint64_t room = count < kLineRoom ? 1 : 0;
+  std::memcpy(bytes + std::size_t{count} * sizeof entry, &entry, sizeof entry);
+  counters += room << kCountAt;
+  std::memcpy(bytes + sizeof line.entries, &counters, sizeof counters);
+  return room != 0;
+}
+
+// Quanta along the three axes. They are below 2^31, so that two of them are compared at once.
+struct Quanta {
+  std::uint64_t xy, z;
+
+  static constexpr std::uint64_t kTop = 0x8000000080000000u;
+  // The top bits are set where it is at most the other one.
+  ORCHARD_INLINE Quanta at_most(const Quanta& other) const noexcept {
+    return {(other.xy | kTop) - xy, (other.z | kTop) - z};
+  }
+  ORCHARD_INLINE static Quanta lower(const PackedAabb& box) noexcept {
+    return {box.lower[0] | std::uint64_t{box.lower[1]} << 32, box.lower[2]};
+  }
+  ORCHARD_INLINE static Quanta upper(const PackedAabb& box) noexcept {
+    const Quanta from = lower(box);
+    return {from.xy + ((box.lengths & 0xff) | std::uint64_t{box.lengths & 0xff00} << 24), from.z + (box.lengths >> 16)};
+  }
+};
+
+// A body's box, and one of the cells that it takes: so many steps from its first one along each axis.
+class BoxInCell {
+ public:
+  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint64_t steps) noexcept
+      : lower_(Quanta::lower(box)), upper_(Quanta::upper(box)) {
+    constexpr std::uint64_t within = kQuanta - 1;  // a cell
+    first_ = {
+        (lower_.xy & ~(within | within << 32)) + ((steps & 3) << kQuantumBits | (steps & 12) << (30 + kQuantumBits)),
+        (lower_.z & ~within) + (steps >> 4 << kQuantumBits)};
+    last_ = {first_.xy | within | within << 32, first_.z | within};
+    begins_ = first_.at_most(lower_);
+  }
+  // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
+  ORCHARD_INLINE bool meets_here(const PackedAabb& other) const noexcept {
+    const Quanta from = Quanta::lower(other);
+    const Quanta after = first_.at_most(from), before = from.at_most(last_), below = from.at_most(upper_),
+                 above = lower_.at_most(Quanta::upper(other));
+    return (~((after.xy | begins_.xy) & before.xy & below.xy & above.xy) & Quanta::kTop) == 0 &&
+           (~((after.z | begins_.z) & before.z & below.z & above.z) & Quanta::kTop) == 0;
+  }
+
+ private:
+  Quanta lower_, upper_, first_, last_;
+  Quanta begins_;  // along which axes it begins in the cell
+};
+
+}  // namespace orchard::runtime::detail
