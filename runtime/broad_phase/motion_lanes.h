@@ -97,12 +97,12 @@ struct FourDoubles {
 // numbers takes longer than four choices.
 template <typename Work>
 void with_best_lanes(const Work& work) {
+#ifdef ORCHARD_VECTORS
 #ifdef ORCHARD_MACHINES
   constexpr Machine kLeast = Machine::avx2;
 #else
   constexpr Machine kLeast = Machine::base;
 #endif
-#ifdef ORCHARD_VECTORS
   if (machine() >= kLeast) {
     return per_machine([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<FourDoubles>(); });
   }
