@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "collision/coherent_pair.h"
-#include "collision/front_walk.h"
 #include "collision/pair_query.h"
 #include "collision/pose_change.h"
 #include "math/rigid_pair.h"
@@ -73,7 +72,6 @@ class Coherence {
   // The roots come first, unless they have not decided of late.
   Verdict search(const Budget& budget) noexcept {
     if (memory_.witness_count > 0) return search_after_yes(budget);
-    if (pair_.front_ != nullptr) return search_front(budget);
     const bool tried = memory_.close && memory_.wait > 0;
     if (tried && place_narrow()) {
       --memory_.wait;
@@ -134,17 +132,14 @@ class Coherence {
     answer_exactly(narrow_, a_, b_, budget);
   }
 
-  // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
+  // Near the triangles that met last; else everywhere.
   Verdict search_after_yes(const Budget& budget) noexcept {
     if (!place_narrow()) {
       collide(budget);
       return remembered();
     }
     Budget rest = budget;
-    if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
-      if (pair_.front_ != nullptr) pair_.front_->clear();
-      direct_.search(rest);
-    }
+    if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) direct_.search(rest);
     memory_.close = true;
     return remembered();
   }
@@ -160,39 +155,6 @@ class Coherence {
     if (!place_for_triangles()) return false;
     narrow_.trees().place();
     return true;
-  }
-
-  // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
-  // and then, since they may decide again.
-  Verdict search_front(const Budget& budget) noexcept {
-    const bool tried = memory_.close && memory_.wait > 0;
-    if (tried ? !place_narrow() : !has_last_level()) {
-      collide(budget);
-      return remembered();
-    }
-    if (!tried && !ask_roots()) return remembered();
-    FrontWalk walk(*pair_.front_, direct_);
-    if (!walk.resume()) {
-      if (tried && !ask_roots()) return remembered();
-      walk.begin();
-    }
-    --memory_.wait;
-    walk.run(budget);
-    return remembered();
-  }
-
-  bool has_last_level() noexcept {
-    narrow_.bind(pair_.a(), pair_.b());
-    return narrow_.has_last_level();
-  }
-
-  // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
-  bool ask_roots() noexcept {
-    narrow_.start(a_, b_);
-    memory_.close = !narrow_.finished();
-    memory_.wait = kSearchesBeforeRoots;
-    if (memory_.close) narrow_.trees().place();
-    return memory_.close;
   }
 
   // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.

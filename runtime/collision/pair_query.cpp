@@ -269,10 +269,4 @@ bool DirectSearch::say_yes_if(bool meet) noexcept {
   return true;
 }
 
-void DirectSearch::say_no(double lower) noexcept {
-  query_.exact_started_ = true;
-  query_.finish(Answer::no);
-  query_.known_.lower_bound = lower;
-}
-
 }  // namespace orchard::runtime

@@ -68,8 +68,8 @@ class PairQuery {
   bool out_of_room_ = false;
 };
 
-// Searches the last level of a query in another order than refine_exactly(): triangles that met before come first, or a
-// front decides where to begin. What it finds is the query's answer. Precondition: the query has a last level.
+// Searches the last level of a query in another order than refine_exactly(): triangles that met before come first. What
+// it finds is the query's answer. Precondition: the query has a last level.
 class DirectSearch {
  public:
   explicit DirectSearch(PairQuery& query) noexcept : query_(query) {}
@@ -88,13 +88,9 @@ class DirectSearch {
   }
   bool search_near(const NodePair& leaves, const Budget& budget) noexcept;
   void search(const Budget& budget) noexcept { query_.refine_last(budget); }  // all of the last level
-  // Makes the answer "no". `lower`: a bound on the distance of the surfaces, in world units.
-  void say_no(double lower) noexcept;
   void add_work(std::uint64_t work) noexcept { query_.known_.work += work; }
 
-  const PlacedTrees& trees() const noexcept { return query_.trees_; }
   const MeetingTriangles& found() const noexcept { return query_.triangles_.found(); }
-  NodePair* stack() const noexcept { return query_.triangles_.stack(); }
 
  private:
   bool say_yes_if(bool meet) noexcept;

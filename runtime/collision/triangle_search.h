@@ -29,7 +29,6 @@ class TriangleSearch {
 
   bool reserve(const PlacedTrees& trees) noexcept;  // false if there is no memory
   bool has_room() const noexcept { return stack_.has_room(); }
-  NodePair* stack() const noexcept { return stack_.data(); }
   void reset_tests() noexcept { tests_ = {}; }
   const Tests& tests() const noexcept { return tests_; }  // since then
   void forget_found() noexcept { found_.first = found_.second = kNoTriangle; }

@@ -37,32 +37,9 @@ struct Boxes {
             E::at(b.length, lane) * unit,
             E::at(b.radius, lane) * unit};
   }
-  // Of the second tree, to the first one's frame.
-  ORCHARD_INLINE Boxes moved(const Placement& p) const noexcept {
-    const Vectors turned_n = E::turn(p.turn, n), turned_m = E::turn(p.turn, m);
-    const Floats unit = E::all(p.scale);
-    return {E::move(p, center), turned_n,     turned_m,      E::cross(turned_n, turned_m),
-            height * unit,      width * unit, length * unit, radius * unit};
-  }
 };
 
-// The best of the axes found so far: `u`, of length 1 to within 1e-6, from the one to the other.
-template <typename Kind>
-struct BestAxis {
-  using E = Eight<Kind>;
-  typename E::Floats gap;
-  typename E::Vectors u;
-
-  ORCHARD_INLINE void take(const typename E::Floats& other, const typename E::Vectors& axis,
-                           const typename E::Floats& over) noexcept {
-    const auto better = gap < other, behind = over < E::all(0.0f);
-    const auto put = [&](typename E::Floats& of, const typename E::Floats& by)
-                         ORCHARD_INLINE_LAMBDA { of = Kind::choose(better, Kind::choose(behind, -by, by), of); };
-    gap = Kind::choose(better, other, gap);
-    put(u.x, axis.x), put(u.y, axis.y), put(u.z, axis.z);
-  }
-};
-// The gap alone.
+// The gap along the best of the axes tried so far.
 template <typename Kind>
 struct BestGap {
   using E = Eight<Kind>;

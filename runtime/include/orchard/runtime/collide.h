@@ -8,7 +8,6 @@
 #include "orchard/runtime/execution.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
-#include "orchard/runtime/pair_front.h"
 #include "orchard/runtime/shape_query.h"
 
 // Answers whole questions about pairs of bodies in one call. The question, threads, determinism, memory and rounding
@@ -46,18 +45,8 @@ class TreePair {
 
   const PreparedTree& a() const noexcept { return *a_; }
   const PreparedTree& b() const noexcept { return *b_; }
-  // Gives the pair a front: each call of collide_coherently() then starts where the last one ended, which `front`
-  // stores. Use it for pairs that stay close; null removes the front. The front must outlive the pair. Copies of the
-  // pair share it, and only one of them may be queried at a time.
-  void use(PairFront* front) noexcept {
-    front_ = front;
-    if (front != nullptr) front->clear();
-  }
   // Discards the results of earlier answers.
-  void forget() noexcept {
-    memory_ = {};
-    if (front_ != nullptr) front_->clear();
-  }
+  void forget() noexcept { memory_ = {}; }
 
  private:
   friend class Coherence;
@@ -78,7 +67,6 @@ class TreePair {
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;
-  PairFront* front_ = nullptr;
   Memory memory_;
 };
 static_assert(sizeof(TreePair) <= 256);
@@ -111,8 +99,7 @@ Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const
 
 // Answers a pair that is queried repeatedly while it moves a little each time, at a fraction of the cost. The triangles
 // that met last are tested first, and a "no" holds as long as the pair, measured at its farthest point, has moved by
-// less than the clearance that was certified with it. With a front (TreePair::use()), the remaining search begins where
-// the last one ended.
+// less than the clearance that was certified with it.
 // "Yes" and "no" are those of collide() without a budget. If several triangles meet, which ones are named depends on
 // earlier calls, and so do bounds and work. If no search is necessary, the workspace does not change.
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
