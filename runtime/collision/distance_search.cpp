@@ -148,7 +148,7 @@ void DistanceSearch::expand(const Apart& pair, const detail::Opened& opened) noe
   if (limit_.length < double{kCoordinateLimit}) return expand_within(pair, opened);
   const detail::Placement& placement = trees_.placement();
   detail::BoxGaps gaps;
-  detail::compare_children<detail::box_gaps>(first(), second(), placement, pair, opened, placement.box_margin, gaps);
+  detail::compare_children(first(), second(), placement, pair, opened, placement.box_margin, gaps);
   const std::size_t begin = stack_size_;
   for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -169,7 +169,7 @@ void DistanceSearch::expand_within(const Apart& pair, const detail::Opened& open
   const detail::Placement& placement = trees_.placement();
   const float margin = placement.box_margin + limit_.rounded_up;
   detail::BoxGaps gaps;
-  detail::compare_children<detail::meeting_boxes>(first(), second(), placement, pair, opened, margin, gaps);
+  detail::compare_children(first(), second(), placement, pair, opened, margin, gaps);
   if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_.length);
   const auto child = [&](std::uint32_t lane) ORCHARD_INLINE_LAMBDA -> Apart {
     const float sum = gaps.gap[lane] + limit_.rounded_up, gap = sum - std::fabs(sum) * kSumRounding;
@@ -224,19 +224,11 @@ void DistanceSearch::find_within(const Apart& pair, const TriangleBlock& lanes, 
   const detail::NodeBox lane_box = detail::node_box_at(first(), pair.a);
   const detail::NodeBox row_box = moved_box(trees_, pair.b);
   min_lower_ = std::min(min_lower_, limit_.length);
-  struct Leaves {
-    DistanceSearch& self;
-    const TriangleBlock &lanes, &rows;
-  } context = {*this, lanes, rows};
-  const auto near_enough = [](void* of, std::uint32_t row, std::uint32_t left) {
-    const auto& [self, lane_block, row_block] = *static_cast<Leaves*>(of);
-    for (; left != 0; left &= left - 1) {
-      self.compare_triangles(lane_block, static_cast<std::uint32_t>(std::countr_zero(left)), row_block, row, true);
-      if (self.nearest_.distance <= self.limit_.enough) return true;
-    }
-    return false;
+  const auto near_enough = [&](std::uint32_t lane, std::uint32_t row) {
+    compare_triangles(lanes, lane, rows, row, true);
+    return nearest_.distance <= limit_.enough;
   };
-  if (detail::visit_candidates({lanes, rows, lane_box, row_box}, near, near_enough, &context)) {
+  if (detail::each_candidate({lanes, rows, lane_box, row_box}, near, near_enough)) {
     min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
   }
 }

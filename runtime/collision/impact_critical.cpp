@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "collision/impact_search.h"
+#include "collision/kernels/farthest_first.h"
 #include "collision/triangle_distance.h"
 
 // Which triangles of two moving bodies can meet first.
@@ -16,10 +17,9 @@ constexpr double kEnough = 0.5;  // of the earliest time found: what may meet la
 // When triangles can meet first, within what is left of the time. False if the budget ends before all was looked at:
 // critical.time then holds for what was left, too.
 bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexcept {
-  Scratch& scratch = *workspace_.scratch();
-  Scratch::TimedPair* const stack = scratch.timed.data();
+  Scratch::TimedPair* const stack = workspace_.scratch()->timed.data();
   std::size_t size = 0;
-  stack[size++] = {0, 0, 0, moved(obb_node_at(second().obb_nodes[0], 0), trees_.placement())};
+  stack[size++] = {{0, 0}, 0};
   while (size > 0) {
     if (tracker.exhausted()) {
       for (std::size_t i = 0; i < size; ++i) {
@@ -29,8 +29,7 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
     }
     const Scratch::TimedPair top = stack[--size];
     if (critical.leaves(double{top.time})) continue;
-    const std::uint32_t a = slab_child(first(), top.a), b = slab_child(second(), top.b);
-    if (a & b & kLeafBit) {
+    if (slab_child(first(), top.a) & slab_child(second(), top.b) & kLeafBit) {
       compare_leaves(top, critical);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
     } else {
@@ -43,42 +42,37 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
 
 // In place of a pair, those of its children that may meet in time, the earliest last.
 void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept {
-  Scratch::TimedPair* const stack = workspace_.scratch()->timed.data();
   const Placement& placement = trees_.placement();
-  const std::uint32_t a = slab_child(first(), top.a), b = slab_child(second(), top.b);
-  const ObbNodeBlock& own = first().obb_nodes[top.a / kBlockWidth];
-  const std::uint32_t own_lane = top.a % kBlockWidth;
-  const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[own_lane] < top.second.radius);
-  const std::uint32_t block = open_second ? b : a;
-  const auto margin = static_cast<float>((double{placement.margin} + limits_.margin) * (1 + 1e-6));
-  ObbNodeTimes times;
-  if (open_second) {
-    obb_node_times(obb_node_at(own, own_lane), second().obb_nodes[block], &placement, motion_.closing, margin, times);
-  } else {
-    obb_node_times(top.second, first().obb_nodes[block], nullptr, motion_.closing, margin, times);
-  }
-  const std::size_t begin = size;
+  const Opened opened = larger_node(first(), second(), top, placement.scale);
+  const auto margin = static_cast<float>((double{placement.box_margin} + limits_.margin) * (1 + 1e-6));
+  BoxTimes times;
+  with_children(first(), second(), placement, top, opened,
+                [&](const NodeBox& single, const ObbNodeBlock& lanes, float scale) {
+                  box_times(single, lanes, scale, opened.second ? motion_.of_second : motion_.of_first, margin, times);
+                });
+  std::uint32_t lanes = 0;
   for (std::uint32_t left = times.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const float time = top.time > 0 ? std::max(times.time[lane], top.time) : times.time[lane];
-    if (critical.leaves(double{time})) continue;
-    std::size_t at = size++;
-    for (; at > begin && stack[at - 1].time < time; --at) stack[at] = stack[at - 1];
-    const std::uint32_t node = block * kBlockWidth + lane;
-    stack[at] = open_second ? Scratch::TimedPair{time, top.a, node, times.slab(lane)}
-                            : Scratch::TimedPair{time, node, top.b, top.second};
+    times.time[lane] = top.time > 0 ? std::max(times.time[lane], top.time) : times.time[lane];
+    lanes |= std::uint32_t{!critical.leaves(double{times.time[lane]})} << lane;
   }
+  size = push_farthest_first(
+      workspace_.scratch()->timed.data(), size, lanes,
+      [&](std::uint32_t lane) {
+        return Scratch::TimedPair{opened.pair(top, lane), times.time[lane]};
+      },
+      [](const Scratch::TimedPair& pair, std::uint32_t) { return pair.time; });
 }
 
 void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept {
   const TriangleBlock& lanes = first().triangle_blocks[slab_child(first(), top.a) & ~kLeafBit];
   const TriangleBlock& rows = second().triangle_blocks[slab_child(second(), top.b) & ~kLeafBit];
-  const ObbNode p = obb_node_at(first().obb_nodes[top.a / kBlockWidth], top.a % kBlockWidth);
-  const auto reach = [](const ObbNode& slab, const Vec3& center) {
-    const Vec3 from = minus({slab.x, slab.y, slab.z}, center);
-    return (length_of(from) + double{slab.radius}) * (1 + 1e-5);
+  const auto reach = [](const NodeBox& box, const Vec3& center) {
+    const Vec3 from = minus({box.center[0], box.center[1], box.center[2]}, center);
+    return (length_of(from) + double{box.radius}) * (1 + 1e-5);
   };
-  const double first_reach = reach(p, motion_.first.center), second_reach = reach(top.second, motion_.second.center);
+  const double first_reach = reach(node_box_at(first(), top.a), motion_.first.center),
+               second_reach = reach(moved_box(trees_, top.b), motion_.second.center);
   const double fastest = length_of(motion_.velocity) + motion_.speed +
                          (motion_.first.spin + motion_.first.turning) * first_reach +
                          (motion_.second.spin + motion_.second.turning) * second_reach;

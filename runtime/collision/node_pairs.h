@@ -70,23 +70,29 @@ ORCHARD_INLINE Opened larger_node(const TreeView& first, const TreeView& second,
   return larger_node(first, second, pair, slab_child(first, pair.a), slab_child(second, pair.b), scale);
 }
 
-// The children against the other node of the pair, in the children's frame, by meeting_boxes() or box_gaps().
-template <auto compare>
+// Calls test(single, lanes, scale) for the children against the other node of the pair, in the children's frame, as
+// box_gaps() has it.
+template <typename Test>
+ORCHARD_INLINE void with_children(const TreeView& first, const TreeView& second, const Placement& placement,
+                                  const NodePair& pair, const Opened& opened, Test&& test) noexcept {
+  if (opened.second) {
+    test(moved_back(node_box_at(first, pair.a), placement), second.obb_nodes[opened.block], placement.scale);
+  } else {
+    test(moved(node_box_at(second, pair.b), placement), first.obb_nodes[opened.block], 1.0f);
+  }
+}
 ORCHARD_INLINE void compare_children(const TreeView& first, const TreeView& second, const Placement& placement,
                                      const NodePair& pair, const Opened& opened, float margin, BoxGaps& gaps) noexcept {
-  if (opened.second) {
-    compare(moved_back(node_box_at(first, pair.a), placement), second.obb_nodes[opened.block], placement.scale, margin,
-            gaps);
-  } else {
-    compare(moved(node_box_at(second, pair.b), placement), first.obb_nodes[opened.block], 1, margin, gaps);
-  }
+  with_children(first, second, placement, pair, opened,
+                [&](const NodeBox& single, const ObbNodeBlock& lanes, float scale)
+                    ORCHARD_INLINE_LAMBDA { box_gaps(single, lanes, scale, margin, gaps); });
 }
 
 // Those that may meet it: where floats are too coarse, boxes that they do not separate are tested in double.
 ORCHARD_INLINE void meeting_children(const TreeView& first, const TreeView& second, const Placement& placement,
                                      const Pose& relative, const NodePair& pair, const Opened& opened,
                                      BoxGaps& gaps) noexcept {
-  compare_children<meeting_boxes>(first, second, placement, pair, opened, placement.box_margin, gaps);
+  compare_children(first, second, placement, pair, opened, placement.box_margin, gaps);
   if (!placement.coarse) return;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));

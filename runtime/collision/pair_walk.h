@@ -66,11 +66,11 @@ void walk_candidates(const PlacedPair& pair, WalkStack& room, Visit&& visit) noe
       const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
       const NodeBox lane_box = node_box_at(first, top.a), row_box = moved(node_box_at(second, top.b), pair.placement);
       const LeafPair leaves = {lanes, rows, lane_box, row_box};
-      for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
-        const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+      const auto take = [&](std::uint32_t lane, std::uint32_t row) {
         room.spend(1);
-        if (visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth)) return;
-      }
+        return visit(lanes, lane, rows, row);
+      };
+      if (each_candidate(leaves, pair.placement, take)) return;
       continue;
     }
     const Opened opened = larger_node(first, second, top, a, b, pair.placement.scale);

@@ -21,21 +21,19 @@ namespace {
 
 constexpr std::size_t kBlockPairs = std::size_t{kBlockWidth} * kBlockWidth;
 constexpr std::uint32_t kMaxProbedLevels = 64;  // a call each
-constexpr std::uint32_t kNoExcess = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) - 1;
 
 // sqrt(s^2 + x) - s falls with s and grows with x: with the largest reach and the least excess over all the pairs that
 // missed, it is at most any of their gaps.
 double gap_of(const detail::LevelState& state) noexcept {
   const auto largest = [](const auto& v) { return double{*std::max_element(v.begin(), v.end())}; };
   const double reach = (largest(state.row_radius) + largest(state.lane_radius)) * (1 + 1e-6);
-  const double excess =
-      double{std::bit_cast<float>(*std::min_element(state.min_excess.begin(), state.min_excess.end()) + 1)};
+  const double excess = double{*std::min_element(state.min_excess.begin(), state.min_excess.end())};
   return std::isfinite(excess) ? excess / (std::sqrt(reach * reach + excess) + reach)
                                : std::numeric_limits<double>::infinity();
 }
 
 void begin_seeing(detail::LevelState& state) noexcept {
-  state.min_excess.fill(kNoExcess);
+  state.min_excess.fill(std::numeric_limits<float>::infinity());
   state.row_radius.fill(0);
   state.lane_radius.fill(0);
 }

@@ -74,13 +74,13 @@ void TriangleSearch::start_near(const PlacedTrees& trees, const NodePair& leaves
   const detail::Placement& placement = trees.placement();
   const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
   BoxGaps firsts, seconds;
-  detail::meeting_boxes(moved_box(trees, leaves.b), first.obb_nodes[block_a], 1, placement.box_margin, firsts);
+  detail::box_gaps(moved_box(trees, leaves.b), first.obb_nodes[block_a], 1, placement.box_margin, firsts);
   std::array<float, most> gaps;
   size_ = 0;
   for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
     const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, a), placement), second.obb_nodes[block_b],
-                          placement.scale, placement.box_margin, seconds);
+    detail::box_gaps(detail::moved_back(detail::node_box_at(first, a), placement), second.obb_nodes[block_b],
+                     placement.scale, placement.box_margin, seconds);
     tests_.pairs += static_cast<std::uint64_t>(std::bit_width(seconds.used));
     for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
@@ -111,20 +111,10 @@ bool TriangleSearch::test_leaves(const PlacedTrees& trees, const NodePair& pair)
   tests_.triangles += used(lanes) * used(rows);
   const detail::NodeBox lane_box = detail::node_box_at(first, pair.a);
   const detail::NodeBox row_box = moved_box(trees, pair.b);
-  struct Leaves {
-    TriangleSearch& self;
-    const PlacedTrees& placed;
-    const NodePair& nodes;
-  } context = {*this, trees, pair};
-  const auto any_meets = [](void* of, std::uint32_t row, std::uint32_t left) {
-    const auto& [self, placed, nodes] = *static_cast<Leaves*>(of);
-    for (; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::uint8_t>(std::countr_zero(left));
-      if (self.test_two(placed, {nodes.a, nodes.b, lane, static_cast<std::uint8_t>(row)})) return true;
-    }
-    return false;
+  const auto meet = [&](std::uint32_t lane, std::uint32_t row) {
+    return test_two(trees, {pair.a, pair.b, static_cast<std::uint8_t>(lane), static_cast<std::uint8_t>(row)});
   };
-  return detail::visit_candidates({lanes, rows, lane_box, row_box}, trees.placement(), any_meets, &context);
+  return detail::each_candidate({lanes, rows, lane_box, row_box}, trees.placement(), meet);
 }
 
 bool TriangleSearch::test_two(const PlacedTrees& trees, const MeetingTriangles::Place& place) noexcept {

@@ -22,7 +22,7 @@ ORCHARD_INLINE void find_point_gaps(const std::array<float, 3>& point, const Tri
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const Vectors p = {E::all(point[0]), E::all(point[1]), E::all(point[2])};
+  const Vectors p = E::all_of(point);
   const Floats unit = E::all(placement.unit);
   const auto corner = [&](std::size_t k)
                           ORCHARD_INLINE_LAMBDA -> Vectors { return E::times(E::minus(E::corner(block, k), p), unit); };
@@ -54,14 +54,10 @@ ORCHARD_INLINE void find_point_gaps(const std::array<float, 3>& point, const Tri
 
 }  // namespace
 
-void point_gaps_scalar(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
-                       PointGaps& lower) noexcept {
-  find_point_gaps<PlainFloats>(point, block, placement, lower);
-}
-
 void point_gaps(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
                 PointGaps& lower) noexcept {
-  PerMachine<find_point_gaps<Widest>, find_point_gaps<Base>>::call(point, block, placement, lower);
+  PerMachine<find_point_gaps<Widest>, find_point_gaps<Base>, find_point_gaps<PlainFloats>>::call(point, block,
+                                                                                                 placement, lower);
 }
 
 }  // namespace orchard::runtime::detail

@@ -13,7 +13,5 @@ using PointGaps = std::array<float, kBlockWidth>;
 // and its margin: 128 u of the size of all coordinates, u = 2^-24, and what the point may be off by.
 void point_gaps(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
                 PointGaps& lower) noexcept;
-void point_gaps_scalar(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
-                       PointGaps& lower) noexcept;
 
 }  // namespace orchard::runtime::detail

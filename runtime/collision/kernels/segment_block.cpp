@@ -44,11 +44,8 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const auto all = [](const std::array<float, 3>& v) ORCHARD_INLINE_LAMBDA -> Vectors {
-    return {E::all(v[0]), E::all(v[1]), E::all(v[2])};
-  };
   const Floats unit = E::all(placement.unit), zero = E::all(0.0f);
-  const Vectors begin = all(p), w = E::times(E::minus(all(q), begin), unit);
+  const Vectors begin = E::all_of(p), w = E::times(E::minus(E::all_of(q), begin), unit);
   const auto corner = [&](std::size_t k) ORCHARD_INLINE_LAMBDA -> Vectors {
     return E::times(E::minus(E::corner(block, k), begin), unit);
   };
@@ -75,14 +72,10 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
 
 }  // namespace
 
-void segment_gaps_scalar(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
-                         const Placement& placement, SegmentGaps& lower) noexcept {
-  find_segment_gaps<PlainFloats>(p, q, block, placement, lower);
-}
-
 void segment_gaps(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
                   const Placement& placement, SegmentGaps& lower) noexcept {
-  PerMachine<find_segment_gaps<Widest>, find_segment_gaps<Base>>::call(p, q, block, placement, lower);
+  PerMachine<find_segment_gaps<Widest>, find_segment_gaps<Base>, find_segment_gaps<PlainFloats>>::call(
+      p, q, block, placement, lower);
 }
 
 }  // namespace orchard::runtime::detail

@@ -170,7 +170,7 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     // How far apart triangles may be to be told exactly: all, most and some of these.
     const float reach = seed % 4 == 0 ? 1e30f : static_cast<float>(draw.uniform(0, 3));
     detail::TriangleGaps gaps{}, plain{};
-    detail::triangle_gaps_scalar(lanes, rows, placement, direction, reach, plain);
+    ask_portably([&] { detail::triangle_gaps(lanes, rows, placement, direction, reach, plain); });
     for (const detail::Machine m : {detail::Machine::base, detail::Machine::avx2, detail::Machine::avx512}) {
       if (m > detail::best_machine()) break;
       detail::use_machine(m);
