@@ -264,14 +264,14 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   }
   Workspace::Scratch* const scratch = workspace.scratch();
   if (narrow.known().refused || !have_triangles(trees) || scratch == nullptr ||
-      !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
+      !scratch->walk.stack.reserve(pair.a().tree, pair.b().tree)) {
     return by_spheres(narrow);
   }
   trees.place();
   const PlacedPair both{trees.first(), trees.second(), trees.relative(), trees.placement()};
-  const std::uint64_t before = scratch->walk.work();
+  const std::uint64_t before = scratch->walk.work;
   find_cuts(both, *scratch);
-  const double found = static_cast<double>(scratch->walk.work() - before);
+  const double found = static_cast<double>(scratch->walk.work - before);
   const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
   const Pose& world = trees.first_pose();
   const bool exchanged = trees.exchanged();
@@ -287,7 +287,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
                                         std::span(solids.data(), boxes.size()),
                                         size,
                                         least_nudge(trees, size),
-                                        scratch->walk.work() + search_work(options.effort, found)};
+                                        scratch->walk.work + search_work(options.effort, found)};
   if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
     return result;

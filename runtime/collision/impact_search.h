@@ -75,9 +75,9 @@ class ImpactSearch {
   bool prepare() noexcept;
   bool place(double time) noexcept;
   bool find_critical(PairBudget& tracker, Critical& critical) noexcept;
-  void expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept;
+  void expand(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept;
   void find_closing() noexcept;
-  void compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept;
+  void compare_leaves(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept;
   struct Speeds {  // of two leaves: how fast anything comes closer, and how far they reach from where they turn about
     double fastest, first_reach, second_reach;
   };

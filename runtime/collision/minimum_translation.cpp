@@ -99,7 +99,7 @@ Meeting meeting_at(const MinimumTranslationSearch& search, const Vec3& u, double
                     meeting.any = true;
                     const std::array<ShiftPlanes, 2> faces = face_planes(a, b);
                     if (exit_of(faces, u, kWayRounding * search.size) <= meeting.farthest) return false;
-                    search.room.spend(kTestsPerShifts);
+                    search.room.work += kTestsPerShifts;
                     const MeetingShifts::Exit exit = MeetingShifts(a, b).exit(u, meeting.farthest);
                     if (exit.way > meeting.farthest) meeting.farthest = exit.way, meeting.normal = exit.normal;
                     return at + exit.way >= limit || ++met == kMet;
@@ -147,7 +147,7 @@ class Obstacles {
   std::size_t kept() const noexcept { return std::min(kKept, cuts_.size()); }
   const MeetingShifts& shifts_of(std::size_t i) noexcept {
     if (i < kKept && known_[i]) return shifts_[i];
-    room_.spend(kTestsPerShifts);
+    room_.work += kTestsPerShifts;
     if (i < kKept) known_[i] = true;
     return (i < kKept ? shifts_[i] : other_) = MeetingShifts(cuts_[i].first, cuts_[i].second);
   }
@@ -209,7 +209,7 @@ class WaySearch {
       : search_(search),
         obstacles_(search),
         refinements_(refinements),
-        last_listing_(search.room.work() / 2 + search.work / 2) {}
+        last_listing_(search.room.work / 2 + search.work / 2) {}
 
   const MinimumTranslation& best() const noexcept { return best_; }
   Obstacles& obstacles() noexcept { return obstacles_; }
@@ -234,7 +234,7 @@ class WaySearch {
   }
 
   void settle() noexcept {
-    for (bool first = true; count_ > 0 && (first || search_.room.work() < search_.work); first = false) {
+    for (bool first = true; count_ > 0 && (first || search_.room.work < search_.work); first = false) {
       std::pop_heap(listed_.begin(), listed_.begin() + static_cast<std::ptrdiff_t>(count_), longer);
       Listed next = listed_[--count_];
       if (next.way >= limit_) {
@@ -261,8 +261,8 @@ class WaySearch {
 
   bool list(const Vec3& direction, Plane& plane) noexcept {
     const double size = length(direction);
-    if (!(size > 0) || search_.room.work() >= last_listing_) return false;
-    search_.room.spend(1 + search_.cuts.size() / kCutsPerTest);
+    if (!(size > 0) || search_.room.work >= last_listing_) return false;
+    search_.room.work += 1 + search_.cuts.size() / kCutsPerTest;
     const Vec3 u = (1 / size) * direction;
     for (std::size_t i = 0; i < tried_count_; ++i) {
       if (dot(tried_[i], u) > kSame) return false;

@@ -57,7 +57,7 @@ bool holds(const TrianglePoints& t, const Vec3& normal, const Vec3& p, double sl
     least = std::min(least, dot(cross(normal, minus(t[(i + 1) % 3], t[i])), minus(p, t[i])));
   }
   if (least >= 0) return true;
-  return least >= -slack * size && nearest_points(p, t).distance <= slack;
+  return least >= -slack * size && nearest_points(p, p, t).distance <= slack;
 }
 
 // Where the edges of one cross the plane of the other, in it.

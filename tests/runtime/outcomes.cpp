@@ -69,8 +69,6 @@ int main() {
         query.start(pose_a, pose_b);
         for (digest.add(query); !query.finished(); digest.add(query)) query.refine();
         query.start(pose_a, pose_b);
-        query.probe(2);
-        digest.add(query);
         query.refine_exactly();
         digest.add(query);
         distance.start(pose_a, pose_b);

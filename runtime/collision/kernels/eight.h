@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "collision/kernels/placement.h"
 #include "orchard/runtime/packed_tree.h"
@@ -92,6 +93,18 @@ ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
     for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
   }
   return lanes[0];
+}
+
+// Which of eight distances are no more than `limit` or hardly more, as bits, and the least of the others.
+struct Within {
+  std::uint32_t lanes;
+  float beyond;
+};
+ORCHARD_INLINE Within within(const std::array<float, kBlockWidth>& distances, double limit) noexcept {
+  using E = Eight<Base>;
+  const E::Floats distance = E::at(distances), infinite = E::all(std::numeric_limits<float>::infinity());
+  const auto outside = E::all(static_cast<float>(limit * (1 + 0x1p-22))) < distance;
+  return {~Base::bits(outside) & E::kAll, least_of<Base>(Base::choose(outside, distance, infinite))};
 }
 
 // The lanes that hold a triangle, as bits.

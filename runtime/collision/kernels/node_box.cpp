@@ -1,5 +1,7 @@
 #include "collision/kernels/node_box.h"
 
+#include <limits>
+
 #include "collision/kernels/box_pair.h"
 #include "collision/kernels/eight.h"
 #include "math/vector_functions.h"
@@ -63,10 +65,11 @@ ORCHARD_INLINE void find_gaps(const NodeBox& single, const ObbNodeBlock& lanes, 
   Floats gap = pair.ball_gap;
   const Floats by_line = pair.each_axis([&](const Floats& other, const typename E::Vectors&, const Floats&)
                                             ORCHARD_INLINE_LAMBDA { gap = E::max(gap, other); });
-  gap = E::max(gap, by_line) - E::all(margin);
+  const auto used = E::all(0.0f) <= E::at(lanes.radius);
+  gap = Kind::choose(used, E::max(gap, by_line) - E::all(margin), E::all(std::numeric_limits<float>::infinity()));
   store(gap, result.gap);
-  result.used = Kind::bits(E::all(0.0f) <= E::at(lanes.radius));
-  result.meeting = result.used & Kind::bits(gap <= E::all(0.0f));
+  result.used = Kind::bits(used);
+  result.meeting = Kind::bits(gap <= E::all(0.0f));
 }
 
 }  // namespace

@@ -84,7 +84,8 @@ ORCHARD_INLINE NodeBox moved_back(const NodeBox& b, const Placement& p) noexcept
 // How far eight nodes are from the single one.
 struct BoxGaps {
   using Lanes = std::array<float, kBlockWidth>;
-  alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
+  // Certified lower bound on the distance; negative: they may meet, the lower the deeper. Infinite where no node is.
+  alignas(32) Lanes gap;
   std::uint32_t used;     // bits: lanes that hold a node
   std::uint32_t meeting;  // bits: those with gap <= 0
 };

@@ -139,7 +139,7 @@ TEST(TriangleDistance, IsTheSameOnEveryMachine) {
     std::array<detail::NearestPoints, 3> first{};
     bool any = false;
     on_every_machine([&] {
-      const std::array<detail::NearestPoints, 3> found = {detail::nearest_points(a, b), detail::nearest_points(p, b),
+      const std::array<detail::NearestPoints, 3> found = {detail::nearest_points(a, b), detail::nearest_points(p, p, b),
                                                           detail::nearest_points(p, q, b)};
       if (!any) first = found, any = true;
       for (std::size_t i = 0; i < found.size(); ++i) {

@@ -50,20 +50,16 @@ class TreePair {
 
  private:
   friend class Coherence;
-  static constexpr std::size_t kWitnesses = 2;
   // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
   struct Witness {
     std::uint32_t a, b;
     std::uint8_t lane_a, lane_b;
   };
   struct Memory {
-    Pose relative;                              // The pose of b in a's frame when `clearance` was certified.
-    double clearance = 0;                       // In a's units; 0: none.
-    std::array<Witness, kWitnesses> witnesses;  // Of the answers since the last "no", the last ones first.
-    std::uint8_t witness_count = 0;
-    std::uint8_t wait = 0;     // Searches until the roots are tested first.
-    std::uint8_t in_vain = 0;  // Successive tests of the roots that decided nothing.
-    bool close = false;        // The roots did not decide the last search.
+    Pose relative;         // The pose of b in a's frame when `clearance` was certified.
+    double clearance = 0;  // In a's units; 0: none.
+    Witness witness;       // If they met last.
+    bool met = false;
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;

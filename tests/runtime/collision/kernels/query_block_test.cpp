@@ -8,7 +8,6 @@
 #include "bodies.h"
 #include "collision/kernels/box_time.h"
 #include "collision/kernels/obb_node_block.h"
-#include "collision/kernels/point_block.h"
 #include "collision/kernels/ray_block.h"
 #include "collision/kernels/segment_block.h"
 #include "collision/segment_meets.h"
@@ -37,35 +36,6 @@ Placement still(double size) {
   const int exponent = 1 + std::ilogb(size);
   p.unit = static_cast<float>(std::ldexp(1, -exponent)), p.whole = static_cast<float>(std::ldexp(1, exponent));
   return p;
-}
-
-TEST(PointBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachine) {
-  on_every_machine([] {
-    int close = 0, all = 0;
-    for (std::uint64_t seed = 0; seed < 120; ++seed) {
-      const double scale = std::ldexp(1, static_cast<int>(seed % 4) * 30 - 45);
-      const auto tree = test::build_tree(
-          test::scaled(seed % 2 == 0 ? test::torus(12, 7, 1, 0.3) : test::soup(seed, 40), scale), {.bounds = false});
-      Draw draw(seed);
-      const Placement placement = still(4 * scale);
-      for (const TriangleBlock& block : tree.triangle_blocks) {
-        const std::array<float, 3> p = {static_cast<float>(draw.uniform(-1.5, 1.5) * scale),
-                                        static_cast<float>(draw.uniform(-1.5, 1.5) * scale),
-                                        static_cast<float>(draw.uniform(-0.5, 0.5) * scale)};
-        PointGaps lower, plain;
-        point_gaps(p, block, placement, lower);
-        ask_portably([&] { point_gaps(p, block, placement, plain); });
-        ASSERT_TRUE(same_bits(lower, plain)) << seed;
-        for (std::uint32_t i = 0; i < kBlockWidth && block.triangle[i] != kNoTriangle; ++i) {
-          const double truth = nearest_points(Vec3{p[0], p[1], p[2]}, points_of(block, i)).distance;
-          ASSERT_LE(double{lower[i]}, truth) << seed;
-          close += double{lower[i]} > truth - 3 * double{placement.margin} - 1e-3 * truth;
-          ++all;
-        }
-      }
-    }
-    EXPECT_GT(close, all * 9 / 10);
-  });
 }
 
 TEST(SegmentBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachine) {
