@@ -116,11 +116,10 @@ class Obstacles {
   // How far all of them are left behind, and what the last one is left at. Ends once that is `enough`.
   MeetingShifts::Exit exit(const Vec3& u, double enough) noexcept {
     MeetingShifts::Exit last{0, u};
-    if (last_left_ < cuts_.size()) last = shifts_of(last_left_).exit(u, 0);  // likely to be among the last again
     for (std::size_t i = 0; i < cuts_.size() && last.way < enough; ++i) {
       if (exit_of(cuts_[i].faces, u, slack_) <= last.way) continue;
       const MeetingShifts::Exit exit = shifts_of(i).exit(u, last.way);
-      if (exit.way > last.way) last = exit, last_left_ = i;
+      if (exit.way > last.way) last = exit;
     }
     return last;
   }
@@ -134,12 +133,10 @@ class Obstacles {
     return false;
   }
 
-  // The one that was in the way of the direction before is likely to be so again.
   bool block(const Vec3& u, double limit) noexcept {
     if (!std::isfinite(limit)) return false;
-    if (last_blocking_ < cuts_.size() && blocks(last_blocking_, u, limit)) return true;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      if (blocks(i, u, limit)) return last_blocking_ = i, true;
+      if (exit_of(cuts_[i].faces, u, slack_) >= limit && shifts_of(i).contain(u, limit)) return true;
     }
     return false;
   }
@@ -155,14 +152,9 @@ class Obstacles {
  private:
   static constexpr std::size_t kKept = 32;
 
-  bool blocks(std::size_t i, const Vec3& u, double limit) noexcept {
-    return exit_of(cuts_[i].faces, u, slack_) >= limit && shifts_of(i).contain(u, limit);
-  }
-
   WalkStack& room_;
   std::span<const Cut> cuts_;
   double slack_;
-  std::size_t last_left_ = 0, last_blocking_ = 0;
   std::array<MeetingShifts, kKept> shifts_;
   std::array<bool, kKept> known_{};
   MeetingShifts other_;

@@ -8,7 +8,7 @@
 
 #include "collision/kernels/farthest_first.h"
 #include "collision/kernels/node_box.h"
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "orchard/runtime/packed_tree.h"
 #include "simd/vector_support.h"
 #include "tree/tree_nodes.h"

@@ -8,8 +8,8 @@
 
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
-#include "collision/kernels/obb_node_block.h"
 #include "collision/kernels/segment_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "math/vector_functions.h"
 #include "orchard/runtime/shape_query.h"
 #include "tree/tree_nodes.h"
@@ -100,9 +100,6 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   const Vec3 end = along(s.p, s.d, 1);
   for (std::size_t i = 0; i < 3; ++i) shape.from[i] = f(s.p[i]), shape.to[i] = f(end[i]);
   Placement& p = shape.placement;
-  p.rotation = p.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  p.translation = {};
-  p.scale = 1;
   p.margin = f(std::max(128 * unit * size, 1e-15) * (1 + 4 * unit));
   p.box_margin = f(std::max(256 * unit * size, 1e-15) * (1 + 4 * unit));
   const int exponent = 1 + exponent_of(std::max(size, 1e-18));

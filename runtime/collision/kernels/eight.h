@@ -95,7 +95,7 @@ ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
   return lanes[0];
 }
 
-// Which of eight distances are no more than `limit` or hardly more, as bits, and the least of the others.
+// Which of eight distances are no more than `limit`, rounded to float, as bits, and the least of the others.
 struct Within {
   std::uint32_t lanes;
   float beyond;
@@ -103,7 +103,7 @@ struct Within {
 ORCHARD_INLINE Within within(const std::array<float, kBlockWidth>& distances, double limit) noexcept {
   using E = Eight<Base>;
   const E::Floats distance = E::at(distances), infinite = E::all(std::numeric_limits<float>::infinity());
-  const auto outside = E::all(static_cast<float>(limit * (1 + 0x1p-22))) < distance;
+  const auto outside = E::all(static_cast<float>(limit)) < distance;
   return {~Base::bits(outside) & E::kAll, least_of<Base>(Base::choose(outside, distance, infinite))};
 }
 

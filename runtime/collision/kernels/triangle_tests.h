@@ -2,7 +2,7 @@
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
 
-// What the inner loops over triangles (obb_node_block.cpp, segment_block.cpp) are made of.
+// What the inner loops over triangles (triangle_block.cpp, segment_block.cpp) are made of.
 //
 // Rounding. Ball slabs: see Placement::margin in placed_trees.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that

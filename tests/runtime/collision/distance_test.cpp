@@ -8,7 +8,7 @@
 
 #include "allocation.h"
 #include "bodies.h"
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "collision/triangle_distance.h"
 #include "every_machine.h"
 #include "simd/machine.h"

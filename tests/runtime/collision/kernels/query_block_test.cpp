@@ -7,7 +7,7 @@
 
 #include "bodies.h"
 #include "collision/kernels/box_time.h"
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "collision/kernels/ray_block.h"
 #include "collision/kernels/segment_block.h"
 #include "collision/segment_meets.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "collision/support_map.h"
 #include "every_machine.h"
 #include "orchard/runtime/pose.h"

@@ -1,4 +1,4 @@
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 
 #include <bit>
 #include <limits>
