@@ -7,7 +7,7 @@ namespace orchard::runtime {
 void answer_exactly(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
   pair.start(a, b);
   for (PairBudget tracker(budget); !pair.finished() && !tracker.exhausted();) {
-    order == Order::exact_first ? pair.refine_exactly(tracker) : pair.refine(tracker);
+    pair.advance(tracker, order);
   }
 }
 

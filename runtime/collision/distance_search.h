@@ -19,7 +19,6 @@ class DistanceSearch {
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
-  void start(const Pose& a, const Pose& b) noexcept { start(a, b, Tolerance{}); }
   void start_within(const Pose& a, const Pose& b, double limit) noexcept;
   void refine(const Budget& budget = {}) noexcept;
 

@@ -75,14 +75,13 @@ Answer PairQuery::start(const Pose& a, const Pose& b) noexcept {
   return known_.answer = Answer::maybe;
 }
 
-Answer PairQuery::refine(PairBudget& tracker) noexcept {
-  if (known_.finished || tracker.exhausted()) return known_.answer;
+Answer PairQuery::refine_level(PairBudget& tracker) noexcept {
   if (roots_pending_) {
     trees_.place();
     roots_pending_ = false;
     if (!spheres_.begin(trees_)) return give_up_spheres(), known_.answer;
   }
-  if (!spheres_.have_inner()) return refine_exactly(tracker);
+  if (!spheres_.have_inner()) return refine_last(tracker);
   const std::uint64_t before = tracker.spent();
   const SphereLevels::End end = spheres_.refine(trees_, tracker);
   known_.separation_bound = std::min(known_.separation_bound, spheres_.least_bound() * trees_.first_pose().scale);
@@ -99,9 +98,8 @@ Answer PairQuery::refine(PairBudget& tracker) noexcept {
   return known_.answer;
 }
 
-Answer PairQuery::refine_exactly(PairBudget& tracker) noexcept {
-  if (known_.finished || tracker.exhausted()) return known_.answer;
-  if (!has_last_level()) return refine(tracker);
+Answer PairQuery::refine_last(PairBudget& tracker) noexcept {
+  if (!has_last_level()) return refine_level(tracker);
   const std::uint64_t before = tracker.spent();
   if (!exact_started_) start_exact();
   if (triangles_.refine(trees_.views(), tracker)) {

@@ -29,16 +29,18 @@ class PairQuery {
   bool reserve(std::size_t pairs) noexcept { return spheres_.reserve(pairs); }
 
   Answer start(const Pose& a, const Pose& b) noexcept;
-  // These take what they spend from the tracker.
-  Answer refine(PairBudget& tracker) noexcept;
-  Answer refine_exactly(PairBudget& tracker) noexcept;
+  // A level of spheres, or the last level, as far as the tracker goes, which knows what was spent.
+  Answer advance(PairBudget& tracker, Order order) noexcept {
+    if (known_.finished || tracker.exhausted()) return known_.answer;
+    return order == Order::exact_first ? refine_last(tracker) : refine_level(tracker);
+  }
   Answer refine(const Budget& budget = {}) noexcept {
     PairBudget tracker(budget);
-    return refine(tracker);
+    return advance(tracker, Order::level_by_level);
   }
   Answer refine_exactly(const Budget& budget = {}) noexcept {
     PairBudget tracker(budget);
-    return refine_exactly(tracker);
+    return advance(tracker, Order::exact_first);
   }
 
   const Known& known() const noexcept { return known_; }
@@ -55,6 +57,8 @@ class PairQuery {
   bool start_over() noexcept;
   void reset() noexcept;
   void forget() noexcept;
+  Answer refine_level(PairBudget& tracker) noexcept;
+  Answer refine_last(PairBudget& tracker) noexcept;
   void start_exact() noexcept;
   void give_up_spheres() noexcept;
   void finish(Answer answer) noexcept;

@@ -169,10 +169,7 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
 bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept {
   if (inner.triangles.empty()) return false;
   if (!is_rigid(inner_pose)) return true;
-  const auto& corner = inner.vertices[inner.triangles[0][0]];
-  std::array<double, 3> point{};
-  for (std::size_t i = 0; i < 3; ++i) point[i] = double{corner[i]} + inner.origin[i];
-  return contains(solid, pose, transform(inner_pose, point));
+  return contains(solid, pose, transform(inner_pose, along(points_of(inner, 0)[0], inner.origin, 1)));
 }
 
 SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const std::array<double, 3>& center,
@@ -184,12 +181,8 @@ SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const 
   double size = std::sqrt(dot(way, way));
   const bool inside = size > 0 && contains(solid, pose, center);
   if (!(size > 0)) {
-    const auto& t = solid.triangles[result.surface.triangle];
-    const auto corner = [&](std::size_t k) {
-      const auto& v = solid.vertices[t[k]];
-      return Vec3{double{v[0]}, double{v[1]}, double{v[2]}};
-    };
-    way = rotate(pose, detail::cross(corner(1) - corner(0), corner(2) - corner(0)));
+    const TrianglePoints t = points_of(solid, result.surface.triangle);
+    way = rotate(pose, detail::cross(t[1] - t[0], t[2] - t[0]));
     size = std::sqrt(dot(way, way));
   }
   if (inside) result.surface.distance = -result.surface.distance;

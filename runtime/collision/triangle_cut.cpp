@@ -20,11 +20,6 @@ constexpr double kShift = 1e-13;      // of the triangles' size: the rounding of
 
 double square(const Vec3& v) noexcept { return dot(v, v); }
 
-Vec3 unit_or_zero(const Vec3& v) noexcept {
-  const double size = std::sqrt(square(v));
-  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{0, 0, 0};
-}
-
 // The two of all points offered that are farthest apart, nearly: the farthest from the first, and the farthest from it.
 class Ends {
  public:

@@ -18,6 +18,11 @@ inline Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
   return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
 }
 
+// Of length 1, or 0.
+inline Vec3 unit_or_zero(const Vec3& v) noexcept {
+  const double size = length(v);
+  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{};
+}
 // By the inverse of a pose's rotation.
 inline Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
   const auto& r = pose.rotation;
