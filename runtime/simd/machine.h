@@ -9,8 +9,8 @@
 // made at the first call: no resolver runs before main(), where neither sanitizers nor other libraries are ready.
 namespace orchard::runtime::detail {
 
-// Each has what those before it have. `portable` is the base of the architecture, with the loops of one number at a time
-// that other compilers get: tests choose it to compare these loops with the others.
+// Each has what those before it have. `portable` is the base of the architecture, with the loops of one number at a
+// time that other compilers get: tests choose it to compare these loops with the others.
 enum class Machine : std::uint8_t { unknown, portable, base, avx2, avx512 };
 
 inline std::atomic<Machine> chosen_machine{Machine::unknown};
@@ -43,8 +43,8 @@ inline Machine machine() noexcept {
 
 // PerMachine<kernel>::call(..) is kernel(..) for the machine chosen. The kernel is ORCHARD_INLINE, so that it becomes
 // part of a function for each.
-// `base`: the same for the base of the architecture, where that is better served by other code; `portable`: one number at
-// a time.
+// `base`: the same for the base of the architecture, where that is better served by other code; `portable`: one number
+// at a time.
 template <auto kernel, auto base = kernel, auto portable = base>
 struct PerMachine;
 

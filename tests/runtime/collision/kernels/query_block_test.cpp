@@ -7,9 +7,9 @@
 
 #include "bodies.h"
 #include "collision/kernels/box_time.h"
-#include "collision/kernels/triangle_block.h"
 #include "collision/kernels/ray_block.h"
 #include "collision/kernels/segment_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "collision/segment_meets.h"
 #include "collision/triangle_distance.h"
 #include "every_machine.h"
