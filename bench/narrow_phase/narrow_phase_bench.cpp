@@ -114,12 +114,6 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
                          for (std::uint32_t l = 0; l < levels; ++l) pair.refine();
                        }});
   }
-  for (std::uint32_t level = 1; level <= std::min(4u, tree.depth); ++level) {
-    engines.push_back({"orchard, answer at " + std::to_string(level), [&, level](std::size_t i) {
-                         pair.start(queries[i].a, queries[i].b);
-                         pair.probe(level);
-                       }});
-  }
   const std::size_t ours = engines.size() - 1;
   std::vector<std::unique_ptr<PairRival>> rivals;
   constexpr std::size_t max_for_bsp = 10000;  // building takes the square of it

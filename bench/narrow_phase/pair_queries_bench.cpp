@@ -82,7 +82,6 @@ struct Bodies {
   PreparedTree prepared;
   TreePair pair;
   Workspace workspace;
-  PairFront front;
   double radius = 0;
   std::array<double, 3> middle{};
   std::vector<std::unique_ptr<PairRival>> rivals;
@@ -121,7 +120,6 @@ void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>&
   std::size_t count[4] = {};
   double time[4] = {};
   TreePair pair = bodies.pair;
-  pair.use(&bodies.front);
   for (std::size_t i = 0; i < motion.queries.size(); ++i) {
     if (motion.first[i]) pair.forget();
     const Query& q = motion.queries[i];
@@ -132,7 +130,7 @@ void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>&
     ++count[way];
     time[way] += times[i];
   }
-  std::printf("  with a front:");
+  std::printf("  coherently:");
   for (std::size_t way = 0; way < 4; ++way) {
     if (count[way] == 0) continue;
     std::printf("  %s %.0f %% (%.3f us)", names[way],
@@ -142,17 +140,12 @@ void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>&
   std::printf("\n");
 }
 
-// Adds the sums of the times of "with a front", "coherently", "each from scratch" and of FCL to `sums`.
-void coherent(Bodies& bodies, const Motion& motion, const std::string& title, std::array<double, 4>& sums) {
+// Adds the sums of the times of "coherently", "each from scratch" and of FCL to `sums`.
+void coherent(Bodies& bodies, const Motion& motion, const std::string& title, std::array<double, 3>& sums) {
   const std::vector<Query>& queries = motion.queries;
   bodies.place(queries);
-  TreePair pair = bodies.pair, with_front = bodies.pair;
-  with_front.use(&bodies.front);
+  TreePair pair = bodies.pair;
   std::vector<Engine> engines;
-  engines.push_back({"orchard, coherently, with a front", [&](std::size_t i) {
-                       if (motion.first[i]) with_front.forget();
-                       collide_coherently(bodies.workspace, with_front, queries[i].a, queries[i].b);
-                     }});
   engines.push_back({"orchard, coherently", [&](std::size_t i) {
                        if (motion.first[i]) pair.forget();
                        collide_coherently(bodies.workspace, pair, queries[i].a, queries[i].b);
@@ -168,20 +161,20 @@ void coherent(Bodies& bodies, const Motion& motion, const std::string& title, st
   }
   print(title.c_str(), engines, queries.size(), ours);
   print_ways(bodies, motion, engines[0].best);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t engine = i < 3 ? i : ours;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t engine = i < 2 ? i : ours;
     if (engine < engines.size()) sums[i] += mean(engines[engine].best);
   }
 }
 
 void coherent_classes(Bodies& bodies, const std::vector<Query>& starts) {
-  std::array<double, 4> sums{}, slow{};
+  std::array<double, 3> sums{}, slow{};
   for (int c = 0; c < kClasses; ++c) {
     const std::string name = kClassNames[static_cast<std::size_t>(c)];
     coherent(bodies, Motion(bodies, starts, c, 1, 0.005), "in motion, from " + name, sums);
   }
-  std::printf("in motion, all classes: of FCL's mean: with a front %.3f, without %.3f, each from scratch %.3f\n",
-              sums[0] / sums[3], sums[1] / sums[3], sums[2] / sums[3]);
+  std::printf("in motion, all classes: of FCL's mean: coherently %.3f, each from scratch %.3f\n", sums[0] / sums[2],
+              sums[1] / sums[2]);
   coherent(bodies, Motion(bodies, starts, 3, 0.1, 0.0005), "at a tenth of that speed, from gap 0.1 % R", slow);
 }
 
@@ -333,10 +326,8 @@ void making(const PackedSphereTree& tree) {
   const auto start = Clock::now();
   const PreparedTree again(tree);
   const std::chrono::duration<double, std::micro> prepare = Clock::now() - start;
-  std::printf(
-      "a pair has %zu bytes, its front, if any, %zu; it binds in %.0f ns; a tree is prepared in %.0f us (fingerprint "
-      "%04x)\n",
-      sizeof(TreePair), sizeof(PairFront), least, prepare.count(), static_cast<unsigned>(again.fingerprint & 0xffff));
+  std::printf("a pair has %zu bytes; it binds in %.0f ns; a tree is prepared in %.0f us (fingerprint %04x)\n",
+              sizeof(TreePair), least, prepare.count(), static_cast<unsigned>(again.fingerprint & 0xffff));
 }
 
 }  // namespace

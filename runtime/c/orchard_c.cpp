@@ -16,12 +16,10 @@ struct orchard_pair {
   orchard_pair(const orchard_tree* a, const orchard_tree* b) noexcept : pair(a->prepared, b->prepared), workspace(0) {
     bind();
     workspace.distance.bind(a->prepared, b->prepared);
-    pair.use(&front);
   }
   void bind() noexcept { workspace.narrow.bind(pair.a(), pair.b()); }
   rt::TreePair pair;
   rt::Workspace workspace;
-  rt::PairFront front;
 };
 
 namespace {

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "collision/coherent_pair.h"
-#include "collision/front_walk.h"
 #include "collision/pair_query.h"
 #include "collision/pose_change.h"
 #include "math/rigid_pair.h"
@@ -45,9 +44,7 @@ class Coherence {
   Coherence(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept
       : narrow_(query_of(workspace.narrow)), pair_(pair), a_(a), b_(b) {}
 
-  static bool remembers(const TreePair& of) noexcept {
-    return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
-  }
+  static bool remembers(const TreePair& of) noexcept { return of.memory_.clearance > 0 || of.memory_.met; }
 
   // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
   bool recall(Verdict& verdict) noexcept {
@@ -65,42 +62,38 @@ class Coherence {
         return true;
       }
     }
-    if (memory_.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
+    if (!memory_.met || !place_for_triangles() || !direct_.test_two(last_place())) return false;
     ::new (&verdict) Verdict(narrow_.verdict());
     return true;
   }
 
-  // The roots come first, unless they have not decided of late.
+  // First in the leaves of the triangles that met last.
   Verdict search(const Budget& budget) noexcept {
-    if (memory_.witness_count > 0) return search_after_yes(budget);
-    if (pair_.front_ != nullptr) return search_front(budget);
-    const bool tried = memory_.close && memory_.wait > 0;
-    if (tried && place_narrow()) {
-      --memory_.wait;
-      direct_.search(budget);
+    if (!memory_.met || !place_for_triangles()) {
+      narrow_.bind(pair_.a(), pair_.b());
+      answer_exactly(narrow_, a_, b_, budget);
       return remembered();
     }
-    collide(budget);
-    memory_.close = narrow_.progress().exact;
-    memory_.in_vain = static_cast<std::uint8_t>(memory_.close ? std::min<int>(memory_.in_vain + 1, kInVain) : 0);
-    memory_.wait = memory_.in_vain == kInVain ? kSearchesBeforeRoots : 0;
+    narrow_.trees().place();
+    constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
+    const MeetingTriangles::Place place = last_place();
+    if (budget.work == 0) return remembered();
+    direct_.add_work(tests);
+    Budget rest = budget;
+    rest.work -= std::min(rest.work, tests);
+    if (!direct_.test_leaves({place.first, place.second})) direct_.search(rest);
     return remembered();
   }
 
   // The query's verdict.
   Verdict remembered() noexcept {
     const Answer answer = narrow_.known().answer;
-    if (answer == Answer::yes) {
-      const std::size_t kept = std::min<std::size_t>(memory_.witness_count, TreePair::kWitnesses - 1);
-      std::copy_backward(memory_.witnesses.begin(), memory_.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
-                         memory_.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
-      memory_.witness_count = static_cast<std::uint8_t>(kept + 1);
+    memory_.met = answer == Answer::yes;
+    if (memory_.met) {
       const MeetingTriangles::Place& place = direct_.found().place;
-      memory_.witnesses[0] = narrow_.trees().exchanged()
-                                 ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
-                                 : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
-    } else {
-      memory_.witness_count = 0;
+      memory_.witness = narrow_.trees().exchanged()
+                            ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
+                            : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
     }
     const bool have_triangles = !pair_.a().tree.obb_nodes.empty() && !pair_.b().tree.obb_nodes.empty();
     memory_.clearance = answer == Answer::no && have_triangles ? narrow_.known().lower_bound / a_.scale : 0;
@@ -129,26 +122,6 @@ class Coherence {
     return verdict;
   }
 
-  void collide(const Budget& budget) noexcept {
-    narrow_.bind(pair_.a(), pair_.b());
-    answer_exactly(narrow_, a_, b_, budget);
-  }
-
-  // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
-  Verdict search_after_yes(const Budget& budget) noexcept {
-    if (!place_narrow()) {
-      collide(budget);
-      return remembered();
-    }
-    Budget rest = budget;
-    if (!leaves_meet(rest.work) && !older_meet() && !near_meet(rest)) {
-      if (pair_.front_ != nullptr) pair_.front_->clear();
-      direct_.search(rest);
-    }
-    memory_.close = true;
-    return remembered();
-  }
-
   bool place_for_triangles() noexcept {
     if (placed_) return true;
     narrow_.bind(pair_.a(), pair_.b());
@@ -156,79 +129,10 @@ class Coherence {
     return placed_;
   }
 
-  bool place_narrow() noexcept {
-    if (!place_for_triangles()) return false;
-    narrow_.trees().place();
-    return true;
-  }
-
-  // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
-  // and then, since they may decide again.
-  Verdict search_front(const Budget& budget) noexcept {
-    const bool tried = memory_.close && memory_.wait > 0;
-    if (tried ? !place_narrow() : !has_last_level()) {
-      collide(budget);
-      return remembered();
-    }
-    if (!tried && !ask_roots()) return remembered();
-    FrontWalk walk(*pair_.front_, direct_);
-    if (!walk.resume()) {
-      if (tried && !ask_roots()) return remembered();
-      walk.begin();
-    }
-    --memory_.wait;
-    walk.run(budget);
-    return remembered();
-  }
-
-  bool has_last_level() noexcept {
-    narrow_.bind(pair_.a(), pair_.b());
-    return narrow_.has_last_level();
-  }
-
-  // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
-  bool ask_roots() noexcept {
-    narrow_.start(a_, b_);
-    memory_.close = !narrow_.finished();
-    memory_.wait = kSearchesBeforeRoots;
-    if (memory_.close) narrow_.trees().place();
-    return memory_.close;
-  }
-
-  // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
-  bool witness_meets(std::size_t i) noexcept { return direct_.test_two(place_of(memory_.witnesses[i])); }
-
-  // Those that have not met for longer: bodies that go to and fro come back to them.
-  bool older_meet() noexcept {
-    for (std::size_t i = 1; i < memory_.witness_count; ++i) {
-      if (witness_meets(i)) return true;
-    }
-    return false;
-  }
-
-  MeetingTriangles::Place place_of(const TreePair::Witness& w) const noexcept {
+  MeetingTriangles::Place last_place() const noexcept {
+    const TreePair::Witness& w = memory_.witness;
     if (narrow_.trees().exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
     return {w.a, w.b, w.lane_a, w.lane_b};
-  }
-
-  // The same of the leaves that they are in, which takes from the tests that are left. Precondition: placed.
-  bool leaves_meet(std::uint64_t& left) noexcept {
-    if (left == 0) return false;
-    constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-    direct_.add_work(tests);
-    left -= std::min(left, tests);
-    const MeetingTriangles::Place place = place_of(memory_.witnesses[0]);
-    return direct_.test_leaves({place.first, place.second});
-  }
-
-  // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
-  bool near_meet(Budget& left) noexcept {
-    if (left.time != Budget{}.time) return false;
-    const MeetingTriangles::Place place = place_of(memory_.witnesses[0]);
-    const std::uint64_t before = narrow_.known().work;
-    const bool meet = direct_.search_near({place.first, place.second}, left);
-    left.work -= std::min(left.work, narrow_.known().work - before);
-    return meet;
   }
 
   PairQuery& narrow_;  // the workspace's

@@ -22,15 +22,11 @@ using detail::MinimumTranslationSearch;
 using detail::minus;
 using detail::PlacedPair;
 using detail::SolidBox;
+using detail::unit_or_zero;
 
 namespace {
 
 using Cut = Workspace::Scratch::Cut;
-
-Vec3 unit(const Vec3& v) noexcept {
-  const double size = length(v);
-  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{0, 0, 0};
-}
 
 // All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
 std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
@@ -64,7 +60,7 @@ Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
     sum = sum + weight * (cut.faces[0].normal - cut.faces[1].normal);
     weights += weight;
   }
-  return length(sum) > kLeastFacing * weights ? unit(sum) : Vec3{};
+  return length(sum) > kLeastFacing * weights ? unit_or_zero(sum) : Vec3{};
 }
 
 // Across the plane that the curves of contact lie in, nearly: the direction in which they extend least.
@@ -95,7 +91,7 @@ Vec3 flattest(std::span<const Cut> cuts) noexcept {
     return m[0] * u[0] * u[0] + m[1] * u[1] * u[1] + m[2] * u[2] * u[2] +
            2 * (m[3] * u[0] * u[1] + m[4] * u[0] * u[2] + m[5] * u[1] * u[2]);
   };
-  return spread(axes[1]) > kSameLine ? unit(axes[2]) : Vec3{};
+  return spread(axes[1]) > kSameLine ? unit_or_zero(axes[2]) : Vec3{};
 }
 
 struct Directions {
@@ -182,14 +178,12 @@ void add_depths(const PlacedPair& pair, const Vec3& normal, bool exchanged, doub
     ContactPoint& point = manifold.points[i];
     const std::uint32_t first = exchanged ? point.triangle_b : point.triangle_a;
     const std::uint32_t second = exchanged ? point.triangle_a : point.triangle_b;
-    const auto corner = [](const TreeView& tree, std::uint32_t triangle, std::size_t k) {
-      const auto& v = tree.vertices[tree.triangles[triangle][k]];
-      return Vec3{double{v[0]}, double{v[1]}, double{v[2]}};
-    };
+    const detail::TrianglePoints of_first = detail::points_of(pair.first.tree, first),
+                                 of_second = detail::points_of(pair.second.tree, second);
     double high = -std::numeric_limits<double>::infinity(), low = -high;
     for (std::size_t k = 0; k < 3; ++k) {
-      high = std::max(high, dot(normal, corner(pair.first.tree, first, k)));
-      low = std::min(low, dot(normal, transform(pair.relative, corner(pair.second.tree, second, k))));
+      high = std::max(high, dot(normal, of_first[k]));
+      low = std::min(low, dot(normal, transform(pair.relative, of_second[k])));
     }
     point.depth = std::clamp(scale * (high - low), 0.0, most);
   }
@@ -206,7 +200,7 @@ void add_point_before(Workspace& workspace, const TreePair& pair, const PosePair
   manifold.count = 1;
   manifold.points[0] = {along(near.distance.points.on_a, way, 0.5), near.distance.points.triangle_a,
                         near.distance.points.triangle_b, -apart};
-  manifold.normal = unit(way);
+  manifold.normal = unit_or_zero(way);
   manifold.depth = -apart;
   manifold.error = apart - near.distance.lower;
 }
@@ -264,14 +258,14 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
   }
   Workspace::Scratch* const scratch = workspace.scratch();
   if (narrow.known().refused || !have_triangles(trees) || scratch == nullptr ||
-      !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
+      !scratch->walk.stack.reserve(pair.a().tree, pair.b().tree)) {
     return by_spheres(narrow);
   }
   trees.place();
   const PlacedPair both{trees.first(), trees.second(), trees.relative(), trees.placement()};
-  const std::uint64_t before = scratch->walk.work();
+  const std::uint64_t before = scratch->walk.work;
   find_cuts(both, *scratch);
-  const double found = static_cast<double>(scratch->walk.work() - before);
+  const double found = static_cast<double>(scratch->walk.work - before);
   const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
   const Pose& world = trees.first_pose();
   const bool exchanged = trees.exchanged();
@@ -287,7 +281,7 @@ Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Po
                                         std::span(solids.data(), boxes.size()),
                                         size,
                                         least_nudge(trees, size),
-                                        scratch->walk.work() + search_work(options.effort, found)};
+                                        scratch->walk.work + search_work(options.effort, found)};
   if (cuts.empty() && !add_piece_inside(search, world, result)) {
     result.answer = Answer::no;
     return result;
@@ -324,12 +318,13 @@ SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const
   const Distance apart = distance(workspace, pair, a, b, {.relative = relative_tolerance, .absolute = 0});
   if (apart.lower > 0 || apart.points.triangle_a == kNoTriangle) {
     result = {apart.lower, apart.upper, apart.points.on_a, apart.points.on_b, {}};
-    result.normal = unit(minus(result.on_b, result.on_a));
+    result.normal = unit_or_zero(minus(result.on_b, result.on_a));
     return result;
   }
   const Manifold manifold = contacts(workspace, pair, a, b);
   if (manifold.answer != Answer::yes) {  // nearer than rounding can tell
-    return {0, apart.upper, apart.points.on_a, apart.points.on_b, unit(minus(apart.points.on_b, apart.points.on_a))};
+    return {0, apart.upper, apart.points.on_a, apart.points.on_b,
+            unit_or_zero(minus(apart.points.on_b, apart.points.on_a))};
   }
   result.lower = result.upper = -manifold.depth;
   result.on_a = result.on_b = manifold.points[0].place;

@@ -121,7 +121,7 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
     const Entry entry = stack[--count];
     if (entry.lower > least) continue;
     if (entry.child & kLeafBit) {
-      each_triangle(tree.triangle_blocks[entry.child & ~kLeafBit],
+      each_triangle(tree.triangle_blocks.subspan(entry.child & ~kLeafBit, 1),
                     [&](const TrianglePoints& t, std::uint32_t triangle) {
                       for (const Vec3& p : t) {
                         const double height = dot(n, p);
@@ -158,16 +158,12 @@ ShapeContact touches_convex(const TreeView& tree, const Pose& pose, const Convex
   result.answer = Answer::no;
   if (tree.obb_nodes.empty()) return result;
   const Vec3 middle = solid.middle();
-  const Segment segment(middle, middle);
-  const double reach = solid.radius();
-  walk(
-      tree, segment, frame.rounding(segment) + kRounding * reach, [&] { return reach; },
-      [&](const TriangleBlock& block) {
-        return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
-          if (!solid.touches(t)) return true;
-          result = {Answer::yes, triangle};
-          return false;
-        });
+  walk_outward(
+      tree, Segment(middle, middle), [reach = solid.radius() * (1 + kRounding)] { return reach; },
+      [&](const TriangleBlock& block, std::uint32_t lane, bool) {
+        if (!solid.touches(points_of(block, lane))) return true;
+        result = {Answer::yes, block.triangle[lane]};
+        return false;
       });
   return result;
 }

@@ -4,9 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "collision/kernels/farthest_first.h"
-#include "collision/kernels/node_box.h"
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/eight.h"
 #include "collision/triangle_distance.h"
 #include "tree/tree_nodes.h"
 
@@ -14,13 +12,9 @@
 // than the best so far. Lower bounds are floats with their rounding taken off; distances of triangles are doubles.
 namespace orchard::runtime {
 
-using detail::slab_child;
-using detail::slab_radius;
-
 namespace {
 
 constexpr double kDistanceRounding = 1e-12;  // of distances in double, relative to them
-constexpr float kSumRounding = 1e-6f;        // of a few float sums
 constexpr double kSmallMargin = 0.125;       // of two leaves' radii: then most of their triangles are farther apart
 
 float float_above(double value) noexcept {
@@ -65,7 +59,7 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
   const Roots::Answer answer = trees_.test_roots(a, b, roots);
   lower_ = roots.lower_bound;
   work_ = 0;
-  stack_size_ = 0;
+  stack_.clear();
   nearest_.distance = min_lower_ = std::numeric_limits<double>::infinity();
   nearest_.direction = {};
   nearest_.triangle_first = nearest_.triangle_second = kNoTriangle;
@@ -78,11 +72,10 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
     // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
     const double error = trees_.exact_error(), scale = trees_.first_pose().scale;
     limit_.length = (limit + 2 * error) / scale * (1 + 4 * kDistanceRounding);
-    limit_.rounded_up = float_above(limit_.length);
     limit_.enough = std::max(0.0, (limit - error) / scale * (1 - 4 * kDistanceRounding));
   }
   find_cut();
-  stack_[stack_size_++] = {{0, 0}, 0};
+  stack_.start({{0, 0}, 0});
 }
 
 // What is farther need not be looked at.
@@ -99,96 +92,56 @@ bool DistanceSearch::may_be_nearer(double lower) const noexcept {
 void DistanceSearch::refine(const Budget& budget) noexcept {
   if (finished_ || budget.work == 0) return;
   PairBudget tracker(budget);
-  while (stack_size_ > 0 && nearest_.distance > limit_.enough && !tracker.exhausted()) {
-    const Apart pair = stack_[--stack_size_];
+  const detail::PlacedViews trees = trees_.views();
+  while (!stack_.empty() && nearest_.distance > limit_.enough && !tracker.exhausted()) {
+    const Apart pair = stack_.pop();
     if (!may_be_nearer(double{pair.lower})) {
       min_lower_ = std::min(min_lower_, double{pair.lower});
       continue;
     }
-    if (limit_.length < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
-    if (slab_child(first(), pair.a) & slab_child(second(), pair.b) & kLeafBit) {
-      compare_leaves(pair);
+    if (trees.are_leaves(pair)) {
+      compare_leaves(trees, pair);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
-      continue;
+    } else {
+      expand(trees, pair);
+      tracker.spend(kBlockWidth);
     }
-    expand(pair, detail::larger_node(first(), second(), pair, trees_.placement().scale));
-    tracker.spend(kBlockWidth);
   }
   if (nearest_.distance <= limit_.enough) leave_the_rest();
-  finished_ = stack_size_ == 0;
+  finished_ = stack_.empty();
   work_ += tracker.spent();
   report();
 }
 
 // Near enough: what has not been looked at still counts for the lower bound.
 void DistanceSearch::leave_the_rest() noexcept {
-  for (std::size_t i = 0; i < stack_size_; ++i) min_lower_ = std::min(min_lower_, double{stack_[i].lower});
-  stack_size_ = 0;
+  for (const Apart& pair : stack_.all()) min_lower_ = std::min(min_lower_, double{pair.lower});
+  stack_.clear();
 }
 
-// Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
-bool DistanceSearch::surely_near(const Apart& pair) noexcept {
-  const double radii =
-      double{slab_radius(first(), pair.a)} + double{slab_radius(second(), pair.b)} * double{trees_.placement().scale};
-  if (radii > limit_.enough) return false;
-  const detail::NodeBox p = detail::node_box_at(first(), pair.a);
-  const detail::NodeBox q = moved_box(trees_, pair.b);
-  const double x = double{q.center[0]} - double{p.center[0]}, y = double{q.center[1]} - double{p.center[1]},
-               z = double{q.center[2]} - double{p.center[2]};
-  const double farthest =
-      std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{trees_.placement().margin};
-  if (farthest > limit_.enough) return false;
-  nearest_.distance = std::min(nearest_.distance, farthest);
-  min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
-  return true;
-}
-
-// In place of a pair, those of its children that may be nearer than the best, the nearest last.
-void DistanceSearch::expand(const Apart& pair, const detail::Opened& opened) noexcept {
-  if (limit_.length < double{kCoordinateLimit}) return expand_within(pair, opened);
-  const detail::Placement& placement = trees_.placement();
+// In place of a pair, those of its children that may be nearer than the best, the nearest last; of those that overlap
+// the deepest.
+void DistanceSearch::expand(const detail::PlacedViews& trees, const Apart& pair) noexcept {
+  const detail::Opened opened = trees.open(pair);
   detail::BoxGaps gaps;
-  detail::compare_children<detail::box_gaps>(first(), second(), placement, pair, opened, placement.box_margin, gaps);
-  const std::size_t begin = stack_size_;
-  for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    // Overlapping boxes keep their depth for the order: the deepest first.
-    const float gap = gaps.gap[lane], lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
-    if (!may_be_nearer(std::max(0.0, double{lower}))) {
-      min_lower_ = std::min(min_lower_, std::max(0.0, double{lower}));
-      continue;
-    }
-    std::size_t at = stack_size_++;
-    for (; at > begin && stack_[at - 1].lower < lower; --at) stack_[at] = stack_[at - 1];
-    stack_[at] = {opened.pair(pair, lane), lower};
-  }
-}
-
-// The same where there is a limit: those that may be within it, the nearest last.
-void DistanceSearch::expand_within(const Apart& pair, const detail::Opened& opened) noexcept {
-  const detail::Placement& placement = trees_.placement();
-  const float margin = placement.box_margin + limit_.rounded_up;
-  detail::BoxGaps gaps;
-  detail::compare_children<detail::meeting_boxes>(first(), second(), placement, pair, opened, margin, gaps);
-  if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_.length);
-  const auto child = [&](std::uint32_t lane) ORCHARD_INLINE_LAMBDA -> Apart {
-    const float sum = gaps.gap[lane] + limit_.rounded_up, gap = sum - std::fabs(sum) * kSumRounding;
-    return {opened.pair(pair, lane), pair.lower > 0 ? std::max(gap, pair.lower) : gap};
-  };
-  stack_size_ =
-      detail::push_farthest_first(&stack_[0], stack_size_, gaps.meeting, child,
-                                  [](const Apart& apart, std::uint32_t) ORCHARD_INLINE_LAMBDA { return apart.lower; });
+  trees.compare_children(pair, opened, gaps);
+  const detail::Within some = detail::within(gaps.gap, cut_);
+  min_lower_ = std::min(min_lower_, std::max(0.0, double{some.beyond}));
+  stack_.push(
+      some.lanes,
+      [&](std::uint32_t lane) ORCHARD_INLINE_LAMBDA -> Apart {
+        return {opened.pair(pair, lane), pair.lower > 0 ? std::max(gaps.gap[lane], pair.lower) : gaps.gap[lane]};
+      },
+      [](const Apart& apart, std::uint32_t) ORCHARD_INLINE_LAMBDA { return apart.lower; });
 }
 
 // The nearest ones first: each found makes fewer of the others worth a test.
-void DistanceSearch::compare_leaves(const Apart& pair) noexcept {
-  const TriangleBlock& lanes = first().triangle_blocks[slab_child(first(), pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second().triangle_blocks[slab_child(second(), pair.b) & ~kLeafBit];
-  const float radii = slab_radius(first(), pair.a) + slab_radius(second(), pair.b) * trees_.placement().scale;
-  if (limit_.length < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
+void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apart& pair) noexcept {
+  const TriangleBlock &lanes = trees.lanes(pair), &rows = trees.rows(pair);
+  if (limit_.length < kSmallMargin * double{trees.radii(pair)}) return find_within(trees, pair);
   detail::TriangleGaps gaps;
   const float reach = float_above(std::min(cut_, 1e30));
-  detail::triangle_gaps(lanes, rows, trees_.placement(), nearest_.direction, reach, gaps);
+  detail::triangle_gaps(lanes, rows, trees.placement, nearest_.direction, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
   float left_out = gaps.beyond;
   std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;  // triangles to be looked at
@@ -218,27 +171,16 @@ void DistanceSearch::compare_leaves(const Apart& pair) noexcept {
 }
 
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
-void DistanceSearch::find_within(const Apart& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept {
-  detail::Placement near = trees_.placement();
+void DistanceSearch::find_within(const detail::PlacedViews& trees, const Apart& pair) noexcept {
+  detail::Placement near = trees.placement;
   near.margin = float_above((double{near.margin} + limit_.length) * (1 + 1e-6));
-  const detail::NodeBox lane_box = detail::node_box_at(first(), pair.a);
-  const detail::NodeBox row_box = moved_box(trees_, pair.b);
   min_lower_ = std::min(min_lower_, limit_.length);
-  struct Leaves {
-    DistanceSearch& self;
-    const TriangleBlock &lanes, &rows;
-  } context = {*this, lanes, rows};
-  const auto near_enough = [](void* of, std::uint32_t row, std::uint32_t left) {
-    const auto& [self, lane_block, row_block] = *static_cast<Leaves*>(of);
-    for (; left != 0; left &= left - 1) {
-      self.compare_triangles(lane_block, static_cast<std::uint32_t>(std::countr_zero(left)), row_block, row, true);
-      if (self.nearest_.distance <= self.limit_.enough) return true;
-    }
-    return false;
-  };
-  if (detail::visit_candidates({lanes, rows, lane_box, row_box}, near, near_enough, &context)) {
-    min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
-  }
+  const bool found = detail::PlacedViews{trees.first, trees.second, near, trees.relative}.each_candidate(
+      pair, [&](std::uint32_t lane, std::uint32_t row) {
+        compare_triangles(trees.lanes(pair), lane, trees.rows(pair), row, true);
+        return nearest_.distance <= limit_.enough;
+      });
+  if (found) min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
 }
 
 void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
@@ -264,7 +206,7 @@ void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t
 // Bounds never get worse, whatever rounding does.
 void DistanceSearch::report() noexcept {
   double least = std::min(min_lower_, nearest_.distance);
-  for (std::size_t i = 0; i < stack_size_; ++i) least = std::min(least, double{stack_[i].lower});
+  for (const Apart& pair : stack_.all()) least = std::min(least, double{pair.lower});
   const double scale = trees_.first_pose().scale, error = trees_.exact_error();
   if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kDistanceRounding) - error);
   upper_ = std::min(upper_, nearest_.distance * scale * (1 + kDistanceRounding) + error);

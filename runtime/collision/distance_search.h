@@ -19,7 +19,6 @@ class DistanceSearch {
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
-  void start(const Pose& a, const Pose& b) noexcept { start(a, b, Tolerance{}); }
   void start_within(const Pose& a, const Pose& b, double limit) noexcept;
   void refine(const Budget& budget = {}) noexcept;
 
@@ -41,12 +40,10 @@ class DistanceSearch {
   const TreeView& second() const noexcept { return trees_.second().tree; }
   void begin(const Pose& a, const Pose& b, double limit) noexcept;
   void leave_the_rest() noexcept;
-  bool surely_near(const Apart& pair) noexcept;
   bool may_be_nearer(double lower) const noexcept;
-  void expand(const Apart& pair, const detail::Opened& opened) noexcept;
-  void expand_within(const Apart& pair, const detail::Opened& opened) noexcept;
-  void compare_leaves(const Apart& pair) noexcept;
-  void find_within(const Apart& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
+  void expand(const detail::PlacedViews& trees, const Apart& pair) noexcept;
+  void compare_leaves(const detail::PlacedViews& trees, const Apart& pair) noexcept;
+  void find_within(const detail::PlacedViews& trees, const Apart& pair) noexcept;
   void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
                          bool may_meet) noexcept;
   void find_cut() noexcept;
@@ -54,12 +51,10 @@ class DistanceSearch {
 
   PlacedTrees trees_;
   detail::TreeStack<Apart> stack_;  // the nearest last
-  std::size_t stack_size_ = 0;
   Tolerance tolerance_;
   struct Limit {
     double length = std::numeric_limits<double>::infinity();  // what is farther is left out
-    float rounded_up = std::numeric_limits<float>::infinity();
-    double enough = 0;  // so near: nothing nearer is looked for
+    double enough = 0;                                        // so near: nothing nearer is looked for
   };
   Limit limit_;
   double cut_ = std::numeric_limits<double>::infinity();  // from the nearest and the limit, with the tolerance

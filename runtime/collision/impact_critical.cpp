@@ -16,25 +16,22 @@ constexpr double kEnough = 0.5;  // of the earliest time found: what may meet la
 // When triangles can meet first, within what is left of the time. False if the budget ends before all was looked at:
 // critical.time then holds for what was left, too.
 bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexcept {
-  Scratch& scratch = *workspace_.scratch();
-  Scratch::TimedPair* const stack = scratch.timed.data();
-  std::size_t size = 0;
-  stack[size++] = {0, 0, 0, moved(obb_node_at(second().obb_nodes[0], 0), trees_.placement())};
-  while (size > 0) {
+  TreeStack<Scratch::TimedPair>& stack = workspace_.scratch()->timed;
+  const PlacedViews trees = trees_.views();
+  for (stack.start({{0, 0}, 0}); !stack.empty();) {
     if (tracker.exhausted()) {
-      for (std::size_t i = 0; i < size; ++i) {
-        critical.time = std::min(critical.time, std::max(0.0, double{stack[i].time}));
+      for (const Scratch::TimedPair& pair : stack.all()) {
+        critical.time = std::min(critical.time, std::max(0.0, double{pair.time}));
       }
       return false;
     }
-    const Scratch::TimedPair top = stack[--size];
+    const Scratch::TimedPair top = stack.pop();
     if (critical.leaves(double{top.time})) continue;
-    const std::uint32_t a = slab_child(first(), top.a), b = slab_child(second(), top.b);
-    if (a & b & kLeafBit) {
-      compare_leaves(top, critical);
+    if (trees.are_leaves(top)) {
+      compare_leaves(trees, top, critical);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
     } else {
-      expand(top, size, critical);
+      expand(trees, top, critical);
       tracker.spend(kBlockWidth);
     }
   }
@@ -42,43 +39,36 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
 }
 
 // In place of a pair, those of its children that may meet in time, the earliest last.
-void ImpactSearch::expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept {
-  Scratch::TimedPair* const stack = workspace_.scratch()->timed.data();
-  const Placement& placement = trees_.placement();
-  const std::uint32_t a = slab_child(first(), top.a), b = slab_child(second(), top.b);
-  const ObbNodeBlock& own = first().obb_nodes[top.a / kBlockWidth];
-  const std::uint32_t own_lane = top.a % kBlockWidth;
-  const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[own_lane] < top.second.radius);
-  const std::uint32_t block = open_second ? b : a;
-  const auto margin = static_cast<float>((double{placement.margin} + limits_.margin) * (1 + 1e-6));
-  ObbNodeTimes times;
-  if (open_second) {
-    obb_node_times(obb_node_at(own, own_lane), second().obb_nodes[block], &placement, motion_.closing, margin, times);
-  } else {
-    obb_node_times(top.second, first().obb_nodes[block], nullptr, motion_.closing, margin, times);
-  }
-  const std::size_t begin = size;
+void ImpactSearch::expand(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept {
+  const Opened opened = trees.open(top);
+  const auto margin = static_cast<float>((double{trees.placement.box_margin} + limits_.margin) * (1 + 1e-6));
+  BoxTimes times;
+  trees.with_children(top, opened, [&](const NodeBox& single, const ObbNodeBlock& block, float scale) {
+    box_times(single, block, scale, opened.second ? motion_.of_second : motion_.of_first, margin, times);
+  });
+  std::uint32_t lanes = 0;
   for (std::uint32_t left = times.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const float time = top.time > 0 ? std::max(times.time[lane], top.time) : times.time[lane];
-    if (critical.leaves(double{time})) continue;
-    std::size_t at = size++;
-    for (; at > begin && stack[at - 1].time < time; --at) stack[at] = stack[at - 1];
-    const std::uint32_t node = block * kBlockWidth + lane;
-    stack[at] = open_second ? Scratch::TimedPair{time, top.a, node, times.slab(lane)}
-                            : Scratch::TimedPair{time, node, top.b, top.second};
+    times.time[lane] = top.time > 0 ? std::max(times.time[lane], top.time) : times.time[lane];
+    lanes |= std::uint32_t{!critical.leaves(double{times.time[lane]})} << lane;
   }
+  workspace_.scratch()->timed.push(
+      lanes,
+      [&](std::uint32_t lane) {
+        return Scratch::TimedPair{opened.pair(top, lane), times.time[lane]};
+      },
+      [](const Scratch::TimedPair& pair, std::uint32_t) { return pair.time; });
 }
 
-void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept {
-  const TriangleBlock& lanes = first().triangle_blocks[slab_child(first(), top.a) & ~kLeafBit];
-  const TriangleBlock& rows = second().triangle_blocks[slab_child(second(), top.b) & ~kLeafBit];
-  const ObbNode p = obb_node_at(first().obb_nodes[top.a / kBlockWidth], top.a % kBlockWidth);
-  const auto reach = [](const ObbNode& slab, const Vec3& center) {
-    const Vec3 from = minus({slab.x, slab.y, slab.z}, center);
-    return (length_of(from) + double{slab.radius}) * (1 + 1e-5);
+void ImpactSearch::compare_leaves(const PlacedViews& trees, const Scratch::TimedPair& top,
+                                  Critical& critical) noexcept {
+  const TriangleBlock &lanes = trees.lanes(top), &rows = trees.rows(top);
+  const auto reach = [](const NodeBox& box, const Vec3& center) {
+    const Vec3 from = minus({box.center[0], box.center[1], box.center[2]}, center);
+    return (length_of(from) + double{box.radius}) * (1 + 1e-5);
   };
-  const double first_reach = reach(p, motion_.first.center), second_reach = reach(top.second, motion_.second.center);
+  const double first_reach = reach(trees.first_box(top), motion_.first.center),
+               second_reach = reach(trees.second_box(top), motion_.second.center);
   const double fastest = length_of(motion_.velocity) + motion_.speed +
                          (motion_.first.spin + motion_.first.turning) * first_reach +
                          (motion_.second.spin + motion_.second.turning) * second_reach;
@@ -89,7 +79,7 @@ void ImpactSearch::compare_leaves(const Scratch::TimedPair& top, Critical& criti
   };
   const double reach_in_time = fastest * (1 + kImpactRounding) * critical.cut + limits_.margin;
   TriangleGaps gaps;
-  triangle_gaps(lanes, rows, trees_.placement(), direction_,
+  triangle_gaps(lanes, rows, trees.placement, direction_,
                 static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
   // The nearest first: each makes fewer of the others worth a look.
   std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "collision/kernels/obb_node_time.h"
+#include "collision/kernels/box_time.h"
 #include "collision/pair_query.h"
 #include "collision/workspace_scratch.h"
 #include "math/vector_functions.h"
@@ -23,6 +23,10 @@ struct Turn {
   // How fast a point so far from the centre comes closer along u at most.
   double rate(const Vec3& u, double reach) const noexcept {
     return (spin * (length_of(cross(axis, u)) + kImpactRounding) + turning) * reach;
+  }
+  // The same seen from another frame's axes and origin.
+  Turn from(const Pose& frame) const noexcept {
+    return {turned_back(frame, minus(center, frame.translation)), turned_back(frame, axis), spin, turning};
   }
   Turning in_float() const noexcept {
     Turning result;
@@ -71,8 +75,9 @@ class ImpactSearch {
   bool prepare() noexcept;
   bool place(double time) noexcept;
   bool find_critical(PairBudget& tracker, Critical& critical) noexcept;
-  void expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept;
-  void compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept;
+  void expand(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept;
+  void find_closing() noexcept;
+  void compare_leaves(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept;
   struct Speeds {  // of two leaves: how fast anything comes closer, and how far they reach from where they turn about
     double fastest, first_reach, second_reach;
   };
@@ -97,7 +102,8 @@ class ImpactSearch {
     Vec3 velocity{};   // of the second one's centre less the first one's
     double speed = 0;  // and what is not known of it, at most
     Turn first, second;
-    Closing closing;  // the same in float
+    // The same in float, of the first tree's nodes against one of the second's, and the other way round.
+    Closing of_first, of_second;
   };
   Motion motion_;
   struct Limits {  // lengths

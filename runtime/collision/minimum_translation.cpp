@@ -99,7 +99,7 @@ Meeting meeting_at(const MinimumTranslationSearch& search, const Vec3& u, double
                     meeting.any = true;
                     const std::array<ShiftPlanes, 2> faces = face_planes(a, b);
                     if (exit_of(faces, u, kWayRounding * search.size) <= meeting.farthest) return false;
-                    search.room.spend(kTestsPerShifts);
+                    search.room.work += kTestsPerShifts;
                     const MeetingShifts::Exit exit = MeetingShifts(a, b).exit(u, meeting.farthest);
                     if (exit.way > meeting.farthest) meeting.farthest = exit.way, meeting.normal = exit.normal;
                     return at + exit.way >= limit || ++met == kMet;
@@ -116,11 +116,10 @@ class Obstacles {
   // How far all of them are left behind, and what the last one is left at. Ends once that is `enough`.
   MeetingShifts::Exit exit(const Vec3& u, double enough) noexcept {
     MeetingShifts::Exit last{0, u};
-    if (last_left_ < cuts_.size()) last = shifts_of(last_left_).exit(u, 0);  // likely to be among the last again
     for (std::size_t i = 0; i < cuts_.size() && last.way < enough; ++i) {
       if (exit_of(cuts_[i].faces, u, slack_) <= last.way) continue;
       const MeetingShifts::Exit exit = shifts_of(i).exit(u, last.way);
-      if (exit.way > last.way) last = exit, last_left_ = i;
+      if (exit.way > last.way) last = exit;
     }
     return last;
   }
@@ -134,12 +133,10 @@ class Obstacles {
     return false;
   }
 
-  // The one that was in the way of the direction before is likely to be so again.
   bool block(const Vec3& u, double limit) noexcept {
     if (!std::isfinite(limit)) return false;
-    if (last_blocking_ < cuts_.size() && blocks(last_blocking_, u, limit)) return true;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      if (blocks(i, u, limit)) return last_blocking_ = i, true;
+      if (exit_of(cuts_[i].faces, u, slack_) >= limit && shifts_of(i).contain(u, limit)) return true;
     }
     return false;
   }
@@ -147,7 +144,7 @@ class Obstacles {
   std::size_t kept() const noexcept { return std::min(kKept, cuts_.size()); }
   const MeetingShifts& shifts_of(std::size_t i) noexcept {
     if (i < kKept && known_[i]) return shifts_[i];
-    room_.spend(kTestsPerShifts);
+    room_.work += kTestsPerShifts;
     if (i < kKept) known_[i] = true;
     return (i < kKept ? shifts_[i] : other_) = MeetingShifts(cuts_[i].first, cuts_[i].second);
   }
@@ -155,14 +152,9 @@ class Obstacles {
  private:
   static constexpr std::size_t kKept = 32;
 
-  bool blocks(std::size_t i, const Vec3& u, double limit) noexcept {
-    return exit_of(cuts_[i].faces, u, slack_) >= limit && shifts_of(i).contain(u, limit);
-  }
-
   WalkStack& room_;
   std::span<const Cut> cuts_;
   double slack_;
-  std::size_t last_left_ = 0, last_blocking_ = 0;
   std::array<MeetingShifts, kKept> shifts_;
   std::array<bool, kKept> known_{};
   MeetingShifts other_;
@@ -209,7 +201,7 @@ class WaySearch {
       : search_(search),
         obstacles_(search),
         refinements_(refinements),
-        last_listing_(search.room.work() / 2 + search.work / 2) {}
+        last_listing_(search.room.work / 2 + search.work / 2) {}
 
   const MinimumTranslation& best() const noexcept { return best_; }
   Obstacles& obstacles() noexcept { return obstacles_; }
@@ -234,7 +226,7 @@ class WaySearch {
   }
 
   void settle() noexcept {
-    for (bool first = true; count_ > 0 && (first || search_.room.work() < search_.work); first = false) {
+    for (bool first = true; count_ > 0 && (first || search_.room.work < search_.work); first = false) {
       std::pop_heap(listed_.begin(), listed_.begin() + static_cast<std::ptrdiff_t>(count_), longer);
       Listed next = listed_[--count_];
       if (next.way >= limit_) {
@@ -261,8 +253,8 @@ class WaySearch {
 
   bool list(const Vec3& direction, Plane& plane) noexcept {
     const double size = length(direction);
-    if (!(size > 0) || search_.room.work() >= last_listing_) return false;
-    search_.room.spend(1 + search_.cuts.size() / kCutsPerTest);
+    if (!(size > 0) || search_.room.work >= last_listing_) return false;
+    search_.room.work += 1 + search_.cuts.size() / kCutsPerTest;
     const Vec3 u = (1 / size) * direction;
     for (std::size_t i = 0; i < tried_count_; ++i) {
       if (dot(tried_[i], u) > kSame) return false;

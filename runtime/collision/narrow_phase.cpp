@@ -31,7 +31,6 @@ bool NarrowPhase::reserve(std::size_t pairs) noexcept { return query().reserve(p
 Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept { return query().start(a, b); }
 Answer NarrowPhase::refine(const Budget& budget) noexcept { return query().refine(budget); }
 Answer NarrowPhase::refine_exactly(const Budget& budget) noexcept { return query().refine_exactly(budget); }
-Answer NarrowPhase::probe(std::uint32_t level) noexcept { return query().probe(level); }
 
 Verdict NarrowPhase::verdict() const noexcept { return query().verdict(); }
 Answer NarrowPhase::answer() const noexcept { return query().known().answer; }

@@ -75,17 +75,16 @@ Answer PairQuery::start(const Pose& a, const Pose& b) noexcept {
   return known_.answer = Answer::maybe;
 }
 
-Answer PairQuery::refine_level(const Budget& budget) noexcept {
-  if (budget.work == 0) return known_.answer;
+Answer PairQuery::refine_level(PairBudget& tracker) noexcept {
   if (roots_pending_) {
     trees_.place();
     roots_pending_ = false;
     if (!spheres_.begin(trees_)) return give_up_spheres(), known_.answer;
   }
-  if (!spheres_.have_inner()) return refine_exactly(budget);
-  PairBudget tracker(budget);
+  if (!spheres_.have_inner()) return refine_last(tracker);
+  const std::uint64_t before = tracker.spent();
   const SphereLevels::End end = spheres_.refine(trees_, tracker);
-  lower_separation_bound();
+  known_.separation_bound = std::min(known_.separation_bound, spheres_.least_bound() * trees_.first_pose().scale);
   if (end == SphereLevels::End::room) give_up_spheres();
   if (end == SphereLevels::End::level) {
     ++level_;
@@ -95,20 +94,19 @@ Answer PairQuery::refine_level(const Budget& budget) noexcept {
       finish(Answer::maybe);
     }
   }
-  known_.work += tracker.spent();
+  known_.work += tracker.spent() - before;
   return known_.answer;
 }
 
-Answer PairQuery::refine_last(const Budget& budget) noexcept {
-  if (budget.work == 0) return known_.answer;
-  if (!has_last_level()) return refine(budget);
-  PairBudget tracker(budget);
+Answer PairQuery::refine_last(PairBudget& tracker) noexcept {
+  if (!has_last_level()) return refine_level(tracker);
+  const std::uint64_t before = tracker.spent();
   if (!exact_started_) start_exact();
-  if (triangles_.refine(trees_, tracker)) {
+  if (triangles_.refine(trees_.views(), tracker)) {
     ++level_;
     finish(triangles_.any() ? Answer::yes : Answer::no);
   }
-  known_.work += tracker.spent();
+  known_.work += tracker.spent() - before;
   return known_.answer;
 }
 
@@ -124,22 +122,6 @@ void PairQuery::give_up_spheres() noexcept {
   out_of_room_ = true;
   spheres_.give_up();
   if (!has_last_level()) finish(Answer::maybe);
-}
-
-Answer PairQuery::probe(std::uint32_t level) noexcept {
-  if (known_.finished || !roots_pending_ || level == 0 || SphereLevels::roots_are_leaves(trees_)) return known_.answer;
-  trees_.place();
-  if (spheres_.probe(trees_, level)) {
-    lower_separation_bound();
-    return known_.answer;
-  }
-  level_ = level;
-  finish(Answer::no);
-  return known_.answer;
-}
-
-void PairQuery::lower_separation_bound() noexcept {
-  known_.separation_bound = std::min(known_.separation_bound, spheres_.least_bound() * trees_.first_pose().scale);
 }
 
 void PairQuery::finish(Answer answer) noexcept {
@@ -251,28 +233,11 @@ bool DirectSearch::place(const Pose& a, const Pose& b) noexcept {
   return placed;
 }
 
-bool DirectSearch::search_near(const NodePair& leaves, const Budget& budget) noexcept {
-  if (budget.work == 0) return false;
-  PairBudget tracker(budget);
-  query_.start_exact();
-  query_.triangles_.start_near(query_.trees_, leaves);
-  const bool ended = query_.triangles_.refine(query_.trees_, tracker);
-  query_.known_.work += tracker.spent();
-  query_.triangles_.start();
-  return ended && say_yes_if(query_.triangles_.any());
-}
-
 bool DirectSearch::say_yes_if(bool meet) noexcept {
   if (!meet) return false;
   query_.exact_started_ = true;
   query_.finish(Answer::yes);
   return true;
-}
-
-void DirectSearch::say_no(double lower) noexcept {
-  query_.exact_started_ = true;
-  query_.finish(Answer::no);
-  query_.known_.lower_bound = lower;
 }
 
 }  // namespace orchard::runtime

@@ -29,11 +29,19 @@ class PairQuery {
   bool reserve(std::size_t pairs) noexcept { return spheres_.reserve(pairs); }
 
   Answer start(const Pose& a, const Pose& b) noexcept;
-  Answer refine(const Budget& budget = {}) noexcept { return known_.finished ? known_.answer : refine_level(budget); }
-  Answer refine_exactly(const Budget& budget = {}) noexcept {
-    return known_.finished ? known_.answer : refine_last(budget);
+  // A level of spheres, or the last level, as far as the tracker goes, which knows what was spent.
+  Answer advance(PairBudget& tracker, Order order) noexcept {
+    if (known_.finished || tracker.exhausted()) return known_.answer;
+    return order == Order::exact_first ? refine_last(tracker) : refine_level(tracker);
   }
-  Answer probe(std::uint32_t level) noexcept;
+  Answer refine(const Budget& budget = {}) noexcept {
+    PairBudget tracker(budget);
+    return advance(tracker, Order::level_by_level);
+  }
+  Answer refine_exactly(const Budget& budget = {}) noexcept {
+    PairBudget tracker(budget);
+    return advance(tracker, Order::exact_first);
+  }
 
   const Known& known() const noexcept { return known_; }
   bool finished() const noexcept { return known_.finished; }
@@ -49,11 +57,10 @@ class PairQuery {
   bool start_over() noexcept;
   void reset() noexcept;
   void forget() noexcept;
-  Answer refine_level(const Budget& budget) noexcept;
-  Answer refine_last(const Budget& budget) noexcept;
+  Answer refine_level(PairBudget& tracker) noexcept;
+  Answer refine_last(PairBudget& tracker) noexcept;
   void start_exact() noexcept;
   void give_up_spheres() noexcept;
-  void lower_separation_bound() noexcept;
   void finish(Answer answer) noexcept;
   void add_ball(Contact& contact, Vec3& normal) const noexcept;
   Vec3 triangle_normal() const noexcept;
@@ -68,8 +75,8 @@ class PairQuery {
   bool out_of_room_ = false;
 };
 
-// Searches the last level of a query in another order than refine_exactly(): triangles that met before come first, or a
-// front decides where to begin. What it finds is the query's answer. Precondition: the query has a last level.
+// Searches the last level of a query in another order than refine_exactly(): triangles that met before come first. What
+// it finds is the query's answer. Precondition: the query has a last level.
 class DirectSearch {
  public:
   explicit DirectSearch(PairQuery& query) noexcept : query_(query) {}
@@ -78,23 +85,18 @@ class DirectSearch {
   // trees().place() first. Returns false, and refuses, if floats cannot hold the pair. Precondition: both poses are
   // rigid.
   bool place(const Pose& a, const Pose& b) noexcept;
-  // These test two triangles, all triangles of two leaves, and triangles of the leaves' neighbours (as far as the
-  // budget goes). If any meet, the query's answer becomes "yes". They return whether it did.
+  // These test two triangles, and all triangles of two leaves. If any meet, the query's answer becomes "yes". They
+  // return whether it did.
   bool test_two(const MeetingTriangles::Place& place) noexcept {
-    return say_yes_if(query_.triangles_.test_two(query_.trees_, place));
+    return say_yes_if(query_.triangles_.test_two(query_.trees_.views(), place));
   }
   bool test_leaves(const NodePair& leaves) noexcept {
-    return say_yes_if(query_.triangles_.test_leaves(query_.trees_, leaves));
+    return say_yes_if(query_.triangles_.test_leaves(query_.trees_.views(), leaves));
   }
-  bool search_near(const NodePair& leaves, const Budget& budget) noexcept;
-  void search(const Budget& budget) noexcept { query_.refine_last(budget); }  // all of the last level
-  // Makes the answer "no". `lower`: a bound on the distance of the surfaces, in world units.
-  void say_no(double lower) noexcept;
+  void search(const Budget& budget) noexcept { query_.refine_exactly(budget); }  // all of the last level
   void add_work(std::uint64_t work) noexcept { query_.known_.work += work; }
 
-  const PlacedTrees& trees() const noexcept { return query_.trees_; }
   const MeetingTriangles& found() const noexcept { return query_.triangles_.found(); }
-  NodePair* stack() const noexcept { return query_.triangles_.stack(); }
 
  private:
   bool say_yes_if(bool meet) noexcept;
@@ -105,9 +107,10 @@ class DirectSearch {
 // Returns what a NarrowPhase consists of.
 PairQuery& query_of(NarrowPhase& pair) noexcept;
 
-// collide() for it, and the same with Order::exact_first, but for the verdict.
+// collide() for it, and the same without the verdict.
 Verdict collide(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget = {},
                 Order order = Order::exact_first) noexcept;
-void answer_exactly(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept;
+void answer_exactly(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget,
+                    Order order = Order::exact_first) noexcept;
 
 }  // namespace orchard::runtime

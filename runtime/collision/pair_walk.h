@@ -1,11 +1,8 @@
 #pragma once
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-#include "collision/kernels/node_box.h"
-#include "collision/kernels/obb_node_block.h"
 #include "collision/node_pairs.h"
 #include "orchard/runtime/packed_tree.h"
 
@@ -34,50 +31,35 @@ struct PlacedPair {
   }
 };
 
-class WalkStack {
- public:
-  // Room for two trees. False if there is no memory.
-  bool reserve(const TreeView& a, const TreeView& b) noexcept { return stack_.reserve(a, b); }
-  NodePair* data() const noexcept { return stack_.data(); }
-  // The tests of eight against one, of leaves, and visits to triangles so far.
-  std::uint64_t work() const noexcept { return work_; }
-  void spend(std::uint64_t tests) noexcept { work_ += tests; }
-
- private:
-  TreeStack<NodePair> stack_;
-  std::uint64_t work_ = 0;
+struct WalkStack {
+  TreeStack<NodePair> stack;
+  std::uint64_t work = 0;  // The tests of eight against one, of leaves, and visits to triangles so far.
 };
 
 // Calls visit(lanes, lane, rows, row) for every pair of triangles, of the first and of the second tree, that the float
 // tests do not tell apart, until it returns true. Precondition: both trees have triangles, and `room` suffices for
 // them.
 template <typename Visit>
-void walk_candidates(const PlacedPair& pair, WalkStack& room, Visit&& visit) noexcept {
-  const TreeView &first = pair.first.tree, &second = pair.second.tree;
-  NodePair* const stack = room.data();
-  std::size_t size = 0;
-  stack[size++] = {0, 0};
+void walk_candidates(const PlacedPair& pair, WalkStack& room, const Visit& visit) noexcept {
+  const PlacedViews trees = {pair.first.tree, pair.second.tree, pair.placement, pair.relative};
   BoxGaps gaps;
-  while (size > 0) {
-    const NodePair top = stack[--size];
-    room.spend(1);
-    const std::uint32_t a = slab_child(first, top.a), b = slab_child(second, top.b);
-    if (a & b & kLeafBit) {
-      const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
-      const NodeBox lane_box = node_box_at(first, top.a), row_box = moved(node_box_at(second, top.b), pair.placement);
-      const LeafPair leaves = {lanes, rows, lane_box, row_box};
-      for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
-        const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-        room.spend(1);
-        if (visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth)) return;
+  for (room.stack.start({0, 0}); !room.stack.empty();) {
+    const NodePair top = room.stack.pop();
+    ++room.work;
+    if (!trees.are_leaves(top)) {
+      const Opened opened = trees.open(top);
+      trees.meeting_children(top, opened, gaps);
+      for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
+        room.stack.push(opened.pair(top, static_cast<std::uint32_t>(std::countr_zero(left))));
       }
       continue;
     }
-    const Opened opened = larger_node(first, second, top, a, b, pair.placement.scale);
-    meeting_children(first, second, pair.placement, pair.relative, top, opened, gaps);
-    for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
-      stack[size++] = opened.pair(top, static_cast<std::uint32_t>(std::countr_zero(left)));
-    }
+    const TriangleBlock &lanes = trees.lanes(top), &rows = trees.rows(top);
+    const auto take = [&](std::uint32_t lane, std::uint32_t row) {
+      ++room.work;
+      return visit(lanes, lane, rows, row);
+    };
+    if (trees.each_candidate(top, take)) return;
   }
 }
 

@@ -39,6 +39,7 @@
 namespace orchard::runtime {
 
 using detail::minus;
+using detail::turned_back;
 
 namespace {
 
@@ -75,12 +76,6 @@ bool same_place(const TreeView& a, const TreeView& b) noexcept {
 bool before(const Pose& a, const Pose& b) noexcept {
   if (a.rotation != b.rotation) return a.rotation < b.rotation;
   return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
-}
-
-Vec3 turned_back(const Pose& pose, const Vec3& u) noexcept {
-  const auto& r = pose.rotation;
-  return {r[0] * u[0] + r[3] * u[1] + r[6] * u[2], r[1] * u[0] + r[4] * u[1] + r[7] * u[2],
-          r[2] * u[0] + r[5] * u[1] + r[8] * u[2]};
 }
 
 double sum_of_sizes(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "collision/kernels/node_box.h"
 #include "collision/kernels/placement.h"
+#include "collision/node_pairs.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
 
@@ -92,6 +92,7 @@ class PlacedTrees {
   const Pose& second_pose() const noexcept { return second_pose_; }
   const Pose& relative() const noexcept { return relative_; }
   const detail::Placement& placement() const noexcept { return placement_; }
+  detail::PlacedViews views() const noexcept { return {first().tree, second().tree, placement_, relative_}; }
   double exact_error() const noexcept { return exact_error_; }  // of a point's place in double, in the world
   // relative() at the poses kept by test_roots() or place_for_triangles().
   Pose relative_pose() const noexcept;
@@ -112,11 +113,6 @@ class PlacedTrees {
 
 inline bool have_triangles(const PlacedTrees& trees) noexcept {
   return !trees.first().tree.obb_nodes.empty() && !trees.second().tree.obb_nodes.empty();
-}
-
-// A node of the second tree of triangles, in the first tree's frame.
-inline detail::NodeBox moved_box(const PlacedTrees& trees, std::uint32_t node) noexcept {
-  return detail::moved(detail::node_box_at(trees.second().tree, node), trees.placement());
 }
 
 }  // namespace orchard::runtime

@@ -68,11 +68,7 @@ struct TreeTriangles {
   void along(const Line& line, Visit&& visit) const noexcept {
     walk_ray(tree, line, visit);
   }
-  template <typename Visit>
-  void near(const Segment& segment, double rounding, Visit&& visit) const noexcept {
-    walk(
-        tree, segment, rounding, [] { return 0.0; }, visit);
-  }
+  std::span<const TriangleBlock> all() const noexcept { return tree.triangle_blocks; }
 };
 
 struct IndexTriangles {
@@ -89,10 +85,7 @@ struct IndexTriangles {
       walk.end = visit(leaf, walk.end);
     }
   }
-  template <typename Visit>
-  void near(const Segment&, double, Visit&& visit) const noexcept {
-    for (const TriangleBlock& block : RayIndexAccess::tree(index).leaves) visit(block);
-  }
+  std::span<const TriangleBlock> all() const noexcept { return RayIndexAccess::tree(index).leaves; }
 };
 
 // The first triangle along rays in one body's frame.
@@ -162,12 +155,9 @@ class Caster {
 
   Nearest nearest_of_all(const RayStart& ray, const RayEnd& limit) const noexcept {  // where floats do not reach
     Nearest nearest;
-    const Segment whole(ray.from, ray.to);
-    triangles_.near(whole, frame_.rounding(whole), [&](const TriangleBlock& block) {
-      return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
-        nearest.offer(ray, limit, t, triangle, false);
-        return true;
-      });
+    each_triangle(triangles_.all(), [&](const TrianglePoints& t, std::uint32_t triangle) {
+      nearest.offer(ray, limit, t, triangle, false);
+      return true;
     });
     return nearest;
   }

@@ -42,16 +42,12 @@ Crossing crossing(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcep
 
 double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
   double sum = 0;
-  for (const TriangleBlock& block : tree.triangle_blocks) {
-    each_triangle(block, [&](const TrianglePoints& t, std::uint32_t) {
-      const Vec3 a = minus(t[0], point), b = minus(t[1], point), c = minus(t[2], point);
-      const double la = length(a), lb = length(b), lc = length(c);
-      const double volume =
-          a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-      sum += 2 * std::atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-      return true;
-    });
-  }
+  each_triangle(tree.triangle_blocks, [&](const TrianglePoints& t, std::uint32_t) {
+    const Vec3 a = minus(t[0], point), b = minus(t[1], point), c = minus(t[2], point);
+    const double la = length(a), lb = length(b), lc = length(c);
+    sum += 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    return true;
+  });
   return sum;
 }
 
@@ -68,14 +64,12 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, 
   const Vec3 from = frame.enter(p), to = frame.enter(q);
   if (!within_reach(from) || !within_reach(to)) return unknown;
   const Segment segment(from, to);
-  const bool point = from == to;
   double least = limit / pose.scale, rest = std::numeric_limits<double>::infinity();
   // False once nothing nearer is wanted.
   const auto compare = [&](const TrianglePoints& t, std::uint32_t triangle, bool may_meet) {
     Vec3 common{};
-    const NearestPoints near = may_meet && segment_meets(from, to, t, common) ? NearestPoints{0, common, common}
-                               : point                                        ? nearest_points(from, t)
-                                                                              : nearest_points(from, to, t);
+    const NearestPoints near =
+        may_meet && segment_meets(from, to, t, common) ? NearestPoints{0, common, common} : nearest_points(from, to, t);
     if (near.distance > least && beyond != nullptr) {
       rest = std::min(rest, near.distance - kParallelError * (longest_edge(t) + std::sqrt(segment.square)));
     }
@@ -93,23 +87,13 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, 
     }
   }
   const double size = length(from) + length(to) + length(tree.origin) + tree.bounding_radius;
-  if (size <= kFloatReach) {
-    const float others = walk_outward(
-        tree, shape_of(tree, segment), [&] { return least; },
-        [&](const TriangleBlock& block, std::uint32_t lane, bool may_meet) {
-          const std::uint32_t triangle = block.triangle[lane];
-          return (guessed && triangle == guess) || compare(points_of(block, lane), triangle, may_meet);
-        });
-    rest = std::min(rest, double{others});
-  } else {
-    walk(
-        tree, segment, frame.rounding(segment), [&] { return least; },
-        [&](const TriangleBlock& block) {
-          return each_triangle(
-              block, [&](const TrianglePoints& t, std::uint32_t triangle) { return compare(t, triangle, true); });
-        });
-    rest = 0;
-  }
+  const float others = walk_outward(
+      tree, segment, [&] { return least; },
+      [&](const TriangleBlock& block, std::uint32_t lane, bool may_meet) {
+        const std::uint32_t triangle = block.triangle[lane];
+        return (guessed && triangle == guess) || compare(points_of(block, lane), triangle, may_meet);
+      });
+  rest = std::min(rest, double{others});
   if (best.triangle != kNoTriangle) best.point = frame.leave(best.point);
   if (beyond != nullptr) *beyond = std::max(0.0, rest - kRounding * size) * pose.scale;
   return best;
@@ -172,16 +156,10 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
         return clear ? end : -std::numeric_limits<float>::infinity();
       });
     } else {
-      const Segment segment(p, q);
-      walk(
-          solid, segment, frame.rounding(segment), [] { return 0.0; },
-          [&](const TriangleBlock& block) {
-            each_triangle(block, [&](const TrianglePoints& t, std::uint32_t) {
-              count(t);
-              return clear;
-            });
-            return clear;
-          });
+      each_triangle(solid.triangle_blocks, [&](const TrianglePoints& t, std::uint32_t) {
+        count(t);
+        return clear;
+      });
     }
     if (clear) return winding > 0;
   }
@@ -191,10 +169,7 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
 bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept {
   if (inner.triangles.empty()) return false;
   if (!is_rigid(inner_pose)) return true;
-  const auto& corner = inner.vertices[inner.triangles[0][0]];
-  std::array<double, 3> point{};
-  for (std::size_t i = 0; i < 3; ++i) point[i] = double{corner[i]} + inner.origin[i];
-  return contains(solid, pose, transform(inner_pose, point));
+  return contains(solid, pose, transform(inner_pose, along(points_of(inner, 0)[0], inner.origin, 1)));
 }
 
 SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const std::array<double, 3>& center,
@@ -206,12 +181,8 @@ SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const 
   double size = std::sqrt(dot(way, way));
   const bool inside = size > 0 && contains(solid, pose, center);
   if (!(size > 0)) {
-    const auto& t = solid.triangles[result.surface.triangle];
-    const auto corner = [&](std::size_t k) {
-      const auto& v = solid.vertices[t[k]];
-      return Vec3{double{v[0]}, double{v[1]}, double{v[2]}};
-    };
-    way = rotate(pose, detail::cross(corner(1) - corner(0), corner(2) - corner(0)));
+    const TrianglePoints t = points_of(solid, result.surface.triangle);
+    way = rotate(pose, detail::cross(t[1] - t[0], t[2] - t[0]));
     size = std::sqrt(dot(way, way));
   }
   if (inside) result.surface.distance = -result.surface.distance;

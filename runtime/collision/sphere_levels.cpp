@@ -20,39 +20,15 @@ using detail::is_leaf;
 namespace {
 
 constexpr std::size_t kBlockPairs = std::size_t{kBlockWidth} * kBlockWidth;
-constexpr std::uint32_t kMaxProbedLevels = 64;  // a call each
-constexpr std::uint32_t kNoExcess = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) - 1;
 
 // sqrt(s^2 + x) - s falls with s and grows with x: with the largest reach and the least excess over all the pairs that
 // missed, it is at most any of their gaps.
 double gap_of(const detail::LevelState& state) noexcept {
   const auto largest = [](const auto& v) { return double{*std::max_element(v.begin(), v.end())}; };
   const double reach = (largest(state.row_radius) + largest(state.lane_radius)) * (1 + 1e-6);
-  const double excess =
-      double{std::bit_cast<float>(*std::min_element(state.min_excess.begin(), state.min_excess.end()) + 1)};
+  const double excess = double{*std::min_element(state.min_excess.begin(), state.min_excess.end())};
   return std::isfinite(excess) ? excess / (std::sqrt(reach * reach + excess) + reach)
                                : std::numeric_limits<double>::infinity();
-}
-
-void begin_seeing(detail::LevelState& state) noexcept {
-  state.min_excess.fill(kNoExcess);
-  state.row_radius.fill(0);
-  state.lane_radius.fill(0);
-}
-
-// The pair among `bits` whose spheres overlap most, compared with their sizes.
-std::uint32_t deepest_of(std::uint64_t bits, const BlockPair& block, const BlockHits& hits, float scale) noexcept {
-  auto best = static_cast<std::uint32_t>(std::countr_zero(bits));
-  float least = std::numeric_limits<float>::infinity();
-  const float row_scale = block.lanes_are_second ? 1.0f : scale, lane_scale = block.lanes_are_second ? scale : 1.0f;
-  for (; bits != 0; bits &= bits - 1) {
-    const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
-    const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;
-    const float reach = block.rows->radius[row] * row_scale + block.lanes->radius[lane] * lane_scale;
-    const float depth = hits.square[row][lane] - reach * reach;
-    if (depth < least) least = depth, best = bit;
-  }
-  return best;
 }
 
 }  // namespace
@@ -184,7 +160,8 @@ void SphereLevels::improve(const PlacedTrees& trees, NodePair pair, double squar
 void SphereLevels::start_level(const PlacedTrees& trees) noexcept {
   cursor_ = {};
   level_best_ = {};
-  begin_seeing(seen_);
+  seen_.min_excess.fill(std::numeric_limits<float>::infinity());
+  seen_.row_radius.fill(0), seen_.lane_radius.fill(0);
   seen_.best_inner = std::numeric_limits<float>::infinity();
   seen_.best_leaf = static_cast<float>(leaf_best_.bound + double{trees.placement().slack});
 }
@@ -202,53 +179,6 @@ void SphereLevels::give_up() noexcept {
   inner_.clear();
   next_.clear();
   if (level_best_.bound < best_.bound) best_ = level_best_;
-}
-
-// What a depth-first search has seen; its tests count for a lower bound as those of a level do.
-struct SphereLevels::Probe {
-  detail::LevelState seen{};
-  NodePair found{};
-  double square = 0;
-};
-
-bool SphereLevels::probe(const PlacedTrees& trees, std::uint32_t level) noexcept {
-  Probe probe;
-  begin_seeing(probe.seen);
-  level_best_ = {};
-  if (!probe_below(trees, {0, 0}, std::min(level, kMaxProbedLevels), probe)) {
-    pruned_gap_ = std::min(pruned_gap_, gap_of(probe.seen));
-    return false;
-  }
-  improve(trees, probe.found, probe.square, false);
-  if (level_best_.bound < best_.bound) best_ = level_best_;
-  return true;
-}
-
-// The pair's children, the deepest overlap first. True once two nodes meet that are that many levels down, or leaves.
-bool SphereLevels::probe_below(const PlacedTrees& trees, NodePair pair, std::uint32_t levels, Probe& probe) noexcept {
-  const Groups groups(trees, pair);
-  BlockHits hits;
-  for (std::uint32_t outer = 0; outer < groups.lanes.count; outer += kBlockWidth) {
-    for (std::uint32_t inner = 0; inner < groups.rows.count;) {
-      const BlockPair block = groups.block(outer, inner);
-      detail::test_block(block, trees.placement(), probe.seen, hits);
-      const std::uint32_t at = inner, rows = block.row_end - block.row_begin;
-      tests_ += std::uint64_t{rows} * block.lane_count;
-      inner += rows;
-      for (std::uint64_t left = levels > 1 && hits.leaves == 0 ? hits.meeting : 0; left != 0;) {
-        const std::uint32_t bit = deepest_of(left, block, hits, trees.placement().scale);
-        left &= ~(std::uint64_t{1} << bit);
-        if (probe_below(trees, groups.pair(outer, at, bit), levels - 1, probe)) return true;
-      }
-      const std::uint64_t ends = levels > 1 ? hits.leaves : hits.meeting;
-      if (ends == 0) continue;
-      const std::uint32_t bit = deepest_of(ends, block, hits, trees.placement().scale);
-      probe.found = groups.pair(outer, at, bit);
-      probe.square = double{hits.square[bit / kBlockWidth][bit % kBlockWidth]};
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace orchard::runtime

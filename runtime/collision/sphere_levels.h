@@ -32,10 +32,7 @@ class SphereLevels {
   bool begin(const PlacedTrees& trees) noexcept;                       // with the roots; false if there is no room
   End refine(const PlacedTrees& trees, PairBudget& tracker) noexcept;  // to the end of a level
   void give_up() noexcept;                                             // for lack of room: the bounds so far stay valid
-  // Whether any spheres meet at a level, by a search that ends at the first two. Precondition: nothing has begun.
-  bool probe(const PlacedTrees& trees, std::uint32_t level) noexcept;
-
-  bool have_inner() const noexcept { return inner_.size() > 0; }  // whether there is another level
+  bool have_inner() const noexcept { return inner_.size() > 0; }       // whether there is another level
   std::size_t pairs() const noexcept { return inner_.size() + settled_leaves_; }
   const Best& best() const noexcept { return best_; }
   double least_bound() const noexcept { return least_bound_; }  // of all pairs that met
@@ -61,12 +58,10 @@ class SphereLevels {
     std::uint32_t outer = 0, inner = 0;
   };
   struct Groups;
-  struct Probe;
   void collect(const PlacedTrees& trees, const Groups& groups, const detail::BlockHits& hits) noexcept;
   void improve(const PlacedTrees& trees, NodePair pair, double square, bool leaves) noexcept;
   void start_level(const PlacedTrees& trees) noexcept;
   void finish_level(const PlacedTrees& trees) noexcept;
-  bool probe_below(const PlacedTrees& trees, NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
 
   PairList inner_, leaves_, next_;  // meeting pairs: with an inner node, of two leaves, and of the level under way
   std::size_t settled_leaves_ = 0;

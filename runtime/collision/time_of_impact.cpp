@@ -17,12 +17,6 @@ constexpr int kFineSteps = 12;          // nearer than the tolerance
 constexpr int kProbes = 24;             // for a contact after the last certified time
 constexpr int kHalvings = 8;            // of the bracket
 
-Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
-  const auto& r = pose.rotation;
-  return {r[0] * v[0] + r[3] * v[1] + r[6] * v[2], r[1] * v[0] + r[4] * v[1] + r[7] * v[2],
-          r[2] * v[0] + r[5] * v[1] + r[8] * v[2]};
-}
-
 // Of a point of the surface from the centre of rotation, at most.
 double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
   const ObbNodeBlock& root = tree.tree.obb_nodes[0];
@@ -81,10 +75,25 @@ bool ImpactSearch::place(double time) noexcept {
   limits_.margin = options_.margin * shrink;
   limits_.finest = std::max(kMinTolerance * size, 4 * limits_.error);
   limits_.tolerance = std::max(options_.tolerance * shrink, limits_.finest);
-  for (std::size_t i = 0; i < 3; ++i) motion_.closing.velocity[i] = static_cast<float>(motion_.velocity[i]);
-  motion_.closing.speed = static_cast<float>((motion_.speed + 1e-6 * length_of(motion_.velocity)) * (1 + 1e-6));
-  motion_.closing.first = motion_.first.in_float(), motion_.closing.second = motion_.second.in_float();
+  find_closing();
   return true;
+}
+
+// In the frames in which nodes of either tree are tested.
+void ImpactSearch::find_closing() noexcept {
+  const Pose& relative = trees_.relative();
+  const Vec3 back = turned_back(relative, motion_.velocity);
+  Closing both;
+  both.speed = static_cast<float>((motion_.speed + 1e-6 * length_of(motion_.velocity)) * (1 + 1e-6));
+  both.rounding = trees_.placement().box_margin;
+  motion_.of_first = motion_.of_second = both;
+  for (std::size_t i = 0; i < 3; ++i) {
+    motion_.of_first.velocity[i] = static_cast<float>(-motion_.velocity[i]);
+    motion_.of_second.velocity[i] = static_cast<float>(back[i]);
+  }
+  motion_.of_first.lanes = motion_.first.in_float(), motion_.of_first.single = motion_.second.in_float();
+  motion_.of_second.lanes = motion_.second.from(relative).in_float();
+  motion_.of_second.single = motion_.first.from(relative).in_float();
 }
 
 // Until when the balls in which the bodies turn, whatever way, do not meet.

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
-#include "collision/kernels/obb_node_block.h"
-#include "collision/kernels/point_block.h"
 #include "collision/kernels/segment_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "math/vector_functions.h"
 #include "orchard/runtime/shape_query.h"
 #include "tree/tree_nodes.h"
@@ -17,11 +17,11 @@
 // How queries about one tree go through its triangles, outward from a point or segment; along a ray: ray_walk.h.
 namespace orchard::runtime::detail {
 
-// Ball slabs are left out only beyond this much more than need be, for the rounding of a few operations.
+// The rounding of a few operations in double.
 inline constexpr double kRounding = 1e-12;
 // Below this a coordinate is no more than rounding, and without it no product of three underflows: exact_sign.h.
 inline constexpr double kMinCoordinate = 0x1p-305;
-// Farther from the origin than that, floats cannot hold squares of distances: one ball slab at a time in double.
+// Farther from the origin than that, floats cannot hold squares of distances: every triangle is looked at.
 inline constexpr double kFloatReach = 2e18;
 inline constexpr std::size_t kWalkRoom = std::size_t{kBlockWidth} * (kTriangleTreeDepthLimit + 1) + 1;
 
@@ -31,56 +31,13 @@ struct Segment {
   Segment(const Vec3& from, const Vec3& to) noexcept : p(from), d(minus(to, from)), square(dot(d, d)) {}
 };
 
-// Lower bound on the distance of a ball slab from a segment.
-inline double obb_node_distance(const ObbNodeBlock& block, std::uint32_t lane, const Segment& s) noexcept {
-  const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
-  const Vec3 to = minus(c, s.p);
-  const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
-  const double by_ball = length(minus(to, along({0, 0, 0}, s.d, t))) - double{block.radius[lane]};
-  const double begin = -dot(n, to), end = begin + dot(n, s.d);
-  const double nearer = begin * end <= 0 ? 0 : std::min(std::fabs(begin), std::fabs(end));
-  // The normal's length is 1 to within 5e-7.
-  const double by_planes = (nearer - double{block.height[lane]}) * (1 - 1e-6);
-  return std::max(by_ball, by_planes);
-}
-
-// In double, one ball slab at a time. Calls visit(triangle block) for the leaves whose ball slabs are within limit() of
-// the segment, the nearest child first, until it returns false.
-template <typename Limit, typename Visit>
-void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&& limit, Visit&& visit) noexcept {
-  struct Entry {
-    double distance;
-    std::uint32_t child;
-  };
-  std::array<Entry, kWalkRoom> stack;
-  std::size_t size = 0;
-  const auto push_children = [&](std::uint32_t index) {
-    const ObbNodeBlock& block = tree.obb_nodes[index];
-    const std::size_t begin = size;
-    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      const double distance = obb_node_distance(block, lane, segment);
-      if (distance > limit() * (1 + kRounding) + rounding) continue;
-      std::size_t at = size++;
-      for (; at > begin && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
-      stack[at] = {distance, block.child[lane]};
-    }
-  };
-  push_children(0);
-  while (size > 0) {
-    const Entry entry = stack[--size];
-    if (entry.distance > limit() * (1 + kRounding) + rounding) continue;
-    if ((entry.child & kLeafBit) == 0) {
-      push_children(entry.child);
-    } else if (!visit(tree.triangle_blocks[entry.child & ~kLeafBit])) {
-      return;
-    }
-  }
-}
-
+// Calls visit(points, triangle) for the triangles of blocks until it returns false, which is returned then.
 template <typename Visit>
-bool each_triangle(const TriangleBlock& block, Visit&& visit) noexcept {
-  for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
-    if (!visit(points_of(block, lane), block.triangle[lane])) return false;
+bool each_triangle(std::span<const TriangleBlock> blocks, Visit&& visit) noexcept {
+  for (const TriangleBlock& block : blocks) {
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
+      if (!visit(points_of(block, lane), block.triangle[lane])) return false;
+    }
   }
   return true;
 }
@@ -102,7 +59,6 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
   Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), origin)); }
   Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, origin, 1)); }
-  double rounding(const Segment& s) const noexcept { return kRounding * (length(s.p) + length(s.d) + bounding_radius); }
   Vec3 origin;
   double bounding_radius;
   const Pose& pose;
@@ -111,7 +67,7 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
 
 // A point or segment in float, as a box, too, and what they need to be asked about in float.
 struct FloatShape {
-  bool point = false;
+  bool in_float = true;  // else nothing below says anything
   std::array<float, 3> from{}, to{};
   NodeBox box{};
   Placement placement{};
@@ -124,7 +80,7 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   const double half = length(s.d) / 2;
   const double size = length(middle) + half + length({root.x[0], root.y[0], root.z[0]}) + double{root.radius[0]};
   FloatShape shape;
-  shape.point = !(half > 0);
+  shape.in_float = size <= kFloatReach;
   Vec3 normal = {1, 0, 0};
   if (half > 0) {  // across the segment
     std::size_t least = 0;
@@ -144,34 +100,11 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   const Vec3 end = along(s.p, s.d, 1);
   for (std::size_t i = 0; i < 3; ++i) shape.from[i] = f(s.p[i]), shape.to[i] = f(end[i]);
   Placement& p = shape.placement;
-  p.rotation = p.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  p.translation = {};
-  p.scale = 1;
   p.margin = f(std::max(128 * unit * size, 1e-15) * (1 + 4 * unit));
   p.box_margin = f(std::max(256 * unit * size, 1e-15) * (1 + 4 * unit));
   const int exponent = 1 + exponent_of(std::max(size, 1e-18));
   p.unit = f(scaled(1, -exponent)), p.whole = f(scaled(1, exponent));
   return shape;
-}
-
-// Which of eight distances are no more than `limit`, as bits, and the least of the others.
-struct Within {
-  std::uint32_t lanes;
-  float beyond;
-};
-ORCHARD_INLINE Within within(const Eight<Base>::Floats& distance, double limit) noexcept {
-  using E = Eight<Base>;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  auto most = static_cast<float>(limit);
-  if (double{most} > limit) most = std::nextafter(most, -kInfinity);  // no float is between them
-  const auto outside = E::all(most) < distance;
-  return {~Base::bits(outside), least_of<Base>(Base::choose(outside, distance, E::all(kInfinity)))};
-}
-
-inline std::uint32_t lanes_in_use(const TriangleBlock& block) noexcept {
-  std::uint32_t count = 0;
-  for (const std::uint32_t triangle : block.triangle) count += triangle != kNoTriangle;
-  return (1u << count) - 1;
 }
 
 // The first of the nearest of these lanes, at least one.
@@ -188,7 +121,16 @@ inline std::uint32_t nearest_lane(const std::array<float, kBlockWidth>& gaps, st
 // the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false. Returns how
 // far from the segment all others are, at least, if it has not returned false.
 template <typename Limit, typename Visit>
-float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Visit&& visit) noexcept {
+float walk_outward(const TreeView& tree, const Segment& segment, Limit&& limit, Visit&& visit) noexcept {
+  const FloatShape shape = shape_of(tree, segment);
+  if (!shape.in_float) {
+    for (const TriangleBlock& block : tree.triangle_blocks) {
+      for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
+        if (!visit(block, lane, true)) return 0;
+      }
+    }
+    return 0;
+  }
   struct Entry {
     float gap;
     std::uint32_t child;
@@ -208,14 +150,10 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
     }
     if (entry.child & kLeafBit) {
       const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
-      if (shape.point) {
-        point_gaps(shape.from, block, shape.placement, row);
-      } else {
-        segment_gaps(shape.from, shape.to, block, shape.placement, row);
-      }
-      const Within some = within(load<Eight<Base>::Floats>(row), limit());
+      segment_gaps(shape.from, shape.to, block, shape.placement, row);
+      const Within some = within(row, limit());
       leave_out(some.beyond);  // lanes without a triangle repeat the first one
-      std::uint32_t left = some.lanes & lanes_in_use(block);
+      std::uint32_t left = some.lanes & used_lanes(block);
       while (left != 0) {
         const std::uint32_t nearest = nearest_lane(row, left);
         left &= ~(1u << nearest);
@@ -229,13 +167,10 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
     }
     const ObbNodeBlock& block = tree.obb_nodes[entry.child];
     box_gaps(shape.box, block, 1, shape.placement.box_margin, gaps);
-    using E = Eight<Base>;
-    const auto used = E::all(0.0f) <= load<E::Floats>(block.radius);
-    const auto far = E::all(std::numeric_limits<float>::infinity());
-    const Within some = within(Base::choose(used, load<E::Floats>(gaps.gap), far), limit());
+    const Within some = within(gaps.gap, limit());
     leave_out(some.beyond);
     const std::size_t begin = size;
-    for (std::uint32_t left = some.lanes & gaps.used; left != 0; left &= left - 1) {
+    for (std::uint32_t left = some.lanes; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       std::size_t place = size++;
       for (; place > begin && stack[place - 1].gap < gaps.gap[lane]; --place) stack[place] = stack[place - 1];

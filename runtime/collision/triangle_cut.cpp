@@ -20,11 +20,6 @@ constexpr double kShift = 1e-13;      // of the triangles' size: the rounding of
 
 double square(const Vec3& v) noexcept { return dot(v, v); }
 
-Vec3 unit_or_zero(const Vec3& v) noexcept {
-  const double size = std::sqrt(square(v));
-  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{0, 0, 0};
-}
-
 // The two of all points offered that are farthest apart, nearly: the farthest from the first, and the farthest from it.
 class Ends {
  public:
@@ -57,7 +52,7 @@ bool holds(const TrianglePoints& t, const Vec3& normal, const Vec3& p, double sl
     least = std::min(least, dot(cross(normal, minus(t[(i + 1) % 3], t[i])), minus(p, t[i])));
   }
   if (least >= 0) return true;
-  return least >= -slack * size && nearest_points(p, t).distance <= slack;
+  return least >= -slack * size && nearest_points(p, p, t).distance <= slack;
 }
 
 // Where the edges of one cross the plane of the other, in it.

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/kernels/eight.h"
 #include "math/vector_functions.h"
 #include "simd/machine.h"
+#include "simd/vector_support.h"
 
 // Corners and edges of a triangle, three of each, side by side: a lane each. Of what is equally near in different lanes
-// the first lane's counts, and in a lane what was tried first, however many lanes there are at a time.
+// the first lane's counts, and in a lane what was tried first.
 namespace orchard::runtime::detail {
 namespace {
 
@@ -17,36 +17,29 @@ namespace {
 // of the length; below it, no place on the line is farther than 1e-7 of the length from the best one.
 constexpr double kParallelSineSquare = 1e-14;
 
-// One lane at a time, and all at once (with a fourth that repeats the last).
-struct OneDouble {
-  using Numbers = double;
-  using Mask = bool;
-  static double all(double x) noexcept { return x; }
-  static double lanes(double x, double y, double z, std::size_t lane) noexcept {
-    return lane == 0 ? x : lane == 1 ? y : z;
-  }
-  static double choose(bool mask, double a, double b) noexcept { return mask ? a : b; }
-  static bool none_of(bool a, bool b, bool c) noexcept { return !(a || b || c); }
-};
-#ifdef ORCHARD_VECTORS
+// Three lanes, and a fourth that repeats the last.
 struct FourDoubles {
+#ifdef ORCHARD_VECTORS
   using Numbers __attribute__((vector_size(32))) = double;
   using Mask __attribute__((vector_size(32))) = std::int64_t;
-  ORCHARD_INLINE static Numbers all(double x) noexcept { return Numbers{x, x, x, x}; }
-  ORCHARD_INLINE static Numbers lanes(double x, double y, double z, std::size_t) noexcept {
-    return Numbers{x, y, z, z};
-  }
   ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return mask ? a : b;
   }
-  ORCHARD_INLINE static Mask none_of(const Mask& a, const Mask& b, const Mask& c) noexcept { return ~(a | b | c); }
-};
+#else
+  using Numbers = Plain<double, 4>;
+  using Mask = Numbers::Mask;
+  static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
+    return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
+  }
 #endif
+  ORCHARD_INLINE static Numbers all(double x) noexcept { return Numbers{x, x, x, x}; }
+  ORCHARD_INLINE static Numbers lanes(double x, double y, double z) noexcept { return Numbers{x, y, z, z}; }
+};
 
-template <typename Kind>
 struct Near {
-  using Numbers = typename Kind::Numbers;
-  using Mask = typename Kind::Mask;
+  using Kind = FourDoubles;
+  using Numbers = Kind::Numbers;
+  using Mask = Kind::Mask;
   struct Three {
     Numbers x, y, z;
   };
@@ -54,9 +47,8 @@ struct Near {
   ORCHARD_INLINE static Three all(const Vec3& v) noexcept {
     return {Kind::all(v[0]), Kind::all(v[1]), Kind::all(v[2])};
   }
-  ORCHARD_INLINE static Three lanes(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t lane) noexcept {
-    return {Kind::lanes(a[0], b[0], c[0], lane), Kind::lanes(a[1], b[1], c[1], lane),
-            Kind::lanes(a[2], b[2], c[2], lane)};
+  ORCHARD_INLINE static Three lanes(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+    return {Kind::lanes(a[0], b[0], c[0]), Kind::lanes(a[1], b[1], c[1]), Kind::lanes(a[2], b[2], c[2])};
   }
   ORCHARD_INLINE static Numbers dot(const Three& a, const Three& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -113,12 +105,10 @@ struct Near {
   ORCHARD_INLINE static Three foot(const Edge& edge, const Three& point) noexcept {
     return along(edge.from, edge.way, unit(dot(minus(point, edge.from), edge.way), edge.square));
   }
-  // Where points project into a triangle; beside it an edge is nearer. `put`: the points, their feet, their distances'
-  // squares, and whether there is one that is nearer. Feet are made of the corners, so that they are in the triangle
-  // even where it is a needle, whose normal is mostly rounding.
-  template <typename Put>
+  // Where points project into a triangle, which is that of b or of a; beside it an edge is nearer. Feet are made of the
+  // corners, so that they are in the triangle even where it is a needle, whose normal is mostly rounding.
   ORCHARD_INLINE void face(const Three& point, const TrianglePoints& t, const TrianglePoints& edge,
-                           Put&& put) noexcept {
+                           bool of_b) noexcept {
     const Vec3 n = detail::cross(edge[0], edge[1]);
     const double size = runtime::dot(n, n);
     if (!(size > 0)) return;
@@ -127,20 +117,10 @@ struct Near {
                           ORCHARD_INLINE_LAMBDA { return dot(cross(all(edge[i]), minus(point, all(t[i]))), normal); };
     const Numbers zero = Kind::all(0), first = area(1), second = area(2), third = area(0);  // opposite of the corners
     const Numbers sum = first + second + third;
-    const auto inside = Kind::none_of(first < zero, second < zero, third < zero) & (zero < sum);
+    const auto inside = (zero <= first) & (zero <= second) & (zero <= third) & (zero < sum);
     const Three on = along(along(all(t[0]), all(edge[0]), second / sum), all(edge[2]), -(third / sum));
     const Three d = minus(on, point);
-    put(on, dot(d, d), inside & (dot(d, d) < square));
-  }
-  ORCHARD_INLINE void faces_of_b(const Three& point, const TrianglePoints& t, const TrianglePoints& edge) noexcept {
-    face(point, t, edge, [&](const Three& on, const Numbers& s, const Mask& better) ORCHARD_INLINE_LAMBDA {
-      offer(point, on, s, better);
-    });
-  }
-  ORCHARD_INLINE void faces_of_a(const Three& point, const TrianglePoints& t, const TrianglePoints& edge) noexcept {
-    face(point, t, edge, [&](const Three& on, const Numbers& s, const Mask& better) ORCHARD_INLINE_LAMBDA {
-      offer(on, point, s, better);
-    });
+    offer(of_b ? point : on, of_b ? on : point, dot(d, d), inside & (dot(d, d) < square));
   }
 };
 
@@ -148,101 +128,54 @@ TrianglePoints edges_of(const TrianglePoints& t) noexcept {
   return {minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
 }
 
-template <typename Kind>
-ORCHARD_INLINE Near<Kind> near_triangle(const TrianglePoints& a, const TrianglePoints& b, std::size_t lane) noexcept {
-  using N = Near<Kind>;
-  const TrianglePoints ea = edges_of(a), eb = edges_of(b);
-  const auto lanes = [lane](const TrianglePoints& t) ORCHARD_INLINE_LAMBDA { return N::lanes(t[0], t[1], t[2], lane); };
-  const typename N::Edge of_b(lanes(b), lanes(eb));
-  N best;
-  for (std::size_t i = 0; i < 3; ++i) best.edges({N::all(a[i]), N::all(ea[i])}, of_b);
-  best.faces_of_b(lanes(a), b, eb);
-  best.faces_of_a(of_b.from, a, ea);
-  return best;
-}
-
-template <typename Kind>
-ORCHARD_INLINE Near<Kind> near_point(const Vec3& point, const TrianglePoints& t, std::size_t lane) noexcept {
-  using N = Near<Kind>;
-  const TrianglePoints edge = edges_of(t);
-  const typename N::Edge of_t(N::lanes(t[0], t[1], t[2], lane), N::lanes(edge[0], edge[1], edge[2], lane));
-  const typename N::Three p = N::all(point);
-  N best;
-  best.offer(p, N::foot(of_t, p));
-  best.faces_of_b(p, t, edge);
-  return best;
-}
-
-template <typename Kind>
-ORCHARD_INLINE Near<Kind> near_segment(const Vec3& p, const Vec3& q, const TrianglePoints& t,
-                                       std::size_t lane) noexcept {
-  using N = Near<Kind>;
-  const TrianglePoints edge = edges_of(t);
-  const typename N::Edge of_t(N::lanes(t[0], t[1], t[2], lane), N::lanes(edge[0], edge[1], edge[2], lane));
-  const typename N::Edge segment(N::all(p), N::all(minus(q, p)));
-  N best;
-  best.edges(segment, of_t);
-  // Parallel ones, too, from each corner.
-  best.offer(N::foot(segment, of_t.from), of_t.from);
-  for (const Vec3& end : {p, q}) best.offer(N::all(end), N::foot(of_t, N::all(end)));
-  best.faces_of_b(N::lanes(p, q, q, lane), t, edge);
-  return best;
-}
-
 struct NearestPair {
-  double square = std::numeric_limits<double>::infinity();
-  Vec3 p{}, q{};
+  double square;
+  Vec3 p, q;
 };
 
-NearestPoints found_points(const NearestPair& best) noexcept { return {std::sqrt(best.square), best.p, best.q}; }
-
-template <typename Find>
-NearestPair one_by_one(Find&& find) noexcept {
-  NearestPair best;
-  for (std::size_t lane = 0; lane < 3; ++lane) {
-    const Near<OneDouble> found = find(lane);
-    if (!(found.square < best.square)) continue;
-    best = {found.square, {found.p.x, found.p.y, found.p.z}, {found.q.x, found.q.y, found.q.z}};
-  }
-  return best;
-}
-
-NearestPair triangles_one_by_one(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return one_by_one([&](std::size_t lane) { return near_triangle<OneDouble>(a, b, lane); });
-}
-NearestPair point_one_by_one(const Vec3& point, const TrianglePoints& t) noexcept {
-  return one_by_one([&](std::size_t lane) { return near_point<OneDouble>(point, t, lane); });
-}
-NearestPair segment_one_by_one(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return one_by_one([&](std::size_t lane) { return near_segment<OneDouble>(p, q, t, lane); });
-}
-
-#ifdef ORCHARD_VECTORS
-ORCHARD_INLINE NearestPair first_of(const Near<FourDoubles>& near) noexcept {
-  using Lanes = std::array<double, 4>;
-  const auto lanes = [](const FourDoubles::Numbers& v) ORCHARD_INLINE_LAMBDA -> Lanes {
-    Lanes result;
-    store(v, result);
-    return result;
-  };
-  const Lanes square = lanes(near.square);
+// Of the lanes the first of the nearest.
+ORCHARD_INLINE NearestPair first_of(const Near& near) noexcept {
+  const auto& square = near.square;
   std::size_t lane = square[1] < square[0] ? 1 : 0;
   lane = square[2] < square[lane] ? 2 : lane;
-  const Lanes px = lanes(near.p.x), py = lanes(near.p.y), pz = lanes(near.p.z);
-  const Lanes qx = lanes(near.q.x), qy = lanes(near.q.y), qz = lanes(near.q.z);
-  return {square[lane], {px[lane], py[lane], pz[lane]}, {qx[lane], qy[lane], qz[lane]}};
+  return {
+      square[lane], {near.p.x[lane], near.p.y[lane], near.p.z[lane]}, {near.q.x[lane], near.q.y[lane], near.q.z[lane]}};
 }
 
-ORCHARD_INLINE NearestPair triangles_at_once(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return first_of(near_triangle<FourDoubles>(a, b, 0));
+ORCHARD_INLINE Near::Three lanes_of(const TrianglePoints& t) noexcept { return Near::lanes(t[0], t[1], t[2]); }
+
+ORCHARD_INLINE NearestPair near_triangle(const TrianglePoints& a, const TrianglePoints& b) noexcept {
+  const TrianglePoints ea = edges_of(a), eb = edges_of(b);
+  const Near::Edge of_b(lanes_of(b), lanes_of(eb));
+  Near best;
+  for (std::size_t i = 0; i < 3; ++i) best.edges({Near::all(a[i]), Near::all(ea[i])}, of_b);
+  best.face(lanes_of(a), b, eb, true);
+  best.face(of_b.from, a, ea, false);
+  return first_of(best);
 }
-ORCHARD_INLINE NearestPair point_at_once(const Vec3& point, const TrianglePoints& t) noexcept {
-  return first_of(near_point<FourDoubles>(point, t, 0));
+
+ORCHARD_INLINE NearestPair near_point(const Vec3& point, const TrianglePoints& t) noexcept {
+  const TrianglePoints edge = edges_of(t);
+  const Near::Three p = Near::all(point);
+  Near best;
+  best.offer(p, Near::foot({lanes_of(t), lanes_of(edge)}, p));
+  best.face(p, t, edge, true);
+  return first_of(best);
 }
-ORCHARD_INLINE NearestPair segment_at_once(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return first_of(near_segment<FourDoubles>(p, q, t, 0));
+
+ORCHARD_INLINE NearestPair near_segment(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+  const TrianglePoints edge = edges_of(t);
+  const Near::Edge of_t(lanes_of(t), lanes_of(edge)), segment(Near::all(p), Near::all(minus(q, p)));
+  Near best;
+  best.edges(segment, of_t);
+  // Parallel ones, too, from each corner.
+  best.offer(Near::foot(segment, of_t.from), of_t.from);
+  for (const Vec3& end : {p, q}) best.offer(Near::all(end), Near::foot(of_t, Near::all(end)));
+  best.face(Near::lanes(p, q, q), t, edge, true);
+  return first_of(best);
 }
-#endif
+
+NearestPoints found_points(const NearestPair& best) noexcept { return {std::sqrt(best.square), best.p, best.q}; }
 
 }  // namespace
 
@@ -255,27 +188,11 @@ double longest_edge(const TrianglePoints& t) noexcept {
   return std::sqrt(square);
 }
 
-// Machines without vectors of four doubles are better served by one number at a time.
-#ifdef ORCHARD_VECTORS
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return found_points(PerMachine<triangles_at_once, triangles_one_by_one>::call(a, b));
-}
-NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept {
-  return found_points(PerMachine<point_at_once, point_one_by_one>::call(point, t));
+  return found_points(PerMachine<near_triangle>::call(a, b));
 }
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return found_points(PerMachine<segment_at_once, segment_one_by_one>::call(p, q, t));
+  return found_points(p == q ? PerMachine<near_point>::call(p, t) : PerMachine<near_segment>::call(p, q, t));
 }
-#else
-NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return found_points(triangles_one_by_one(a, b));
-}
-NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept {
-  return found_points(point_one_by_one(point, t));
-}
-NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return found_points(segment_one_by_one(p, q, t));
-}
-#endif
 
 }  // namespace orchard::runtime::detail

@@ -14,9 +14,7 @@ struct NearestPoints {
 inline constexpr double kParallelError = 2e-7;
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
-// Of a triangle from a point, and from a segment that it does not intersect: as above, `on_a` being the point or on the
-// segment.
-NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept;
+// Of a triangle from a segment that it does not intersect, or a point: as above, `on_a` being on the segment.
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept;
 
 double longest_edge(const TrianglePoints& t) noexcept;

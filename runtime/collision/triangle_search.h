@@ -29,29 +29,24 @@ class TriangleSearch {
 
   bool reserve(const PlacedTrees& trees) noexcept;  // false if there is no memory
   bool has_room() const noexcept { return stack_.has_room(); }
-  NodePair* stack() const noexcept { return stack_.data(); }
   void reset_tests() noexcept { tests_ = {}; }
   const Tests& tests() const noexcept { return tests_; }  // since then
   void forget_found() noexcept { found_.first = found_.second = kNoTriangle; }
   bool any() const noexcept { return found_.first != kNoTriangle; }
   const MeetingTriangles& found() const noexcept { return found_; }
 
-  void start() noexcept;  // with the roots
-  // Starts with pairs of neighbours of two leaves, from the same blocks of the trees: the nearest ones that may meet,
-  // without the two leaves themselves.
-  void start_near(const PlacedTrees& trees, const NodePair& leaves) noexcept;
+  void start() noexcept { stack_.start({0, 0}); }  // with the roots
   // Searches up to the first pair of triangles that meet. Returns false if the budget ended the search.
-  bool refine(const PlacedTrees& trees, PairBudget& tracker) noexcept;
+  bool refine(const detail::PlacedViews& trees, PairBudget& tracker) noexcept;
   // Whether any triangles of two leaves meet.
-  bool test_leaves(const PlacedTrees& trees, const NodePair& leaves) noexcept;
+  bool test_leaves(const detail::PlacedViews& trees, const NodePair& leaves) noexcept;
   // Whether these two meet: needs no more than relative().
-  bool test_two(const PlacedTrees& trees, const MeetingTriangles::Place& place) noexcept;
+  bool test_two(const detail::PlacedViews& trees, const MeetingTriangles::Place& place) noexcept;
 
  private:
   void push_children(const NodePair& pair, const detail::Opened& opened, const detail::BoxGaps& gaps) noexcept;
 
   detail::TreeStack<NodePair> stack_;  // deepest overlap last
-  std::size_t size_ = 0;
   MeetingTriangles found_;
   Tests tests_;
 };

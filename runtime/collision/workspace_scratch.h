@@ -23,11 +23,9 @@ struct Workspace::Scratch {
   std::array<Cut, kCuts> cuts;
   std::size_t cut_count = 0;
 
-  // Pairs of ball slabs that may meet next, the second one moved, and when at the earliest.
-  struct TimedPair {
+  // Pairs of nodes that may meet next, and when at the earliest.
+  struct TimedPair : NodePair {
     float time;
-    std::uint32_t a, b;
-    detail::ObbNode second;
   };
   detail::TreeStack<TimedPair> timed;
 };

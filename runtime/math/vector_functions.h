@@ -18,6 +18,18 @@ inline Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
   return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
 }
 
+// Of length 1, or 0.
+inline Vec3 unit_or_zero(const Vec3& v) noexcept {
+  const double size = length(v);
+  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{};
+}
+// By the inverse of a pose's rotation.
+inline Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
+  const auto& r = pose.rotation;
+  return {r[0] * v[0] + r[3] * v[1] + r[6] * v[2], r[1] * v[0] + r[4] * v[1] + r[7] * v[2],
+          r[2] * v[0] + r[5] * v[1] + r[8] * v[2]};
+}
+
 // As std::ilogb and std::ldexp, which the sizes that occur need no call for.
 inline int exponent_of(double value) noexcept {  // of a finite value above 0
   const int power = static_cast<int>(std::bit_cast<std::uint64_t>(value) >> 52) - 1023;

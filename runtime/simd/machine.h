@@ -9,8 +9,8 @@
 // made at the first call: no resolver runs before main(), where neither sanitizers nor other libraries are ready.
 namespace orchard::runtime::detail {
 
-// Each has what those before it have. `portable` is the base of the architecture, where the broad phase takes the loops
-// of one number at a time that other compilers get: tests choose it to compare these loops with the others.
+// Each has what those before it have. `portable` is the base of the architecture, with the loops of one number at a
+// time that other compilers get: tests choose it to compare these loops with the others.
 enum class Machine : std::uint8_t { unknown, portable, base, avx2, avx512 };
 
 inline std::atomic<Machine> chosen_machine{Machine::unknown};
@@ -43,18 +43,20 @@ inline Machine machine() noexcept {
 
 // PerMachine<kernel>::call(..) is kernel(..) for the machine chosen. The kernel is ORCHARD_INLINE, so that it becomes
 // part of a function for each.
-// `base`: the same for the base of the architecture, where that is better served by other code.
-template <auto kernel, auto base = kernel>
+// `base`: the same for the base of the architecture, where that is better served by other code; `portable`: one number
+// at a time.
+template <auto kernel, auto base = kernel, auto portable = base>
 struct PerMachine;
 
 template <typename Result, typename... Arguments, Result (*kernel)(Arguments...) noexcept,
-          Result (*base)(Arguments...) noexcept>
-struct PerMachine<kernel, base> {
+          Result (*base)(Arguments...) noexcept, Result (*portable)(Arguments...) noexcept>
+struct PerMachine<kernel, base, portable> {
 #ifdef ORCHARD_MACHINES
   static Result call(Arguments... arguments) noexcept {
     const Machine chosen = machine();
     if (chosen == Machine::avx512) return avx512(arguments...);
-    return chosen == Machine::avx2 ? avx2(arguments...) : base(arguments...);
+    if (chosen == Machine::avx2) return avx2(arguments...);
+    return chosen == Machine::portable ? portable(arguments...) : base(arguments...);
   }
   ORCHARD_FOR_AVX2 static Result avx2(Arguments... arguments) noexcept { return kernel(arguments...); }
   ORCHARD_FOR_AVX512 static Result avx512(Arguments... arguments) noexcept { return kernel(arguments...); }

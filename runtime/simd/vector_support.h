@@ -91,15 +91,6 @@ struct PlainFloats {
   }
 };
 
-// One float at a time, where what the others need not be told of is worth a branch.
-struct OneFloat {
-  using Floats = float;
-  using Mask = bool;
-  static float choose(bool mask, float a, float b) noexcept { return mask ? a : b; }
-  static float sqrt(float a) noexcept { return std::sqrt(a); }
-  static std::uint32_t bits(bool mask) noexcept { return mask ? 1 : 0; }
-};
-
 #ifdef ORCHARD_VECTORS
 struct VectorFloats {
   using Floats __attribute__((vector_size(32))) = float;

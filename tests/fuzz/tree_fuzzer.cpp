@@ -21,7 +21,7 @@ void require(bool condition) {
 }
 
 void query(const TreeView& tree) {
-  NarrowPhase pair(tree, tree), probed(tree, tree);
+  NarrowPhase pair(tree, tree);
   DistanceQuery distance(tree, tree);
   const double size = tree.bounding_radius;
   const std::array<Pose, 3> poses = {Pose{}, Pose{.translation = {size, 0, 0}},
@@ -30,8 +30,6 @@ void query(const TreeView& tree) {
     pair.start(Pose{}, pose);
     for (int step = 0; step < 8 && !pair.finished(); ++step) pair.refine({.work = 2000});
     pair.refine_exactly({.work = 2000});
-    probed.start(Pose{}, pose);
-    probed.probe(2);
     distance.start(Pose{}, pose);
     for (int step = 0; step < 4 && !distance.finished(); ++step) distance.refine({.work = 500});
     require(distance.lower() <= distance.upper());

@@ -8,15 +8,25 @@ namespace orchard::runtime::test {
 // While one lives, the inner loops are those of this machine.
 class OnMachine {
  public:
-  explicit OnMachine(detail::Machine machine) noexcept { detail::use_machine(machine); }
+  explicit OnMachine(detail::Machine machine) noexcept : before_(detail::machine()) { detail::use_machine(machine); }
   OnMachine(const OnMachine&) = delete;
   OnMachine& operator=(const OnMachine&) = delete;
-  ~OnMachine() { detail::use_machine(detail::best_machine()); }
+  ~OnMachine() { detail::use_machine(before_); }
+
+ private:
+  detail::Machine before_;
 };
 
 // With the portable inner loops, or with the best ones.
 inline OnMachine on_portable_machine(bool portable) {
   return OnMachine(portable ? detail::Machine::portable : detail::best_machine());
+}
+
+// What the loops of one number at a time make of a question.
+template <typename Ask>
+void ask_portably(const Ask& ask) {
+  const OnMachine chosen(detail::Machine::portable);
+  ask();
 }
 
 // Runs `check` with the inner loops of every machine that this one can be.

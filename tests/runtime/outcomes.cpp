@@ -2,7 +2,6 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 
 #include "bodies.h"
 #include "orchard/runtime/contacts.h"
@@ -36,9 +35,7 @@ class Digest {
 };
 
 // A small motion from some poses on, asked coherently.
-void add_motion(Digest& digest, Workspace& workspace, TreePair pair, PairFront* front, const Pose& a, Pose b,
-                double step) {
-  pair.use(front);
+void add_motion(Digest& digest, Workspace& workspace, TreePair pair, const Pose& a, Pose b, double step) {
   const Pose turn = *pose_from_quaternion({1, 0.01, -0.005, 0.008}, {0, 0, 0});
   for (int i = 0; i < 12; ++i) {
     digest.add(collide_coherently(workspace, pair, a, b));
@@ -53,7 +50,6 @@ void add_motion(Digest& digest, Workspace& workspace, TreePair pair, PairFront* 
 int main() {
   const auto all = bodies();
   Workspace workspace;
-  const auto front = std::make_unique<PairFront>();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i; j < all.size(); ++j) {
       const PackedSphereTree &a = all[i].tree, &b = all[j].tree;
@@ -73,8 +69,6 @@ int main() {
         query.start(pose_a, pose_b);
         for (digest.add(query); !query.finished(); digest.add(query)) query.refine();
         query.start(pose_a, pose_b);
-        query.probe(2);
-        digest.add(query);
         query.refine_exactly();
         digest.add(query);
         distance.start(pose_a, pose_b);
@@ -84,9 +78,7 @@ int main() {
         digest.add(
             static_cast<std::uint64_t>(closer_than(workspace, pair, pose_a, pose_b, draw.uniform(0, 0.1) * size)));
         digest.add(workspace.distance.upper()), digest.add(workspace.distance.work());
-        for (PairFront* kept : {static_cast<PairFront*>(nullptr), front.get()}) {
-          add_motion(digest, workspace, pair, kept, pose_a, pose_b, 0.004 * size);
-        }
+        add_motion(digest, workspace, pair, pose_a, pose_b, 0.004 * size);
         const Manifold manifold = contacts(workspace, pair, pose_a, pose_b);
         digest.add(manifold.depth), digest.add(manifold.normal[0]), digest.add(std::uint64_t{manifold.count});
         Travel still, moving;

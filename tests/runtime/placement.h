@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "orchard/runtime/pose.h"
 
 namespace orchard::runtime::test {

@@ -26,7 +26,7 @@ const std::vector<Room> kRooms = {
     {"simd", {}, {}},
     {"math", {"simd"}, {"pose.h"}},
     {"tree", {"execution", "math"}, {"packed_tree.h", "tree_file.h"}},
-    {"collision/kernels", {"simd", "math", "tree"}, {"pair_front.h"}},
+    {"collision/kernels", {"simd", "math", "tree"}, {}},
     {"collision",
      {"execution", "simd", "math", "tree", "collision/kernels"},
      {"collide.h", "contacts.h", "distance.h", "narrow_phase.h", "shape_query.h", "time_of_impact.h"}},

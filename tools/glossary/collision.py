@@ -43,26 +43,6 @@ def obb_node():
     return picture
 
 
-def front():
-    picture = Picture("The front: the pairs of nodes at which the search of a pair of trees ended")
-    levels = [[160 + 172j], [88 + 128j, 232 + 128j], [46 + 84j, 130 + 84j, 196 + 84j, 268 + 84j], [24 + 40j, 68 + 40j, 246 + 40j, 290 + 40j]]
-    joined = [(levels[0][0], node) for node in levels[1]]
-    joined += [(levels[1][0], levels[2][0]), (levels[1][0], levels[2][1]), (levels[1][1], levels[2][2]), (levels[1][1], levels[2][3])]
-    joined += [(levels[2][0], levels[3][0]), (levels[2][0], levels[3][1]), (levels[2][3], levels[3][2]), (levels[2][3], levels[3][3])]
-    for a, b in joined:
-        picture.line(a, b, "thin")
-    ends = [levels[3][0], levels[3][1], levels[2][1], levels[2][2], levels[3][2], levels[3][3]]
-    picture.path(ends, "term-dashed")
-    for node in levels[0] + levels[1] + [levels[2][0], levels[2][3]]:
-        picture.dot(node, "dot-open", 6)
-    for node in ends:
-        picture.dot(node, "dot-term", 6)
-    picture.text(174 + 168j, "pair of roots")
-    picture.text(160 + 60j, "front", "note-term", "middle")
-    picture.text(160 + 12j, "the next search begins here", anchor="middle")
-    return picture
-
-
 def manifold():
     picture = Picture("A manifold: contact points of two bodies, with a normal and a depth")
     picture.path(box(14, 14, 306, 84), "solid", closed=True)
@@ -86,4 +66,4 @@ def manifold():
     return picture
 
 
-PICTURES = {"no-maybe-yes": no_maybe_yes, "obb-node": obb_node, "front": front, "manifold": manifold}
+PICTURES = {"no-maybe-yes": no_maybe_yes, "obb-node": obb_node, "manifold": manifold}

@@ -2,8 +2,8 @@
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
 
-// Eight nodes' boxes against one other's each: what gaps (node_box.cpp) and axes (front_block.cpp) of such are made of.
-// Rounding: placed_trees.cpp, (6).
+// One node's ball and box against eight others': the axes along which they may be apart, of which gaps (node_box.cpp)
+// and times (box_time.cpp) are made. Rounding: placed_trees.cpp, (6).
 namespace orchard::runtime::detail {
 
 template <typename Kind>
@@ -16,61 +16,21 @@ struct Boxes {
   Floats height, width, length, radius;
 
   ORCHARD_INLINE static Boxes of(const NodeBox& b) noexcept {
-    const std::array<float, 3> third = third_normal(b);
-    const auto all = [](const auto& v) ORCHARD_INLINE_LAMBDA -> Vectors {
-      return {E::all(v[0]), E::all(v[1]), E::all(v[2])};
-    };
-    return {all(b.center),    all(b.n),        all(b.m),         all(third),
-            E::all(b.height), E::all(b.width), E::all(b.length), E::all(b.radius)};
+    return {E::all_of(b.center), E::all_of(b.n),  E::all_of(b.m),   E::all_of(third_normal(b)),
+            E::all(b.height),    E::all(b.width), E::all(b.length), E::all(b.radius)};
   }
   // `scale`: times this, lanes are in the other one's units.
-  ORCHARD_INLINE static Boxes of(const ObbNodeBlock& b, float scale, std::uint32_t lane) noexcept {
+  ORCHARD_INLINE static Boxes of(const ObbNodeBlock& b, float scale) noexcept {
     const Floats unit = E::all(scale);
-    const Vectors n = {E::at(b.nx, lane), E::at(b.ny, lane), E::at(b.nz, lane)},
-                  m = {E::at(b.mx, lane), E::at(b.my, lane), E::at(b.mz, lane)};
-    return {{E::at(b.x, lane) * unit, E::at(b.y, lane) * unit, E::at(b.z, lane) * unit},
+    const Vectors n = {E::at(b.nx), E::at(b.ny), E::at(b.nz)}, m = {E::at(b.mx), E::at(b.my), E::at(b.mz)};
+    return {E::times({E::at(b.x), E::at(b.y), E::at(b.z)}, unit),
             n,
             m,
             E::cross(n, m),
-            E::at(b.height, lane) * unit,
-            E::at(b.width, lane) * unit,
-            E::at(b.length, lane) * unit,
-            E::at(b.radius, lane) * unit};
-  }
-  // Of the second tree, to the first one's frame.
-  ORCHARD_INLINE Boxes moved(const Placement& p) const noexcept {
-    const Vectors turned_n = E::turn(p.turn, n), turned_m = E::turn(p.turn, m);
-    const Floats unit = E::all(p.scale);
-    return {E::move(p, center), turned_n,     turned_m,      E::cross(turned_n, turned_m),
-            height * unit,      width * unit, length * unit, radius * unit};
-  }
-};
-
-// The best of the axes found so far: `u`, of length 1 to within 1e-6, from the one to the other.
-template <typename Kind>
-struct BestAxis {
-  using E = Eight<Kind>;
-  typename E::Floats gap;
-  typename E::Vectors u;
-
-  ORCHARD_INLINE void take(const typename E::Floats& other, const typename E::Vectors& axis,
-                           const typename E::Floats& over) noexcept {
-    const auto better = gap < other, behind = over < E::all(0.0f);
-    const auto put = [&](typename E::Floats& of, const typename E::Floats& by)
-                         ORCHARD_INLINE_LAMBDA { of = Kind::choose(better, Kind::choose(behind, -by, by), of); };
-    gap = Kind::choose(better, other, gap);
-    put(u.x, axis.x), put(u.y, axis.y), put(u.z, axis.z);
-  }
-};
-// The gap alone.
-template <typename Kind>
-struct BestGap {
-  using E = Eight<Kind>;
-  typename E::Floats gap;
-
-  ORCHARD_INLINE void take(const typename E::Floats& other, const typename E::Vectors&,
-                           const typename E::Floats&) noexcept {
-    gap = E::max(gap, other);
+            E::at(b.height) * unit,
+            E::at(b.width) * unit,
+            E::at(b.length) * unit,
+            E::at(b.radius) * unit};
   }
 };
 
@@ -92,27 +52,31 @@ struct BoxPair {
         distance(Kind::sqrt(E::dot(d, d))),
         ball_gap(distance - (q.radius + p.radius)) {}
 
-  // Tries the axes of both boxes and the line of the centres. Precondition: best has the balls' gap, along that line.
-  template <typename Best>
-  ORCHARD_INLINE void find(Best& best) const noexcept {
+  ORCHARD_INLINE Vectors line() const noexcept {  // of the centres, from p to q
+    const Floats far = distance + E::all(kMinDistance);
+    return {d.x / far, d.y / far, d.z / far};
+  }
+  // Calls take(gap, axis, along) for the axes of both boxes: `axis` is of length 1 to within 1e-6, and points from p to
+  // q where `along` is not below 0, else back. Returns the gap along the line of the centres.
+  template <typename Take>
+  ORCHARD_INLINE Floats each_axis(Take&& take) const noexcept {
     const Floats signed_n = E::dot(d, q.n), signed_m = E::dot(d, q.m), signed_l = E::dot(d, q.l);
-    const Floats over_n = E::abs(signed_n), over_m = E::abs(signed_m), over_l = E::abs(signed_l);
+    const Floats over_n = E::abs(signed_n), over_m = E::abs(signed_m), over_l = E::abs(signed_l), zero = E::all(0.0f);
     Floats reach = q.height * over_n + q.width * over_m + q.length * over_l;
-    Vectors across = {E::all(0.0f), E::all(0.0f), E::all(0.0f)};  // how far p reaches along q's axes
+    Vectors across = {zero, zero, zero};  // how far p reaches along q's axes
     const auto along = [&](const Vectors& u, const Floats& own) ORCHARD_INLINE_LAMBDA {
       const Floats by = E::dot(d, u), over = E::abs(by);
       const Floats un = E::abs(E::dot(u, q.n)), um = E::abs(E::dot(u, q.m)), ul = E::abs(E::dot(u, q.l));
       const Floats other = E::min(q.height * un + q.width * um + q.length * ul, q.radius);
-      best.take(over - (own + other), u, by);
+      take(over - (own + other), u, by);
       reach = reach + own * over;
       across = {across.x + own * un, across.y + own * um, across.z + own * ul};
     };
     along(p.n, p.height), along(p.m, p.width), along(p.l, p.length);
-    best.take(over_n - (q.height + E::min(across.x, p.radius)), q.n, signed_n);
-    best.take(over_m - (q.width + E::min(across.y, p.radius)), q.m, signed_m);
-    best.take(over_l - (q.length + E::min(across.z, p.radius)), q.l, signed_l);
-    const Floats far = distance + E::all(kMinDistance);
-    best.take(distance - reach / far, {d.x / far, d.y / far, d.z / far}, E::all(0.0f));
+    take(over_n - (q.height + E::min(across.x, p.radius)), q.n, signed_n);
+    take(over_m - (q.width + E::min(across.y, p.radius)), q.m, signed_m);
+    take(over_l - (q.length + E::min(across.z, p.radius)), q.l, signed_l);
+    return distance - reach / (distance + E::all(kMinDistance));
   }
 };
 

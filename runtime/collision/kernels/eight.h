@@ -1,13 +1,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "collision/kernels/placement.h"
 #include "orchard/runtime/packed_tree.h"
 #include "simd/vector_support.h"
 
-// Eight numbers, and eight vectors, at a time: what the inner loops over ball slabs and triangles are made of. `Kind`
-// is PlainFloats or VectorFloats; or OneFloat, for one of the eight.
+// Eight numbers, and eight vectors, at a time: what the inner loops over spheres, boxes and triangles are made of.
+// `Kind` is PlainFloats, or of the compiler's vectors (simd/vector_support.h).
 namespace orchard::runtime::detail {
 
 // What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.
@@ -29,17 +30,9 @@ struct Eight {
     Floats x, y, z;
   };
 
-  static constexpr std::size_t kCount = sizeof(Floats) / sizeof(float);  // NOLINT(bugprone-sizeof-expression)
-  static constexpr std::uint32_t kAll = (1u << kCount) - 1;
+  static constexpr std::uint32_t kAll = (1u << kBlockWidth) - 1;
 
-  // All of eight, or the one of them that is asked for.
-  ORCHARD_INLINE static Floats at(const std::array<float, kBlockWidth>& from, std::uint32_t lane) noexcept {
-    if constexpr (kCount == 1) {
-      return from[lane];
-    } else {
-      return load<Floats>(from);
-    }
-  }
+  ORCHARD_INLINE static Floats at(const std::array<float, kBlockWidth>& from) noexcept { return load<Floats>(from); }
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
   // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
   // number, both give the second one.
@@ -67,8 +60,26 @@ struct Eight {
     const Vectors turned = turn(p.rotation, v);
     return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
   }
-  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k, std::uint32_t lane = 0) noexcept {
-    return {at(block.corner[k][0], lane), at(block.corner[k][1], lane), at(block.corner[k][2], lane)};
+  template <typename V>
+  ORCHARD_INLINE static Vectors all_of(const V& v) noexcept {
+    return {all(v[0]), all(v[1]), all(v[2])};
+  }
+  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k) noexcept {
+    return {at(block.corner[k][0]), at(block.corner[k][1]), at(block.corner[k][2])};
+  }
+};
+
+// Vectors that were made eight at a time, to be taken one by one.
+template <typename Kind>
+struct OneByOne {
+  using E = Eight<Kind>;
+  std::array<float, kBlockWidth> x, y, z;
+
+  ORCHARD_INLINE explicit OneByOne(const typename E::Vectors& v) noexcept {
+    store(v.x, x), store(v.y, y), store(v.z, z);
+  }
+  ORCHARD_INLINE typename E::Vectors operator[](std::size_t i) const noexcept {
+    return {E::all(x[i]), E::all(y[i]), E::all(z[i])};
   }
 };
 
@@ -82,6 +93,18 @@ ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
     for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
   }
   return lanes[0];
+}
+
+// Which of eight distances are no more than `limit`, rounded to float, as bits, and the least of the others.
+struct Within {
+  std::uint32_t lanes;
+  float beyond;
+};
+ORCHARD_INLINE Within within(const std::array<float, kBlockWidth>& distances, double limit) noexcept {
+  using E = Eight<Base>;
+  const E::Floats distance = E::at(distances), infinite = E::all(std::numeric_limits<float>::infinity());
+  const auto outside = E::all(static_cast<float>(limit)) < distance;
+  return {~Base::bits(outside) & E::kAll, least_of<Base>(Base::choose(outside, distance, infinite))};
 }
 
 // The lanes that hold a triangle, as bits.

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "collision/kernels/obb_node_block.h"
+#include "orchard/runtime/packed_tree.h"
 #include "simd/vector_support.h"
 
 namespace orchard::runtime::detail {

@@ -1,5 +1,7 @@
 #include "collision/kernels/node_box.h"
 
+#include <limits>
+
 #include "collision/kernels/box_pair.h"
 #include "collision/kernels/eight.h"
 #include "math/vector_functions.h"
@@ -58,32 +60,16 @@ ORCHARD_INLINE void find_gaps(const NodeBox& single, const ObbNodeBlock& lanes, 
                               BoxGaps& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
-  const Boxes<Kind> p = Boxes<Kind>::of(single), q = Boxes<Kind>::of(lanes, scale, 0);
+  const Boxes<Kind> p = Boxes<Kind>::of(single), q = Boxes<Kind>::of(lanes, scale);
   const BoxPair<Kind> pair(p, q);
-  BestGap<Kind> best = {pair.ball_gap};
-  pair.find(best);
-  const Floats gap = best.gap - E::all(margin);
+  Floats gap = pair.ball_gap;
+  const Floats by_line = pair.each_axis([&](const Floats& other, const typename E::Vectors&, const Floats&)
+                                            ORCHARD_INLINE_LAMBDA { gap = E::max(gap, other); });
+  const auto used = E::all(0.0f) <= E::at(lanes.radius);
+  gap = Kind::choose(used, E::max(gap, by_line) - E::all(margin), E::all(std::numeric_limits<float>::infinity()));
   store(gap, result.gap);
-  result.used = Kind::bits(E::all(0.0f) <= load<Floats>(lanes.radius));
-  result.meeting = result.used & Kind::bits(gap <= E::all(0.0f));
-}
-
-void find_gaps_one_by_one(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                          bool only_meeting, BoxGaps& result) noexcept {
-  const Boxes<OneFloat> p = Boxes<OneFloat>::of(single);
-  result.used = result.meeting = 0;
-  for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-    const bool in_use = lanes.radius[i] >= 0;
-    result.used |= std::uint32_t{in_use} << i;
-    if (only_meeting && !in_use) continue;
-    const Boxes<OneFloat> q = Boxes<OneFloat>::of(lanes, scale, i);
-    const BoxPair<OneFloat> pair(p, q);
-    if (only_meeting && pair.ball_gap - margin > 0) continue;
-    BestGap<OneFloat> best = {pair.ball_gap};
-    pair.find(best);
-    result.gap[i] = best.gap - margin;
-    result.meeting |= std::uint32_t{in_use && result.gap[i] <= 0} << i;
-  }
+  result.used = Kind::bits(used);
+  result.meeting = Kind::bits(gap <= E::all(0.0f));
 }
 
 }  // namespace
@@ -97,33 +83,8 @@ bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& re
   return parted_by_axis(p, q, error) || parted_by_axis(q, p, error);
 }
 
-void box_gaps_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                     BoxGaps& result) noexcept {
-  find_gaps_one_by_one(single, lanes, scale, margin, false, result);
-}
-
-void meeting_boxes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                          BoxGaps& result) noexcept {
-  find_gaps_one_by_one(single, lanes, scale, margin, true, result);
-}
-
-// Without vectors the compiler's own are slower than one number at a time that stops early.
-#ifdef ORCHARD_VECTORS
 void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept {
-  PerMachine<find_gaps<Widest>, find_gaps<Base>>::call(single, lanes, scale, margin, result);
+  PerMachine<find_gaps<Widest>, find_gaps<Base>, find_gaps<PlainFloats>>::call(single, lanes, scale, margin, result);
 }
-void meeting_boxes(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                   BoxGaps& result) noexcept {
-  box_gaps(single, lanes, scale, margin, result);
-}
-#else
-void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept {
-  box_gaps_scalar(single, lanes, scale, margin, result);
-}
-void meeting_boxes(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                   BoxGaps& result) noexcept {
-  meeting_boxes_scalar(single, lanes, scale, margin, result);
-}
-#endif
 
 }  // namespace orchard::runtime::detail

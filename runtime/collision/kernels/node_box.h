@@ -84,7 +84,8 @@ ORCHARD_INLINE NodeBox moved_back(const NodeBox& b, const Placement& p) noexcept
 // How far eight nodes are from the single one.
 struct BoxGaps {
   using Lanes = std::array<float, kBlockWidth>;
-  alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
+  // Certified lower bound on the distance; negative: they may meet, the lower the deeper. Infinite where no node is.
+  alignas(32) Lanes gap;
   std::uint32_t used;     // bits: lanes that hold a node
   std::uint32_t meeting;  // bits: those with gap <= 0
 };
@@ -93,19 +94,10 @@ struct BoxGaps {
 // covers all rounding. The axes tried are those of both boxes (six of the fifteen of Gottschalk, Lin and Manocha 1996:
 // the products of edges seldom tell) and the line of the centres; no box reaches farther along one than its ball.
 void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept;
-// The same where only those that meet matter: of the others the result may hold anything.
-void meeting_boxes(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                   BoxGaps& result) noexcept;
 
 // Whether two nodes' boxes, each as its own tree stores it, are certainly apart by the same six axes in double, where
 // only the other box's reach is rounded: a wall's face tells from any distance. `relative`: the second tree's frame in
 // the first one's, as the exact test of triangles uses it.
 bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& relative) noexcept;
-
-// One number at a time: what the tests compare with, and all that some compilers get.
-void box_gaps_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                     BoxGaps& result) noexcept;
-void meeting_boxes_scalar(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
-                          BoxGaps& result) noexcept;
 
 }  // namespace orchard::runtime::detail

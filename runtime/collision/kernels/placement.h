@@ -25,16 +25,10 @@ struct Placement {
   alignas(16) std::array<std::array<float, 4>, 3> rows{}, columns{};
 };
 
-// One ball slab, in the first tree's frame.
-struct ObbNode {
-  float x, y, z, nx, ny, nz, radius, height;
-};
-
-// What the sphere tests of one level collect: the bits of the smallest square - reach^2 > 0, minus 1; the largest radii
-// seen; and the separation bounds from which on a pair needs no test, for pairs with an inner node and for two leaves.
+// What the sphere tests of one level collect, lane by lane: the smallest square - reach^2 > 0; the largest radii seen;
+// and the separation bounds from which on a pair needs no test, for pairs with an inner node and for two leaves.
 struct LevelState {
-  alignas(32) std::array<std::uint32_t, kBlockWidth> min_excess;
-  alignas(32) std::array<float, kBlockWidth> row_radius, lane_radius;
+  alignas(32) std::array<float, kBlockWidth> min_excess, row_radius, lane_radius;
   float best_inner, best_leaf;
 };
 

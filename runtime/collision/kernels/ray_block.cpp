@@ -24,16 +24,20 @@ constexpr float kProductError = 0x1p-20f;
 constexpr float kShearedError = 0x1p-18f;
 constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
 
+using RayEntries = std::array<float, kBlockWidth>;
+
+// The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it
+// meets between begin and end.
 template <typename Kind>
 ORCHARD_INLINE std::uint32_t find_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
                                             RayEntries& entries) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
+  const Vectors d = E::all_of(ray.direction);
   const Vectors n = {load<Floats>(obb_nodes.nx), load<Floats>(obb_nodes.ny), load<Floats>(obb_nodes.nz)};
   const Vectors to = E::minus({load<Floats>(obb_nodes.x), load<Floats>(obb_nodes.y), load<Floats>(obb_nodes.z)},
-                              {E::all(ray.origin[0]), E::all(ray.origin[1]), E::all(ray.origin[2])});
+                              E::all_of(ray.origin));
   const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(obb_nodes.radius);
   const Floats r = radius + margin, h = load<Floats>(obb_nodes.height) + margin;
   const Vectors across = E::cross(to, d);
@@ -71,7 +75,7 @@ ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& 
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
+  const Vectors d = E::all_of(ray.direction);
   // From a point of the line near the first triangle, so that products are as small as the leaf.
   float at = 0;
   for (std::size_t i = 0; i < 3; ++i) at += (block.corner[0][i][0] - ray.origin[i]) * ray.direction[i];
@@ -217,29 +221,13 @@ ORCHARD_INLINE RayLeaf find_leaf_of_boxes(const BoxTree& tree, const BoxRay& ray
 }  // namespace
 
 RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept {
-  return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>>::call(tree, walk);
+  return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>, find_leaf_of_tree<PlainFloats>>::call(tree,
+                                                                                                              walk);
 }
 
 RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept {
-  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(tree, ray, walk);
-}
-
-std::uint32_t ray_obb_nodes_scalar(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
-                                   RayEntries& entries) noexcept {
-  return find_obb_nodes<PlainFloats>(ray, obb_nodes, begin, end, entries);
-}
-
-RayLeaf ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
-  return find_triangles<PlainFloats>(ray, block);
-}
-
-std::uint32_t ray_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
-                            RayEntries& entries) noexcept {
-  return PerMachine<find_obb_nodes<Widest>, find_obb_nodes<Base>>::call(ray, obb_nodes, begin, end, entries);
-}
-
-RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
-  return PerMachine<find_triangles<Widest>, find_triangles<Base>>::call(ray, block);
+  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>, find_leaf_of_boxes<PlainFloats>>::call(
+      tree, ray, walk);
 }
 
 }  // namespace orchard::runtime::detail

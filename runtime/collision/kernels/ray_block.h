@@ -108,16 +108,4 @@ struct RayLeaf {
 RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept;
 RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept;
 
-// The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it
-// meets between begin and end.
-using RayEntries = std::array<float, kBlockWidth>;
-std::uint32_t ray_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
-                            RayEntries& entries) noexcept;
-std::uint32_t ray_obb_nodes_scalar(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
-                                   RayEntries& entries) noexcept;
-
-// Which triangles the ray's line may meet.
-RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept;
-RayLeaf ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept;
-
 }  // namespace orchard::runtime::detail

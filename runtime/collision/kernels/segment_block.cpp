@@ -23,15 +23,19 @@ struct EdgeWay {
   Floats square;
 
   // Ericson 2005, 5.1.9: the best place on the one's line, then the best on the other for that, and back.
-  ORCHARD_INLINE EdgeWay(const Vectors& w, const Floats& ww, const Vectors& from, const Vectors& edge) noexcept {
+  ORCHARD_INLINE EdgeWay(bool moves, const Vectors& w, const Floats& ww, const Vectors& from,
+                         const Vectors& edge) noexcept {
     const Floats zero = E::all(0.0f), one = E::all(1.0f), least = E::all(kMinSquare);
     const auto clamped = [&](const Floats& x) ORCHARD_INLINE_LAMBDA -> Floats { return E::min(E::max(x, zero), one); };
-    const Floats ee = E::dot(edge, edge), we = E::dot(w, edge), wf = E::dot(w, from), ef = E::dot(edge, from);
-    const Floats across = ww * ee - we * we;
-    const Floats on_line = clamped((wf * ee - we * ef) / (across + least));
-    Floats s = Kind::choose(E::all(kParallelSineSquare) * ww * ee < across, on_line, zero);
-    const Floats t = clamped((we * s - ef) / (ee + least));
-    s = clamped((we * t + wf) / (ww + least));
+    const Floats ee = E::dot(edge, edge), ef = E::dot(edge, from);
+    Floats s = zero, t = clamped(-ef / (ee + least));
+    if (moves) {
+      const Floats we = E::dot(w, edge), wf = E::dot(w, from), across = ww * ee - we * we;
+      const Floats on_line = clamped((wf * ee - we * ef) / (across + least));
+      s = Kind::choose(E::all(kParallelSineSquare) * ww * ee < across, on_line, zero);
+      t = clamped((we * s - ef) / (ee + least));
+      s = clamped((we * t + wf) / (ww + least));
+    }
     way = {from.x + t * edge.x - s * w.x, from.y + t * edge.y - s * w.y, from.z + t * edge.z - s * w.z};
     square = E::dot(way, way);
   }
@@ -44,20 +48,18 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const auto all = [](const std::array<float, 3>& v) ORCHARD_INLINE_LAMBDA -> Vectors {
-    return {E::all(v[0]), E::all(v[1]), E::all(v[2])};
-  };
   const Floats unit = E::all(placement.unit), zero = E::all(0.0f);
-  const Vectors begin = all(p), w = E::times(E::minus(all(q), begin), unit);
+  const Vectors begin = E::all_of(p), w = E::times(E::minus(E::all_of(q), begin), unit);
   const auto corner = [&](std::size_t k) ORCHARD_INLINE_LAMBDA -> Vectors {
     return E::times(E::minus(E::corner(block, k), begin), unit);
   };
   const Vectors t[3] = {corner(0), corner(1), corner(2)};
   const Vectors edge[3] = {E::minus(t[1], t[0]), E::minus(t[2], t[1]), E::minus(t[0], t[2])};
   const Floats ww = E::dot(w, w);
-  EdgeWay<Kind> best(w, ww, t[0], edge[0]);
+  const bool moves = p != q;  // else it is a point
+  EdgeWay<Kind> best(moves, w, ww, t[0], edge[0]);
   for (std::size_t i = 1; i < 3; ++i) {
-    const EdgeWay<Kind> other(w, ww, t[i], edge[i]);
+    const EdgeWay<Kind> other(moves, w, ww, t[i], edge[i]);
     const auto nearer = other.square < best.square;
     best.square = Kind::choose(nearer, other.square, best.square);
     best.way = {Kind::choose(nearer, other.way.x, best.way.x), Kind::choose(nearer, other.way.y, best.way.y),
@@ -75,14 +77,10 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
 
 }  // namespace
 
-void segment_gaps_scalar(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
-                         const Placement& placement, SegmentGaps& lower) noexcept {
-  find_segment_gaps<PlainFloats>(p, q, block, placement, lower);
-}
-
 void segment_gaps(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
                   const Placement& placement, SegmentGaps& lower) noexcept {
-  PerMachine<find_segment_gaps<Widest>, find_segment_gaps<Base>>::call(p, q, block, placement, lower);
+  PerMachine<find_segment_gaps<Widest>, find_segment_gaps<Base>, find_segment_gaps<PlainFloats>>::call(
+      p, q, block, placement, lower);
 }
 
 }  // namespace orchard::runtime::detail

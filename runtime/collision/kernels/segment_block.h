@@ -13,7 +13,5 @@ using SegmentGaps = std::array<float, kBlockWidth>;
 // unit counts and its margin: 128 u of the size of all coordinates, u = 2^-24, and what the ends may be off by.
 void segment_gaps(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
                   const Placement& placement, SegmentGaps& lower) noexcept;
-void segment_gaps_scalar(const std::array<float, 3>& p, const std::array<float, 3>& q, const TriangleBlock& block,
-                         const Placement& placement, SegmentGaps& lower) noexcept;
 
 }  // namespace orchard::runtime::detail

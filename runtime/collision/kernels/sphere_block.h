@@ -24,8 +24,5 @@ struct BlockHits {
 };
 
 void test_block(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept;
-// The same, operation for operation, one number at a time: what the tests compare with, and all that some compilers
-// get.
-void test_block_scalar(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept;
 
 }  // namespace orchard::runtime::detail

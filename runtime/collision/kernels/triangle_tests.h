@@ -1,9 +1,8 @@
 #pragma once
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
-#include "collision/kernels/obb_node_pair.h"
 
-// What the inner loops over triangles (obb_node_block.cpp, obb_node_block_plain.cpp) are made of.
+// What the inner loops over triangles (triangle_block.cpp, segment_block.cpp) are made of.
 //
 // Rounding. Ball slabs: see Placement::margin in placed_trees.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
@@ -46,10 +45,10 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
 
 // Triangles that do not reach between two planes, as a mask.
 template <typename Kind>
-ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3], float nx, float ny, float nz,
-                                  float height, const typename Kind::Floats& margin) noexcept {
+ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3], const auto& normal, float height,
+                                  const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
-  const typename E::Vectors n = {E::all(nx), E::all(ny), E::all(nz)};
+  const typename E::Vectors n = E::all_of(normal);
   const Extent<Kind> e = extent<Kind>(E::dot(n, from[0]), E::dot(n, from[1]), E::dot(n, from[2]));
   const auto limit = E::all(height) + margin;
   return (limit < e.low) | (e.high < -limit);
@@ -60,13 +59,11 @@ template <typename Kind>
 ORCHARD_INLINE auto beyond_box(const typename Eight<Kind>::Vectors (&corner)[3], const NodeBox& b,
                                const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
-  const typename E::Vectors center = {E::all(b.center[0]), E::all(b.center[1]), E::all(b.center[2])};
+  const typename E::Vectors center = E::all_of(b.center);
   const typename E::Vectors from[3] = {E::minus(corner[0], center), E::minus(corner[1], center),
                                        E::minus(corner[2], center)};
-  const std::array<float, 3> l = third_normal(b);
-  return beyond_planes<Kind>(from, b.n[0], b.n[1], b.n[2], b.height, margin) |
-         beyond_planes<Kind>(from, b.m[0], b.m[1], b.m[2], b.width, margin) |
-         beyond_planes<Kind>(from, l[0], l[1], l[2], b.length, margin);
+  return beyond_planes<Kind>(from, b.n, b.height, margin) | beyond_planes<Kind>(from, b.m, b.width, margin) |
+         beyond_planes<Kind>(from, third_normal(b), b.length, margin);
 }
 
 // The eight lanes' triangles, and their planes.
@@ -100,7 +97,7 @@ ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& la
   const Vectors edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
   const Floats zero = E::all(0.0f), least = E::all(kMinRoom);
   for (std::size_t i = 0; i < 3 && left != 0; ++i) {
-    for (std::size_t j = 0; j < 3 && (E::kCount > 1 || left != 0); ++j) {
+    for (std::size_t j = 0; j < 3; ++j) {
       const Vectors axis = E::cross(edges[i], lanes.edge[j]);
       const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
       const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));

@@ -8,7 +8,7 @@
 
 #include "allocation.h"
 #include "bodies.h"
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "collision/triangle_distance.h"
 #include "every_machine.h"
 #include "simd/machine.h"
@@ -139,7 +139,7 @@ TEST(TriangleDistance, IsTheSameOnEveryMachine) {
     std::array<detail::NearestPoints, 3> first{};
     bool any = false;
     on_every_machine([&] {
-      const std::array<detail::NearestPoints, 3> found = {detail::nearest_points(a, b), detail::nearest_points(p, b),
+      const std::array<detail::NearestPoints, 3> found = {detail::nearest_points(a, b), detail::nearest_points(p, p, b),
                                                           detail::nearest_points(p, q, b)};
       if (!any) first = found, any = true;
       for (std::size_t i = 0; i < found.size(); ++i) {
@@ -170,7 +170,7 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     // How far apart triangles may be to be told exactly: all, most and some of these.
     const float reach = seed % 4 == 0 ? 1e30f : static_cast<float>(draw.uniform(0, 3));
     detail::TriangleGaps gaps{}, plain{};
-    detail::triangle_gaps_scalar(lanes, rows, placement, direction, reach, plain);
+    ask_portably([&] { detail::triangle_gaps(lanes, rows, placement, direction, reach, plain); });
     for (const detail::Machine m : {detail::Machine::base, detail::Machine::avx2, detail::Machine::avx512}) {
       if (m > detail::best_machine()) break;
       detail::use_machine(m);

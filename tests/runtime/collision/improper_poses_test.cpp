@@ -40,7 +40,7 @@ TEST(ImproperPose, IsAnsweredByMaybeAndNothingElse) {
         const Pose &p = first ? pose : proper, &q = first ? proper : pose;
         ASSERT_EQ(query.start(p, q), Answer::maybe);
         expect_nothing_known(query);
-        query.refine(), query.probe(2), query.refine_exactly();
+        query.refine(), query.refine_exactly();
         expect_nothing_known(query);
         ASSERT_EQ(collide(query, p, q, {.work = 100}).answer, Answer::maybe);
         ASSERT_EQ(collide(query, p, q).answer, Answer::maybe);

@@ -80,17 +80,6 @@ void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& p
     ASSERT_LE(point_distance(center, ta), 1e-8);
     ASSERT_LE(point_distance(center, tb), 1e-8);
   }
-  for (std::uint32_t level = 1; level <= std::max(a.tree.depth, b.tree.depth); ++level) {
-    NarrowPhase probed(a.tree, b.tree), refined(a.tree, b.tree);
-    probed.start(pose_a, pose_b), refined.start(pose_a, pose_b);
-    for (std::uint32_t l = 0; l < level && !refined.progress().exact; ++l) refined.refine();
-    if (refined.progress().exact) break;
-    ASSERT_EQ(probed.probe(level), refined.answer()) << "level " << level;
-    ASSERT_GE(probed.separation_bound(), truth.solid_gap - tolerance);
-    ASSERT_LE(probed.lower_bound(), truth.surface_gap + tolerance);
-    while (!probed.finished()) probed.refine();
-    ASSERT_EQ(probed.answer(), answer);
-  }
   NarrowPhase direct(a.tree, b.tree);
   direct.start(pose_a, pose_b);
   ASSERT_EQ(direct.refine_exactly(), answer);

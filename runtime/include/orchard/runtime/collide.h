@@ -8,7 +8,6 @@
 #include "orchard/runtime/execution.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
-#include "orchard/runtime/pair_front.h"
 #include "orchard/runtime/shape_query.h"
 
 // Answers whole questions about pairs of bodies in one call. The question, threads, determinism, memory and rounding
@@ -46,39 +45,24 @@ class TreePair {
 
   const PreparedTree& a() const noexcept { return *a_; }
   const PreparedTree& b() const noexcept { return *b_; }
-  // Gives the pair a front: each call of collide_coherently() then starts where the last one ended, which `front`
-  // stores. Use it for pairs that stay close; null removes the front. The front must outlive the pair. Copies of the
-  // pair share it, and only one of them may be queried at a time.
-  void use(PairFront* front) noexcept {
-    front_ = front;
-    if (front != nullptr) front->clear();
-  }
   // Discards the results of earlier answers.
-  void forget() noexcept {
-    memory_ = {};
-    if (front_ != nullptr) front_->clear();
-  }
+  void forget() noexcept { memory_ = {}; }
 
  private:
   friend class Coherence;
-  static constexpr std::size_t kWitnesses = 2;
   // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
   struct Witness {
     std::uint32_t a, b;
     std::uint8_t lane_a, lane_b;
   };
   struct Memory {
-    Pose relative;                              // The pose of b in a's frame when `clearance` was certified.
-    double clearance = 0;                       // In a's units; 0: none.
-    std::array<Witness, kWitnesses> witnesses;  // Of the answers since the last "no", the last ones first.
-    std::uint8_t witness_count = 0;
-    std::uint8_t wait = 0;     // Searches until the roots are tested first.
-    std::uint8_t in_vain = 0;  // Successive tests of the roots that decided nothing.
-    bool close = false;        // The roots did not decide the last search.
+    Pose relative;         // The pose of b in a's frame when `clearance` was certified.
+    double clearance = 0;  // In a's units; 0: none.
+    Witness witness;       // If they met last.
+    bool met = false;
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;
-  PairFront* front_ = nullptr;
   Memory memory_;
 };
 static_assert(sizeof(TreePair) <= 256);
@@ -111,8 +95,7 @@ Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const
 
 // Answers a pair that is queried repeatedly while it moves a little each time, at a fraction of the cost. The triangles
 // that met last are tested first, and a "no" holds as long as the pair, measured at its farthest point, has moved by
-// less than the clearance that was certified with it. With a front (TreePair::use()), the remaining search begins where
-// the last one ended.
+// less than the clearance that was certified with it.
 // "Yes" and "no" are those of collide() without a budget. If several triangles meet, which ones are named depends on
 // earlier calls, and so do bounds and work. If no search is necessary, the workspace does not change.
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;

@@ -94,12 +94,6 @@ class NarrowPhase {
   // bounds of the levels in between. Call either function again to continue.
   Answer refine_exactly(const Budget& budget = {}) noexcept;
 
-  // Returns whether any spheres meet at a level, by a depth-first search that ends when two do. This is the fastest
-  // answer of a given accuracy: "no" (certain) or "maybe", with the separation bound of these two spheres. Call it
-  // after start(); refine() may follow. Budgets do not interrupt it: a "no" costs as much as the levels of spheres, and
-  // a "maybe" far less.
-  Answer probe(std::uint32_t level) noexcept;
-
   Verdict verdict() const noexcept;
   Answer answer() const noexcept;
   bool finished() const noexcept;  // Whether refine() has nothing left to do.

@@ -61,7 +61,7 @@ struct Impact {
   std::uint64_t work = 0;   // In units of a budget.
 };
 
-// Finds the first contact by conservative advancement. At each time, every pair of ball slabs and of triangles that
+// Finds the first contact by conservative advancement. At each time, every pair of nodes and of triangles that
 // could meet next is followed along the direction in which it is apart. The speed at which this gap can close, which
 // includes the turning of each body about its centre, gives a time before which it cannot be closed; the least such
 // time is the next one. A step costs about as much as a distance query, and a few steps suffice unless the bodies graze

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 #include "collision/support_map.h"
 #include "every_machine.h"
 #include "orchard/runtime/pose.h"
@@ -43,22 +43,12 @@ PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
 // What the compiler's vectors find against what is found one number at a time.
 void expect_same_on_every_machine(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                                   std::uint64_t seed, BoxGaps& plain) {
-  box_gaps_scalar(single, lanes, scale, margin, plain);
+  test::ask_portably([&] { box_gaps(single, lanes, scale, margin, plain); });
   on_every_machine([&] {
-    BoxGaps gaps, meeting, plain_meeting;
+    BoxGaps gaps;
     box_gaps(single, lanes, scale, margin, gaps);
     ASSERT_EQ(std::memcmp(&gaps.gap, &plain.gap, sizeof plain.gap), 0) << seed;
     ASSERT_EQ(std::pair(gaps.used, gaps.meeting), std::pair(plain.used, plain.meeting)) << seed;
-    meeting_boxes(single, lanes, scale, margin, meeting);
-    meeting_boxes_scalar(single, lanes, scale, margin, plain_meeting);
-    for (const BoxGaps& found : {meeting, plain_meeting}) {
-      ASSERT_EQ(std::pair(found.used, found.meeting), std::pair(plain.used, plain.meeting)) << seed;
-      for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-        if (found.meeting >> lane & 1) {
-          ASSERT_EQ(found.gap[lane], plain.gap[lane]) << seed;
-        }
-      }
-    }
   });
 }
 
@@ -120,31 +110,21 @@ TEST(SupportMap, CoversEveryPointInEveryDirection) {
   EXPECT_LT(worst, 0.1);
 }
 
-// What visit_candidates() gives until it has been told so many times that a row was found.
-std::uint64_t visited(const LeafPair& pair, const Placement& placement, std::uint32_t enough) {
-  struct Seen {
-    std::uint64_t found = 0;
-    std::uint32_t left;
-  } seen{.left = enough};
-  const bool ended = visit_candidates(
-      pair, placement,
-      [](void* context, std::uint32_t row, std::uint32_t lanes) {
-        Seen& s = *static_cast<Seen*>(context);
-        s.found |= std::uint64_t{lanes} << (kBlockWidth * row);
-        return --s.left == 0;
-      },
-      &seen);
-  EXPECT_EQ(ended, seen.left == 0);
-  return seen.found;
+// The pairs that are taken until so many were.
+std::uint64_t candidates(const LeafPair& pair, const Placement& placement, int enough = 1000) {
+  std::uint64_t found = 0;
+  int count = 0;
+  const bool ended = each_candidate(pair, placement, [&](std::uint32_t lane, std::uint32_t row) {
+    found |= std::uint64_t{1} << (kBlockWidth * row + lane);
+    return ++count == enough;
+  });
+  EXPECT_EQ(ended, count == enough);
+  return found;
 }
 
-std::uint64_t first_rows(std::uint64_t found, std::uint32_t count) {  // of those that have any
+std::uint64_t first_of(std::uint64_t found, int count) {
   std::uint64_t result = 0;
-  for (std::uint32_t row = 0; row < kBlockWidth && count > 0; ++row) {
-    const std::uint64_t lanes = found & std::uint64_t{0xff} << (kBlockWidth * row);
-    result |= lanes;
-    count -= lanes != 0;
-  }
+  for (; found != 0 && count > 0; --count, found &= found - 1) result |= found & (0 - found);
   return result;
 }
 
@@ -160,12 +140,12 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
     const TriangleBlock lanes = test::one_block(a), rows = test::one_block(b);
     const NodeBox lane_box = node_box_at(a.obb_nodes[0], 0), row_box = moved(node_box_at(b.obb_nodes[0], 0), placement);
     const LeafPair pair{lanes, rows, lane_box, row_box};
-    const std::uint64_t found = triangle_candidates_scalar(pair, placement);
+    std::uint64_t found = 0;
+    test::ask_portably([&] { found = candidates(pair, placement); });
     on_every_machine([&] {
-      ASSERT_EQ(triangle_candidates(pair, placement), found) << seed;
-      ASSERT_EQ(visited(pair, placement, kBlockWidth), found) << seed;
-      const auto rows_seen = static_cast<std::uint32_t>(1 + seed % 3);
-      ASSERT_EQ(visited(pair, placement, rows_seen), first_rows(found, rows_seen)) << seed;
+      ASSERT_EQ(candidates(pair, placement), found) << seed;
+      const int enough = static_cast<int>(1 + seed % 3);
+      ASSERT_EQ(candidates(pair, placement, enough), first_of(found, enough)) << seed;
     });
     if (HasFatalFailure()) return;
     for (std::uint32_t r = 0; r < kBlockWidth; ++r) {

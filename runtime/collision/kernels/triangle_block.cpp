@@ -1,29 +1,14 @@
-#include "collision/kernels/obb_node_block.h"
+#include "collision/kernels/triangle_block.h"
 
 #include <bit>
 #include <limits>
 
 #include "collision/kernels/eight.h"
-#include "collision/kernels/obb_node_pair.h"
 #include "collision/kernels/triangle_tests.h"
 #include "simd/machine.h"
 
 namespace orchard::runtime::detail {
 namespace {
-
-// Vectors that were made eight at a time, to be taken one by one.
-template <typename Kind>
-struct OneByOne {
-  using E = Eight<Kind>;
-  std::array<float, kBlockWidth> x, y, z;
-
-  ORCHARD_INLINE explicit OneByOne(const typename E::Vectors& v) noexcept {
-    store(v.x, x), store(v.y, y), store(v.z, z);
-  }
-  ORCHARD_INLINE typename E::Vectors operator[](std::size_t i) const noexcept {
-    return {E::all(x[i]), E::all(y[i]), E::all(z[i])};
-  }
-};
 
 // For each row the lanes whose boxes, grown by the margin, meet its own; all of them together.
 template <typename Kind>
@@ -43,9 +28,9 @@ ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t 
   return found;
 }
 
-// Calls take(row, bits of lanes), row by row, until it returns true.
-template <typename Kind, typename Found>
-ORCHARD_INLINE bool each_candidate(const LeafPair& pair, const Placement& placement, Found&& take) noexcept {
+template <typename Kind>
+ORCHARD_INLINE bool find_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit,
+                                    const void* context) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
@@ -76,31 +61,13 @@ ORCHARD_INLINE bool each_candidate(const LeafPair& pair, const Placement& placem
   store(own_height<Kind>(row_normal, row_edge, margin), row_limit);
   const OneByOne<Kind> normals(row_normal),
       corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
-  for (std::uint32_t left_rows = found; left_rows != 0; left_rows &= left_rows - 1) {
-    const auto r = static_cast<std::uint32_t>(std::countr_zero(left_rows));
+  for (std::uint32_t left = found; left != 0; left &= left - 1) {
+    const auto r = static_cast<std::uint32_t>(std::countr_zero(left));
     const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
-    const std::uint32_t left = not_apart<Kind>(near[r], planes, p, normals[r], E::all(row_limit[r]), margin);
-    if (left != 0 && take(r, left)) return true;
+    const std::uint32_t open = not_apart<Kind>(near[r], planes, p, normals[r], E::all(row_limit[r]), margin);
+    if (open != 0 && visit(context, r, open)) return true;
   }
   return false;
-}
-
-template <typename Kind>
-ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  std::uint64_t result = 0;
-  each_candidate<Kind>(pair, placement, [&result](std::uint32_t row, std::uint32_t lanes) ORCHARD_INLINE_LAMBDA {
-    result |= std::uint64_t{lanes} << (kBlockWidth * row);
-    return false;
-  });
-  return result;
-}
-
-template <typename Kind>
-ORCHARD_INLINE bool visit_each(const LeafPair& pair, const Placement& placement, CandidateVisit visit,
-                               void* context) noexcept {
-  return each_candidate<Kind>(pair, placement, [=](std::uint32_t row, std::uint32_t lanes) ORCHARD_INLINE_LAMBDA {
-    return visit(context, row, lanes);
-  });
 }
 
 // Between all triangles of the lanes and all of the rows, along a direction.
@@ -131,7 +98,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   };
   const Vectors lane[3] = {lane_corner(0), lane_corner(1), lane_corner(2)};
   const Vectors row[3] = {row_corner(0), row_corner(1), row_corner(2)};
-  const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
+  const Vectors given = E::all_of(direction);
   const Floats margin = E::all(2 * placement.margin * placement.unit), limit = E::all(reach);
   // All of them together, along the direction that has parted others.
   const Floats all_beyond = (gap_of_all<Kind>(given, lane, row) - margin) * whole;
@@ -177,15 +144,6 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
 
 }  // namespace
 
-ObbNode moved(const ObbNode& slab, const Placement& p) noexcept {
-  const auto turn = [](const std::array<float, 9>& r, float x, float y, float z) -> std::array<float, 3> {
-    return {r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z};
-  };
-  const auto c = turn(p.rotation, slab.x, slab.y, slab.z), n = turn(p.turn, slab.nx, slab.ny, slab.nz);
-  return {c[0] + p.translation[0], c[1] + p.translation[1], c[2] + p.translation[2], n[0], n[1], n[2],
-          slab.radius * p.scale,   slab.height * p.scale};
-}
-
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept {
   TrianglePoints result{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -200,39 +158,16 @@ TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, c
   return result;
 }
 
-// Without vectors the compiler's own are slower than one number at a time that stops early.
-#ifdef ORCHARD_VECTORS
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
-  PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>>::call(lanes, rows, placement, direction, reach,
-                                                                         result);
+  PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>, find_triangle_gaps<PlainFloats>>::call(
+      lanes, rows, placement, direction, reach, result);
 }
 
-std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  return PerMachine<find_candidates<Widest>, find_candidates<Base>>::call(pair, placement);
+bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit,
+                      const void* context) noexcept {
+  return PerMachine<find_candidates<Widest>, find_candidates<Base>, find_candidates<PlainFloats>>::call(pair, placement,
+                                                                                                        visit, context);
 }
-
-bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept {
-  return PerMachine<visit_each<Widest>, visit_each<Base>>::call(pair, placement, visit, context);
-}
-#else
-void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
-                   const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
-  triangle_gaps_scalar(lanes, rows, placement, direction, reach, result);
-}
-
-std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  return triangle_candidates_scalar(pair, placement);
-}
-
-bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept {
-  const std::uint64_t found = triangle_candidates_scalar(pair, placement);
-  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
-    const auto lanes = static_cast<std::uint32_t>(found >> (kBlockWidth * row) & 0xff);
-    if (lanes != 0 && visit(context, row, lanes)) return true;
-  }
-  return false;
-}
-#endif
 
 }  // namespace orchard::runtime::detail
