@@ -104,7 +104,7 @@ orchard_detector_options orchard_default_detector(void) {
   result.time_step = options.time_step, result.start = options.start, result.position_slack = options.position_slack;
   result.watch = -1;
   result.steps_to_end = options.steps_to_end;
-  result.max_unfinished = options.max_unfinished, result.max_events = options.max_events;
+  result.max_events = options.max_events;
   result.concurrency = 1;
   return result;
 }
@@ -121,7 +121,6 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     options.time_step = with->time_step, options.start = with->start, options.position_slack = with->position_slack;
     if (with->watch >= 0) options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
-    options.max_unfinished = with->max_unfinished;
     if (with->max_events > 0) options.max_events = with->max_events;
     options.executor = {with->run, with->run_context, with->concurrency};
     if (source == nullptr) {

@@ -53,7 +53,7 @@ bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) n
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
-void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   record.parts = {};
   record.sweep.impact = false;
   Verdict& verdict = record.verdict;
@@ -79,7 +79,7 @@ void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Sc
 }
 
 // Two bodies of one part each, at least one of them a simple shape.
-void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_two_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   Verdict& verdict = record.verdict;
   PartPair pair;
   place(record, 0, 0, pair);
@@ -97,7 +97,13 @@ void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scr
   verdict.work = scratch.work - before;
 }
 
-void PairAnswerer::answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
+  answer_poses(record, now, scratch);
+  if (record.sweep.unseen) leave_open(record);
+  if (record.sweep.possible) sweep(record, now, scratch, kNoLimit);
+}
+
+void PairAnswerer::answer_poses(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   if (record.coherent) return answer_coherently(record, now, scratch);
   if (places_->parts(record.bodies.a) == 1 && places_->parts(record.bodies.b) == 1) {
     return answer_two_parts(record, now, scratch);
@@ -108,7 +114,7 @@ void PairAnswerer::answer(CachedPair& record, Step now, QueryPool::Scratch& scra
 // Two parts that touched at the step before, where a triangle `guess` may have been nearest. Where others of these
 // shapes have met is no more than a guess.
 Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
-                                   QueryPool::Scratch& scratch) noexcept {
+                                   AnswerScratch& scratch) noexcept {
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
                      &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
   if (!known) return answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess);
@@ -123,7 +129,7 @@ Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, cons
 }
 
 // Of two parts of bodies, what is new.
-Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept {
+Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept {
   const Verdict verdict = answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work);
   record.met = verdict.answer == Answer::yes && !pair.simple();
   if (!record.met) return verdict;
@@ -135,7 +141,7 @@ Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, Query
 // Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
 // know how they are turned. Whether all answers are certain.
 bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
-                                 QueryPool::Scratch& scratch) const noexcept {
+                                 AnswerScratch& scratch) const noexcept {
   const BodyPair& bodies = record.bodies;
   const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
   const bool half = is_half_space(bodies.b);
@@ -169,7 +175,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
 }
 
 // Bodies of several parts: those that touched mostly still do, and then no other part is asked.
-void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;
   if (is_half_space(record.bodies.b)) pair.half = places_->half_space(record.bodies.b);
@@ -199,7 +205,7 @@ void leave_open(CachedPair& record) noexcept {
   record.answered = -1;
 }
 
-void PairAnswerer::sweep(CachedPair& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept {
+void PairAnswerer::sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept {
   PartPair from, to;
   const bool half = is_half_space(record.bodies.b);
   if (half) from.half = to.half = places_->half_space(record.bodies.b);

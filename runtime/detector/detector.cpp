@@ -110,7 +110,7 @@ std::size_t Detector::memory_bytes() const noexcept {
          world.bodies.memory_bytes() + world.halves.memory_bytes() + world.half_space_times.memory_bytes() +
          s.broad.memory_bytes() + s.sampler.memory_bytes() + s.part_pairs.memory_bytes() + s.matcher.memory_bytes() +
          s.skipper.memory_bytes() + s.scheduler.memory_bytes() + s.reporter.memory_bytes() + s.queries.memory_bytes() +
-         detail::bytes_of(s.open.pairs, s.open.marks);
+         detail::bytes_of(s.open_pairs);
 }
 
 }  // namespace orchard::runtime

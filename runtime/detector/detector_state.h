@@ -55,15 +55,11 @@ struct Detector::State {
   detail::EventReporter reporter;
   detail::LoadModel load_model;
   detail::WorldQueries queries;
-  bool valid;                          // the options are
-  bool stepping = false;               // step() is under way, from within which the application's functions are called
-  bool failed = false;                 // out of memory
-  bool interrupted = false;            // the broad phase, at the step before
-  struct Open {                        // of the step under way
-    std::vector<std::uint32_t> pairs;  // to be asked about
-    std::vector<std::uint8_t> marks;   // of active pairs, while `pairs` is made
-  };
-  Open open;
+  bool valid;                // the options are
+  bool stepping = false;     // step() is under way, from within which the application's functions are called
+  bool failed = false;       // out of memory
+  bool interrupted = false;  // the broad phase, at the step before
+  std::vector<std::uint32_t> open_pairs;  // of a step within a budget, to be asked about
 
  private:
   void rely_on_origins();  // change_bodies.cpp
@@ -78,9 +74,7 @@ struct Detector::State {
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
   void answer_within(const detail::ActivePairs& active, Step step, const detail::StepBudget::Stopwatch& watch,
                      detail::StepBudget& budget, Frame& frame);
-  std::uint64_t answer_one_by_one(const detail::ActivePairs& active, Step step);
-  void open_pairs(const detail::ActivePairs& active, Step step);
-  void ask_filter(const detail::ActivePairs& active);
+  void begin_pairs(const detail::ActivePairs& active, Step step);
 };
 
 }  // namespace orchard::runtime

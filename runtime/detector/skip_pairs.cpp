@@ -147,7 +147,7 @@ bool PairSkipper::rest(const CachedPair& pair) const noexcept {
   return pair.answered >= 0 && std::max(a.moved, b.moved) <= pair.answered && !pair.sweep.impact;
 }
 
-bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted, bool& over) const noexcept {
+bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
   pair.turn.importance = std::max(a.importance, b.importance);
   if (!pair.versions.allowed) return false;
@@ -163,8 +163,6 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted, bo
   const bool both_before = std::max(a.since, b.since) < step;
   pair.sweep.unseen =
       continuous && pair.versions.jumps == jumps && !pair.sweep.possible && sphere_fell_short && both_before;
-  over = pair.versions.jumps != jumps && pair.touching;
-  if (over) pair.answered = -1;
   pair.versions.jumps = jumps;
   if (pair.versions.deformed != a.deformed + b.deformed) {
     pair.versions.deformed = a.deformed + b.deformed;

@@ -119,9 +119,6 @@ struct DetectorOptions {
   // The number of successive steps with a certain "no" after which a contact ends, at least 1. Raise it to debounce
   // pairs that jitter at contact.
   std::uint32_t steps_to_end = 1;
-  // The maximum number of pairs of trees whose interrupted searches are kept to be continued. Further pairs are
-  // reported as possible.
-  std::size_t max_unfinished = 4096;
   // A call of step() ends once it has at least this number of events, at least 1. So its memory does not grow with the
   // length of a pause: see Frame::steps_left.
   std::size_t max_events = std::size_t{1} << 18;
@@ -136,8 +133,8 @@ struct DetectorOptions {
 // was not interrupted has kWholeStep.
 struct StepCut {
   std::uint64_t broad = kWholeStep;    // The broad phase: `replay` of BroadPhase::advance().
-  std::uint64_t begun = kWholeStep;    // The number of pairs of parts started and first searches made.
-  std::uint64_t refined = kWholeStep;  // The work of further searches, plus 1 for each piece of it.
+  std::uint64_t begun = kWholeStep;    // The number of pairs of parts started.
+  std::uint64_t refined = kWholeStep;  // The work of searches, plus 1 for each of them.
   std::uint64_t swept = kWholeStep;    // The number of pairs swept.
   friend bool operator==(const StepCut&, const StepCut&) = default;
 };
