@@ -161,12 +161,11 @@ void BodyTable::place_parts(Body& body) noexcept {
   body.parts_moved = false;
 }
 
-FloatSphere BodyTable::sphere_around(BodyIndex index) const noexcept {
+BoundingSphere BodyTable::sphere_around(BodyIndex index) const noexcept {
   const Body& body = bodies_[index];
   const Pose& pose = body.state.pose;
   const Vec3 middle = body.has_middle() ? transform(pose, body.middle) : Vec3(pose.translation);
-  return FloatSphere::around({middle, std::min(body.reach, body.middle_reach) * pose.scale},
-                             sphere_caches_[index].slack);
+  return {middle, std::min(body.reach, body.middle_reach) * pose.scale};
 }
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {

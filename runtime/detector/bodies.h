@@ -187,7 +187,7 @@ class BodyTable {
   std::span<const FloatSphere> float_part_spheres(BodyIndex body) const noexcept {
     return bodies_[body].one ? std::span(&float_spheres_[body], 1) : std::span(bodies_[body].float_part_spheres);
   }
-  FloatSphere sphere_around(BodyIndex body) const noexcept;                   // all of its parts
+  BoundingSphere sphere_around(BodyIndex body) const noexcept;                // all of its parts
   ORCHARD_INLINE void prefetch_float_sphere(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < float_spheres_.size()) prefetch(&float_spheres_[body]);
   }

@@ -110,7 +110,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
     s.world.half_space_times.forget(id.index);
     if (s.broad.move_static(id, s.place_of(body))) {
       s.world.any.static_body = true;
-      s.part_pairs.static_changed(id.index);
+      ++s.world.static_changes;
       return id;
     }
     remove(id);  // too large
@@ -153,10 +153,12 @@ void Detector::State::cancel(Body& body) {
 
 bool Detector::remove(BodyId body) {
   State& s = *state_;
-  if (s.find(body) == nullptr) return false;
+  const Body* found = s.find(body);
+  if (found == nullptr) return false;
   --s.world.body_count;
   if (is_half_space(body.index)) return s.world.halves.remove(body.index);
-  s.part_pairs.gone(s.world.bodies[body.index]);
+  if (found->is_static) ++s.world.static_changes;
+  s.part_pairs.gone(*found);
   s.world.bodies.leave(body.index);
   return s.or_fail([&] {
     s.world.half_space_times.forget(body.index);
@@ -195,10 +197,8 @@ bool Detector::move_static(BodyId body, const Pose& pose) {
   }
   s.world.bodies.moved(body.index, before);
   s.changed(*found);
-  return s.or_fail([&] {
-    s.part_pairs.static_changed(body.index);
-    return true;
-  });
+  ++s.world.static_changes;
+  return true;
 }
 
 bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
@@ -227,11 +227,8 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   s.changed(*found);
   if (stretches) found->stretched = s.world.answered;
   if (grows && !found->is_static) s.cancel(*found);
-  if (!found->is_static) return true;
-  return s.or_fail([&] {
-    s.part_pairs.static_changed(body.index);
-    return true;
-  });
+  if (found->is_static) ++s.world.static_changes;
+  return true;
 }
 
 bool Detector::set_importance(BodyId body, std::uint8_t importance) {

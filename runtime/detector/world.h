@@ -35,9 +35,10 @@ struct World {
   std::unique_ptr<KeptStates> kept_states;  // null: the application has them
   PairFilter filter;
   std::uint32_t filter_version = 0;
-  std::size_t body_count = 0;  // half-spaces included
-  std::uint64_t changes = 0;   // of bodies, shapes and states between steps
-  Step answered = -1;          // up to which steps have been answered
+  std::size_t body_count = 0;        // half-spaces included
+  std::uint64_t changes = 0;         // of bodies, shapes and states between steps
+  std::uint64_t static_changes = 1;  // of static bodies
+  Step answered = -1;                // up to which steps have been answered
   struct Any {
     bool continuous = false;   // body, ever
     bool static_body = false;  // ever
