@@ -32,13 +32,16 @@ struct Detector::State {
 
   // change_bodies.cpp: bodies come, change and go between two steps
   bool takes_changes() const noexcept { return valid && !failed && !stepping; }
-  bool acceptable(std::span<const BodyPart> parts) const noexcept;
+  bool acceptable(std::span<const BodyPart> parts, const BodyOptions& options) const noexcept;
   detail::Body& add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
-  detail::Body* find(BodyId body) noexcept;  // to change it; null if it cannot be changed now
-  void cancel(detail::Body& body);           // its bounds do not hold any more
-  void changed(detail::Body& body) noexcept { body.moved = world.answered + 1; }
-  Motion place_of(const detail::Body& body) const noexcept;  // of a static one
-  void keep_state(const detail::Body& body, BodyState state);
+  bool place_static(detail::Body& body, const Pose& pose);  // false, and as it was: too large
+  // What use(body) says. False if there is no such body, or none can be changed now.
+  template <typename Use>
+  bool change(BodyId id, Use&& use) {
+    if (stepping || !contains(id)) return false;
+    ++world.changes;
+    return or_fail([&] { return use(world.body(id.index)); });
+  }
 
   // detector_step.cpp: a step from its beginning to its end
   void run(double time, const Budget& budget, const StepOptions& with, Frame& frame);

@@ -63,8 +63,8 @@ void Detector::State::run(double time, const Budget& given, const StepOptions& w
   frame.work = budget.spent();
   frame.time = world.time_of_last_step();
   frame.next_time = next_time(frame.steps_left > 0);
-  const detail::StateSampler::Faults faults = sampler.faults();
-  frame.events = reporter.events(), frame.refused = faults.refused, frame.broken = faults.broken;
+  sampler.report(frame);
+  frame.events = reporter.events();
 }
 
 double Detector::State::next_time(bool steps_left) const noexcept {

@@ -16,10 +16,12 @@ void PairMatcher::gather_half_spaces(Step step) {
   world_.half_space_times.due(step, due_);
   if (due_.empty()) return;
   sampler_.sample(step, due_);
-  due_motions_.clear();
-  for (const BodyIndex body : due_) due_motions_.push_back(sampler_.given_motion(body, world_.clock.time(step)));
-  world_.half_space_times.update_windows(step, world_.clock, due_, world_.bodies, due_motions_, world_.clock.time_step,
-                                         world_.options.position_slack, pairs_.with_planes);
+  for (const BodyIndex body : due_) {
+    world_.half_space_times.update(world_.bodies[body], step, world_.clock,
+                                   sampler_.given_motion(body, world_.clock.time(step)), world_.options.position_slack,
+                                   pairs_.with_planes);
+  }
+  world_.half_space_times.find_next();
 }
 
 void PairMatcher::gather_left_out(Step step, const Advance& now) {
@@ -35,7 +37,11 @@ void PairMatcher::gather_left_out(Step step, const Advance& now) {
   left_out_.clear();
   for (const BodyPair& pair : kept) left_out_.push_back(pair.a), left_out_.push_back(pair.b);
   sampler_.sample(step, left_out_);
-  std::erase_if(kept, [&](const BodyPair& pair) { return world_.bodies.surely_apart(pair, world_.clock.time_step); });
+  std::erase_if(kept, [&](const BodyPair& pair) {
+    const double dt = world_.clock.time_step;
+    const Motion a = world_.bodies[pair.a].motion(dt), b = world_.bodies[pair.b].motion(dt);
+    return a.radius >= 0 && b.radius >= 0 && !spheres_touch(a, b);
+  });
 }
 
 CachedPair& PairMatcher::cached(PairCache::Known& known) {
@@ -45,10 +51,10 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
   const Body &a = world_.places.body(known.pair.a), &b = world_.places.body(known.pair.b);
   pair.a = a.id, pair.b = b.id;
   pair.versions.pair_filter = world_.filter_version - 1;
-  pair.versions.jumps = a.jumps + b.jumps;
-  pair.versions.deformed = a.deformed + b.deformed;
-  if (!a.one || !b.one) return pair;
-  const Shape &of_a = world_.shapes[a.shape], &of_b = world_.shapes[b.shape];
+  pair.versions.jumps = a.changes.jumps + b.changes.jumps;
+  pair.versions.deformed = a.changes.deformed + b.changes.deformed;
+  if (a.parts.size() != 1 || b.parts.size() != 1) return pair;
+  const Shape &of_a = world_.shapes[a.parts[0].shape], &of_b = world_.shapes[b.parts[0].shape];
   pair.coherent = of_a.has_tree() && of_b.has_tree();
   if (pair.coherent) pair.trees = TreePair(of_a.prepared, of_b.prepared);
   return pair;
@@ -56,12 +62,12 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
 
 bool PairMatcher::allowed(CachedPair& pair) const {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  if (pair.versions.pair_filter == world_.filter_version && pair.versions.filter_a == a.filters &&
-      pair.versions.filter_b == b.filters) {
+  if (pair.versions.pair_filter == world_.filter_version && pair.versions.filter_a == a.changes.filters &&
+      pair.versions.filter_b == b.changes.filters) {
     return pair.versions.allowed;
   }
   pair.versions.pair_filter = world_.filter_version;
-  pair.versions.filter_a = a.filters, pair.versions.filter_b = b.filters;
+  pair.versions.filter_a = a.changes.filters, pair.versions.filter_b = b.changes.filters;
   pair.versions.allowed = filters_allow(a, b) && (!world_.filter || world_.filter(pair.a, pair.b));
   return pair.versions.allowed;
 }

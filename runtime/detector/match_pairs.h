@@ -32,10 +32,11 @@ class PairMatcher {
   bool allowed(CachedPair& pair) const;
   bool is_there(const CachedPair& pair) const noexcept { return world_.contains(pair.a) && world_.contains(pair.b); }
   bool has_jumped(const CachedPair& pair) const noexcept {
-    return pair.versions.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
+    return pair.versions.jumps !=
+           world_.places.body(pair.bodies.a).changes.jumps + world_.places.body(pair.bodies.b).changes.jumps;
   }
   std::size_t memory_bytes() const noexcept {
-    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_, due_motions_);
+    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_);
   }
 
  private:
@@ -53,17 +54,13 @@ class PairMatcher {
   StepPairs pairs_;
   LoadModel::Pairs seen_;
   std::vector<BodyIndex> due_, left_out_;
-  std::vector<Motion> due_motions_;
 };
 
 template <typename GoesOn>
 void PairMatcher::match(GoesOn&& goes_on) {
   seen_.known = cache_.size(), seen_.fresh = 0;
   BodyTable& bodies = world_.bodies;
-  const bool any = bodies.any_invalidated();
-  const auto doubted = [&](const BodyPair& pair) {
-    return any && (bodies.invalidated(pair.a) || (!is_half_space(pair.b) && bodies.invalidated(pair.b)));
-  };
+  const auto doubted = [&](const BodyPair& pair) { return bodies.invalidated(pair); };
   const auto same = [&](const PairCache::Known& known) { return known.generations == generations(known.pair); };
   const auto gone = [&](const PairCache::Known& known) { return goes_on(cache_[known.record]); };
   const auto fresh = [&](const BodyPair& pair) {

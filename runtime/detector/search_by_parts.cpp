@@ -101,7 +101,7 @@ void PartPairs::find(Step step, const PairCache& before, std::vector<BodyPair>& 
 }
 
 BodyFilter PartPairs::broad_filter(const Body& body) noexcept {
-  BodyFilter filter = body.filter();
+  BodyFilter filter = body.options.filter;
   filter.ignores_static = filter.ignores_static || body.by_parts;
   return filter;
 }
@@ -116,13 +116,13 @@ void PartPairs::search(BodyIndex index, bool wanted) {
 
 void PartPairs::choose(Step step, const PairCache& pairs) {
   const BodyTable& bodies = world_.bodies;
-  if (!bodies.any_parts() || !world_.any.static_body || world_.any.continuous || step < choose_at_) return;
+  if (!world_.any.parts || !world_.any.static_body || world_.any.continuous || step < choose_at_) return;
   choose_at_ = step + kSteps;
   to_change_.clear();
   if (any()) place_static();
   for (const BodyIndex index : bodies_) {
     touching_.clear();
-    append_touching(bodies.sphere_around(index));
+    append_touching(bodies[index].sphere());
     if (bodies[index].valid && touching_.size() < kNoLonger * bodies[index].parts.size()) to_change_.push_back(index);
   }
   static_pairs_.assign(bodies.slots(), 0);
@@ -131,7 +131,8 @@ void PartPairs::choose(Step step, const PairCache& pairs) {
     if (is_half_space(pair.b) || bodies[pair.a].is_static == bodies[pair.b].is_static) continue;
     const BodyIndex moving = bodies[pair.a].is_static ? pair.b : pair.a;
     const Body& body = bodies[moving];
-    if (!body.by_parts && ++static_pairs_[moving] == kWorthIt * body.parts.size() && !body.one && body.id != kNoBody)
+    if (!body.by_parts && ++static_pairs_[moving] == kWorthIt * body.parts.size() && body.parts.size() > 1 &&
+        body.id != kNoBody)
       to_change_.push_back(moving);
   }
   for (const BodyIndex body : to_change_) search(body, !bodies[body].by_parts);

@@ -9,16 +9,23 @@ namespace orchard::runtime::detail {
 // What the application has said of its bodies, and up to which step it has been answered. The parts of a detector share
 // it: calls between two steps change it, and within a step only the sampler does, which asks where the bodies are.
 struct World {
-  World(StateSource source, const DetectorOptions& wanted);
+  explicit World(const DetectorOptions& wanted);
 
   bool contains(BodyId body) const noexcept {
     return is_half_space(body.index) ? halves.contains(body) : bodies.contains(body);
   }
+  Body& body(BodyIndex index) noexcept { return is_half_space(index) ? halves.body(index) : bodies[index]; }
+  const Body& body(BodyIndex index) const noexcept { return places.body(index); }
   double time_of_last_step() const noexcept { return clock.time(std::max<Step>(answered, 0)); }  // or of the first one
   // It has rested up to the last step: where it was then is known.
   void wake(Body& body) const noexcept {
-    if (body.frozen) body.asked = std::max(body.asked, answered);
+    if (body.frozen) body.steps.asked = std::max(body.steps.asked, answered);
     body.frozen = false;
+  }
+  // What sleeps is at rest.
+  void keep_state(const Body& body, BodyState state) {
+    if (body.asleep) state.velocity = {};
+    kept_states->put(body.id.index, time_of_last_step(), state);
   }
   bool filters_exclude(const BodyPair& pair) const {  // two bodies of the broad phase
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
@@ -42,6 +49,7 @@ struct World {
   struct Any {
     bool continuous = false;   // body, ever
     bool static_body = false;  // ever
+    bool parts = false;        // body of several, ever
     bool own_filter = false;   // of a body, ever
     bool jump = false;         // of a body, since the last step that was answered
   };

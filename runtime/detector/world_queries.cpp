@@ -13,7 +13,8 @@ namespace {
 bool is_finite(const Vec3& v) noexcept { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 bool counts(const Body& body, const QueryFilter& filter) noexcept {
-  return (body.category & filter.mask) != 0 && (body.mask & filter.category) != 0;
+  const BodyFilter& own = body.options.filter;
+  return (own.category & filter.mask) != 0 && (own.mask & filter.category) != 0;
 }
 
 void take_nearer(std::optional<WorldPoint>& best, const WorldPoint& found) noexcept {
@@ -24,7 +25,7 @@ void take_nearer(std::optional<WorldPoint>& best, const WorldPoint& found) noexc
 }  // namespace
 
 // Static bodies, those that the detector moves, those that the last step has asked for; the source knows the others.
-void WorldQueries::find_poses(const World& world) {
+void WorldQueries::find_poses(const World& world, const StateSampler& sampler) {
   const BodyTable& bodies = world.bodies;
   const double time = world.time_of_last_step();
   Pose nowhere;
@@ -38,7 +39,7 @@ void WorldQueries::find_poses(const World& world) {
       poses_[i] = body.state.pose;
     } else if (world.kept_states) {
       poses_[i] = world.kept_states->at(time, i).pose;
-    } else if (body.frozen || (body.asked == world.answered && world.answered >= 0)) {
+    } else if (body.frozen || (body.steps.asked == world.answered && world.answered >= 0)) {
       if (body.valid) poses_[i] = body.state.pose;
     } else {
       asked_.push_back(i);
@@ -46,16 +47,16 @@ void WorldQueries::find_poses(const World& world) {
   }
   if (asked_.empty()) return;
   answers_.resize(asked_.size());
-  bodies.look(time, asked_, answers_);
+  sampler.look(time, asked_, answers_);
   for (std::size_t k = 0; k < asked_.size(); ++k) {
     if (is_valid(answers_[k])) poses_[asked_[k]] = answers_[k].pose;
   }
 }
 
-void WorldQueries::update(const World& world) {
+void WorldQueries::update(const World& world, const StateSampler& sampler) {
   if (at_ == world.answered && changes_ == world.changes) return;
   at_ = kNotAsked;  // where memory runs out, all is found again
-  find_poses(world);
+  find_poses(world, sampler);
   tree_.clear();
   for (BodyIndex i = 0; i < poses_.size(); ++i) {
     if (world.bodies[i].id == kNoBody || !is_rigid(poses_[i])) continue;
@@ -143,21 +144,21 @@ std::optional<WorldPoint> Detector::cast_ray(const Ray& ray, const QueryFilter& 
   if (!s.takes_changes() || !detail::is_finite(ray.origin) || !detail::is_finite(ray.direction) ||
       ray.direction == Vec3{} || !(ray.longest >= 0))
     return std::nullopt;
-  s.queries.update(s.world);
+  s.queries.update(s.world, s.sampler);
   return s.queries.cast_ray(s.world, ray, filter);
 }
 
 std::optional<WorldPoint> Detector::nearest(const Vec3& point, double limit, const QueryFilter& filter) {
   State& s = *state_;
   if (!s.takes_changes() || !detail::is_finite(point) || !(limit >= 0)) return std::nullopt;
-  s.queries.update(s.world);
+  s.queries.update(s.world, s.sampler);
   return s.queries.nearest(s.world, point, limit, filter);
 }
 
 std::span<const BodyId> Detector::touching_sphere(const Vec3& center, double radius, const QueryFilter& filter) {
   State& s = *state_;
   if (!s.takes_changes() || !detail::is_finite(center) || !(radius >= 0) || !std::isfinite(radius)) return {};
-  s.queries.update(s.world);
+  s.queries.update(s.world, s.sampler);
   return s.queries.touching_sphere(s.world, center, radius, filter);
 }
 

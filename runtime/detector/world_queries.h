@@ -1,6 +1,6 @@
 #pragma once
+#include "detector/sample_states.h"
 #include "detector/sphere_tree.h"
-#include "detector/world.h"
 
 namespace orchard::runtime::detail {
 
@@ -9,7 +9,7 @@ namespace orchard::runtime::detail {
 class WorldQueries {
  public:
   // The world as of the last step. Nothing is built where it is still the one of the last call.
-  void update(const World& world);
+  void update(const World& world, const StateSampler& sampler);
   std::optional<WorldPoint> cast_ray(const World& world, const Ray& ray, const QueryFilter& filter);
   std::optional<WorldPoint> nearest(const World& world, const Vec3& point, double limit, const QueryFilter& filter);
   std::span<const BodyId> touching_sphere(const World& world, const Vec3& center, double radius,
@@ -27,7 +27,7 @@ class WorldQueries {
     HalfSpace half{};
     Pose pose{};
   };
-  void find_poses(const World& world);
+  void find_poses(const World& world, const StateSampler& sampler);
   template <typename Bound, typename Most, typename Use>
   void each_target(const World& world, const QueryFilter& filter, const Bound& bound, const Most& most,
                    const Use& use) const;
