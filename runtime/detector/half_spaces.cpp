@@ -58,10 +58,15 @@ void HalfSpaceTimes::update_all() noexcept {
   next_ = 0;
 }
 
-void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) const {
+void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) {
   if (next() > now) return;
+  next_ = kNeverStep;
   for (BodyIndex body = 0; body < due_.size(); ++body) {
-    if (due_[body] <= now) bodies.push_back(body);
+    if (due_[body] <= now) {
+      bodies.push_back(body);
+    } else {
+      next_ = std::min(next_, due_[body]);
+    }
   }
 }
 
@@ -71,25 +76,22 @@ void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Moti
   slack_ = slack;
   motion.radius += 2 * slack;  // one for where it is, one for where its bounds expect it
   bounds_[index] = {clock.time(now), motion, body.relies_on_middle(clock.time_step)};
-  due_[index] = now + 1;
-  if (!is_valid(motion)) return;
-  double seconds = kInfinity;
-  const std::size_t before = pairs.size();
-  halves_.each([&](const Body& of, const HalfSpace& half) {
-    const double height = height_over(half, motion);
-    seconds = std::min(seconds, seconds_above(half, motion, height));
-    if (!(height > 0)) pairs.push_back({index, of.id.index});
-  });
-  if (pairs.size() > before) return;
-  const Step last = body.frozen ? kNeverStep : clock.last_before_expiry(motion.expiry);
-  const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
-  const Step free = clock.steps_before(std::min(seconds, 1e12 * clock.time_step), now);
-  due_[index] = std::min(known, now + std::max<Step>(1, free));
-}
-
-void HalfSpaceTimes::find_next() noexcept {
-  next_ = kNeverStep;
-  for (const Step due : due_) next_ = std::min(next_, due);
+  Step due = now + 1;
+  if (is_valid(motion)) {
+    double seconds = kInfinity;
+    const std::size_t before = pairs.size();
+    halves_.each([&](const Body& of, const HalfSpace& half) {
+      const double height = height_over(half, motion);
+      seconds = std::min(seconds, seconds_above(half, motion, height));
+      if (!(height > 0)) pairs.push_back({index, of.id.index});
+    });
+    const Step last = body.frozen ? kNeverStep : clock.last_before_expiry(motion.expiry);
+    const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
+    const Step free = clock.steps_before(std::min(seconds, 1e12 * clock.time_step), now);
+    if (pairs.size() == before) due = std::min(known, now + std::max<Step>(1, free));
+  }
+  due_[index] = due;
+  next_ = std::min(next_, due);
 }
 
 bool HalfSpaceTimes::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {

@@ -47,13 +47,12 @@ class HalfSpaceTimes {
   // At which any body is due.
   Step next() const noexcept { return halves_.size() > 0 ? next_ : kNeverStep; }
 
-  // The bodies due at `now` or before, in ascending order.
-  void due(Step now, std::vector<BodyIndex>& bodies) const;
+  // The bodies due at `now` or before, in ascending order, each of which is to be updated.
+  void due(Step now, std::vector<BodyIndex>& bodies);
   // Of a body of which `motion` is relied on: appends its pairs, in ascending order of half-spaces, and finds when it
   // is due again. `slack`: see BroadPhaseOptions::position_slack.
   void update(const Body& body, Step now, const Clock& clock, Motion motion, double slack,
               std::vector<BodyPair>& pairs);
-  void find_next() noexcept;  // after all updates
   // Whether the body keeps the bounds that its next update relies on.
   bool motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   // Whether that is about the body's middle: see Body::relies_on_middle().

@@ -21,7 +21,6 @@ void PairMatcher::gather_half_spaces(Step step) {
                                    sampler_.given_motion(body, world_.clock.time(step)), world_.options.position_slack,
                                    pairs_.with_planes);
   }
-  world_.half_space_times.find_next();
 }
 
 void PairMatcher::gather_left_out(Step step, const Advance& now) {
