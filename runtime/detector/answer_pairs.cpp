@@ -78,37 +78,10 @@ void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch
   verdict.work = scratch.work - before;
 }
 
-// Two bodies of one part each, at least one of them a simple shape.
-void PairAnswerer::answer_two_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
-  Verdict& verdict = record.verdict;
-  PartPair pair;
-  place(record, 0, 0, pair);
-  const std::uint32_t guess = nearest_triangle(verdict, pair);
-  const std::uint64_t before = scratch.work++;
-  record.parts = {};
-  record.sweep.impact = false;
-  if (spheres_part(pair)) {
-    verdict = unasked(pair);
-  } else {
-    ::new (&verdict) Verdict(answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess));
-  }
-  if (verdict.answer == Answer::yes) verdict.lower_bound = 0;
-  if (verdict.answer != Answer::maybe) record.answered = now;
-  verdict.work = scratch.work - before;
-}
-
 void PairAnswerer::answer(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
-  answer_poses(record, now, scratch);
+  record.coherent ? answer_coherently(record, now, scratch) : answer_parts(record, now, scratch);
   if (record.sweep.unseen) leave_open(record);
   if (record.sweep.possible) sweep(record, now, scratch, kNoLimit);
-}
-
-void PairAnswerer::answer_poses(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
-  if (record.coherent) return answer_coherently(record, now, scratch);
-  if (places_->parts(record.bodies.a) == 1 && places_->parts(record.bodies.b) == 1) {
-    return answer_two_parts(record, now, scratch);
-  }
-  answer_parts(record, now, scratch);
 }
 
 // Two parts that touched at the step before, where a triangle `guess` may have been nearest. Where others of these
@@ -155,7 +128,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
       if (parts_b > 1) b = places_->sphere(bodies.b, j);
       ++scratch.work;
       SphereGap gap = half ? sphere_gap(a, pair.half) : sphere_gap(a, b);
-      if (!(gap.least > 0) && !half) gap.least = places_->bounds_gap(bodies, i, j, a, b);
+      if (!(gap.least > 0) && !half && parts_a + parts_b > 2) gap.least = places_->bounds_gap(bodies, i, j, a, b);
       if (gap.least > 0) {
         Verdict apart;
         apart.answer = Answer::no;

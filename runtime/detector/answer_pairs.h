@@ -27,12 +27,10 @@ class PairAnswerer {
   static bool is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept;
 
  private:
-  void answer_poses(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
   static Verdict answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
                               AnswerScratch& scratch) noexcept;
   static Verdict answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept;
   void answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
-  void answer_two_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
   static constexpr std::uint32_t kNoPart = 0xffffffffu;
   struct PartIndices {
     std::uint32_t a = kNoPart, b = kNoPart;

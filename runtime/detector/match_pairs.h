@@ -1,7 +1,6 @@
 #pragma once
 #include "detector/load_model.h"
 #include "detector/search_by_parts.h"
-#include "detector/step_pairs.h"
 
 namespace orchard::runtime::detail {
 
@@ -21,7 +20,7 @@ class PairMatcher {
   // keeps it.
   template <typename GoesOn>
   void match(GoesOn&& goes_on);
-  std::size_t pair_count() const noexcept { return pairs_.all().size(); }
+  std::size_t pair_count() const noexcept { return pairs_.size(); }
   const LoadModel::Pairs& seen() const noexcept { return seen_; }
 
   PairCache& cache() noexcept { return cache_; }
@@ -36,7 +35,7 @@ class PairMatcher {
            world_.places.body(pair.bodies.a).changes.jumps + world_.places.body(pair.bodies.b).changes.jumps;
   }
   std::size_t memory_bytes() const noexcept {
-    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_);
+    return cache_.memory_bytes() + bytes_of(others_, merged_, due_, left_out_);
   }
 
  private:
@@ -51,7 +50,9 @@ class PairMatcher {
   StateSampler& sampler_;
   PartPairs& part_pairs_;
   PairCache cache_;
-  StepPairs pairs_;
+  std::span<const BodyPair> pairs_;  // of the step: those of the broad phase and
+  std::vector<BodyPair> others_;     // those that it does not know of,
+  std::vector<BodyPair> merged_;     // together, if there are any
   LoadModel::Pairs seen_;
   std::vector<BodyIndex> due_, left_out_;
 };
@@ -67,7 +68,7 @@ void PairMatcher::match(GoesOn&& goes_on) {
     ++seen_.fresh;
     return generations(pair);
   };
-  cache_.match(pairs_.all(), doubted, same, gone, fresh);
+  cache_.match(pairs_, doubted, same, gone, fresh);
   seen_.parted = seen_.known + seen_.fresh + cache_.kept().size() - cache_.size();
   bodies.forget_invalidated();
 }

@@ -5,24 +5,15 @@
 namespace orchard::runtime::detail {
 
 void PairCache::take(std::size_t place) {
-  std::uint32_t record = record_count_;
   if (free_.empty()) {
-    if (record / kPiece == pieces_.size()) {
-      pieces_.push_back(std::make_unique_for_overwrite<Piece>());
-      free_.reserve(pieces_.size() * kPiece);
-    }
-    ++record_count_;
+    records_.push_back(std::make_unique<CachedPair>());
+    free_.reserve(records_.capacity());
+    known(place).record = static_cast<std::uint32_t>(records_.size() - 1);
   } else {
-    record = free_.back();
+    known(place).record = free_.back();
     free_.pop_back();
+    *records_[known(place).record] = {};
   }
-  known(place).record = record & kNoRecord;
-  known(place).begun = 0;
-}
-
-CachedPair& PairCache::begin(Known& known) noexcept {
-  known.begun = 1;
-  return *::new (pieces_[known.record / kPiece]->memory[known.record % kPiece].data()) CachedPair;
 }
 
 // Of how many pairs the two begin alike: most of them do, from one step to the next.

@@ -2,8 +2,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <new>
-#include <type_traits>
 
 #include "detector/shape_placements.h"
 #include "orchard/runtime/collide.h"
@@ -81,8 +79,7 @@ class PairCache {
  public:
   struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this, if that
     BodyPair pair;
-    std::uint32_t record : 31;  // or kNoRecord
-    std::uint32_t begun : 1;
+    std::uint32_t record;       // or kNoRecord
     std::uint32_t generations;  // of both bodies: others have others
     Clearance clearance;
   };
@@ -99,12 +96,9 @@ class PairCache {
   void tell(std::size_t place, bool busy) noexcept { slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0); }
   ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
-  CachedPair& operator[](std::uint32_t record) noexcept { return *place_of(record); }
-  const CachedPair& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
-  // A record for known(place), to be begun by begin(), in any thread.
-  void take(std::size_t place);
-  bool is_begun(const Known& known) const noexcept { return known.begun != 0; }
-  CachedPair& begin(Known& known) noexcept;
+  CachedPair& operator[](std::uint32_t record) noexcept { return *records_[record]; }
+  const CachedPair& operator[](std::uint32_t record) const noexcept { return *records_[record]; }
+  void take(std::size_t place);  // a new record for known(place)
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
@@ -112,8 +106,8 @@ class PairCache {
   template <typename Doubted, typename IsSame, typename Gone, typename Generations>
   void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
-    return pieces_.size() * sizeof(Piece) +
-           bytes_of(pieces_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
+    return records_.size() * sizeof(CachedPair) +
+           bytes_of(records_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
   }
 
  private:
@@ -122,17 +116,7 @@ class PairCache {
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
 
-  // In pieces, so that they stay where they are, and whose memory is not touched before begin().
-  static constexpr std::size_t kPiece = 256;
-  static_assert(std::is_trivially_destructible_v<CachedPair> && alignof(CachedPair) <= alignof(std::max_align_t));
-  struct Piece {
-    alignas(CachedPair) std::array<std::byte, sizeof(CachedPair)> memory[kPiece];
-  };
-  CachedPair* place_of(std::uint32_t record) const noexcept {
-    return std::launder(reinterpret_cast<CachedPair*>(pieces_[record / kPiece]->memory[record % kPiece].data()));
-  }
-  std::vector<std::unique_ptr<Piece>> pieces_;
-  std::uint32_t record_count_ = 0;  // in use, or free
+  std::vector<std::unique_ptr<CachedPair>> records_;  // in use, or free
   std::vector<std::uint32_t> free_;
   std::vector<Known> known_;
   std::vector<std::uint32_t> free_slots_;

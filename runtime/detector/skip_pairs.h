@@ -12,7 +12,6 @@ class ActivePairs {
   std::size_t size() const noexcept { return active_.size(); }
   const BodyPair& pair(std::size_t i) const noexcept { return cache_->pair(active_[i]); }
   PairCache::Known& known(std::size_t i) const noexcept { return cache_->known(active_[i]); }
-  // Precondition: PairMatcher::cached() has begun it.
   CachedPair& cached(std::size_t i) const noexcept { return (*cache_)[known(i).record]; }
   // Whether a certain "no" at the next step would change what is remembered, or the pair's end would be noticed.
   void tell(std::size_t i, bool busy) const noexcept { cache_->tell(active_[i], busy); }

@@ -87,8 +87,8 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
         }
         if (!known.record && draw.bits() % 2 == 0) {
           table.take(place);
-          ASSERT_FALSE(table.is_begun(of));
-          ASSERT_EQ(table.begin(of).answered, -1);
+          ASSERT_EQ(table[of.record].answered, -1);
+          ASSERT_EQ(table[of.record].turn.waited, 0u);
           known.record = true;
         }
         known.mark = of.clearance.changes = ++marks;
