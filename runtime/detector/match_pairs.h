@@ -61,14 +61,16 @@ template <typename GoesOn>
 void PairMatcher::match(GoesOn&& goes_on) {
   seen_.known = cache_.size(), seen_.fresh = 0;
   BodyTable& bodies = world_.bodies;
-  const auto doubted = [&](const BodyPair& pair) { return bodies.invalidated(pair); };
-  const auto same = [&](const PairCache::Known& known) { return known.generations == generations(known.pair); };
+  const auto same = [&](std::size_t place) {
+    const BodyPair& pair = cache_.pair(place);
+    return !bodies.invalidated(pair) || cache_.known(place).generations == generations(pair);
+  };
   const auto gone = [&](const PairCache::Known& known) { return goes_on(cache_[known.record]); };
   const auto fresh = [&](const BodyPair& pair) {
     ++seen_.fresh;
     return generations(pair);
   };
-  cache_.match(pairs_, doubted, same, gone, fresh);
+  cache_.match(pairs_, same, gone, fresh);
   seen_.parted = seen_.known + seen_.fresh + cache_.kept().size() - cache_.size();
   bodies.forget_invalidated();
 }

@@ -1,7 +1,5 @@
 #include "detector/pair_cache.h"
 
-#include <cstring>
-
 namespace orchard::runtime::detail {
 
 void PairCache::take(std::size_t place) {
@@ -16,29 +14,10 @@ void PairCache::take(std::size_t place) {
   }
 }
 
-// Of how many pairs the two begin alike: most of them do, from one step to the next.
-std::size_t PairCache::common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept {
-  constexpr std::size_t kAtOnce = 8;
-  const std::size_t count = std::min(a.size(), b.size());
-  std::size_t i = 0;
-  for (; i + kAtOnce <= count; i += kAtOnce) {
-    static_assert(sizeof(BodyPair) == sizeof(std::uint64_t));
-    std::array<std::uint64_t, kAtOnce> of_a, of_b;
-    std::memcpy(of_a.data(), &a[i], sizeof of_a);
-    std::memcpy(of_b.data(), &b[i], sizeof of_b);
-    std::uint64_t differ = 0;
-    for (std::size_t k = 0; k < kAtOnce; ++k) differ |= of_a[k] ^ of_b[k];
-    if (differ != 0) break;
-  }
-  while (i < count && a[i] == b[i]) ++i;
-  return i;
-}
-
 void PairCache::keep(std::size_t from, std::size_t count) {
-  const auto some = [&](const auto& of) { return std::span(of).subspan(from, count); };
-  const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
-  append_some(next_pairs_, some(pairs_));
-  append_some(next_slots_, some(slots_));
+  const auto at = static_cast<std::ptrdiff_t>(from), end = static_cast<std::ptrdiff_t>(from + count);
+  next_pairs_.insert(next_pairs_.end(), pairs_.begin() + at, pairs_.begin() + end);
+  next_slots_.insert(next_slots_.end(), slots_.begin() + at, slots_.begin() + end);
 }
 
 void PairCache::add(const BodyPair& pair, std::uint32_t generations) {

@@ -100,18 +100,17 @@ class PairCache {
   const CachedPair& operator[](std::uint32_t record) const noexcept { return *records_[record]; }
   void take(std::size_t place);  // a new record for known(place)
 
-  // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
-  // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
-  // the former if that says true; generations(pair) for each that is new.
-  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
-  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
+  // The known ones are these from now on, which ascend. Asks same(place) of each that has been one, whether it is the
+  // same pair still. Calls gone(known) for each busy one that is not among them, or not the same, and keeps the former
+  // if that says true; generations(pair) for each that is new.
+  template <typename IsSame, typename Gone, typename Generations>
+  void match(std::span<const BodyPair> pairs, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
     return records_.size() * sizeof(CachedPair) +
            bytes_of(records_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
   }
 
  private:
-  static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
@@ -126,38 +125,30 @@ class PairCache {
   std::vector<std::uint32_t> kept_places_;
 };
 
-template <typename Doubted, typename IsSame, typename Gone, typename Generations>
-void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                      Generations&& generations) {
+template <typename IsSame, typename Gone, typename Generations>
+void PairCache::match(std::span<const BodyPair> pairs, IsSame&& same, Gone&& gone, Generations&& generations) {
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
-  const auto look_at = [&](std::size_t place) {
-    if (same(known(place))) return keep(place, 1);
-    if (busy(place)) gone(known(place));  // of a body that is no more: it cannot stay
-    leave(place);
-    add(pairs_[place], generations(pairs_[place]));
-  };
-  const auto take_over = [&](std::size_t place, std::size_t end) {
-    while (place < end) {
-      std::size_t sure = place;
-      while (sure < end && !doubted(pairs_[sure])) ++sure;
-      keep(place, sure - place);
-      if (sure < end) look_at(sure++);
-      place = sure;
-    }
-  };
-  const auto part = [&](std::size_t place) {
-    if (!busy(place) || !gone(known(place))) return leave(place);
-    kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
-    keep(place, 1);
-  };
   const std::size_t had = pairs_.size();
   for (std::size_t old = 0, now = 0; old < had || now < pairs.size();) {
-    const std::size_t alike = common(pairs.subspan(now), std::span(pairs_).subspan(old));
-    take_over(old, old + alike);
+    const std::size_t most = std::min(had - old, pairs.size() - now);
+    std::size_t alike = 0;  // most of them are, from one step to the next
+    while (alike < most && pairs_[old + alike] == pairs[now + alike] && same(old + alike)) ++alike;
+    keep(old, alike);
     old += alike, now += alike;
-    for (; old < had && (now == pairs.size() || pairs_[old] < pairs[now]); ++old) part(old);
-    for (; now < pairs.size() && (old == had || pairs[now] < pairs_[old]); ++now)
+    const bool is_known = old < had && now < pairs.size() && pairs_[old] == pairs[now];
+    if (now < pairs.size() && (old == had || is_known || pairs[now] < pairs_[old])) {
+      if (is_known) {  // of a body that is no more: it cannot stay
+        if (busy(old)) gone(known(old));
+        leave(old++);
+      }
       add(pairs[now], generations(pairs[now]));
+      ++now;
+    } else if (old < had && busy(old) && gone(known(old))) {
+      kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
+      keep(old++, 1);
+    } else if (old < had) {
+      leave(old++);
+    }
   }
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }

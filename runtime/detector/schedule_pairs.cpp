@@ -1,7 +1,6 @@
 #include "detector/schedule_pairs.h"
 
 #include <algorithm>
-#include <array>
 
 #include "collision/coherent_pair.h"
 #include "collision/pair_query.h"
@@ -13,18 +12,6 @@ constexpr std::uint64_t kFirstSlice = 1024;       // tests; each further slice i
 constexpr std::uint64_t kSearchShare = 8;         // of the budget, one part in so many is set aside for searches
 constexpr std::uint8_t kSearchesBeforeRoots = 4;  // of a pair that its roots have not told apart
 constexpr std::size_t kAtOnce = 64;               // tasks, so that the turns depend on no number of threads
-
-// By one digit of 256, stable.
-template <typename Digit>
-void sort_by(std::vector<std::uint32_t>& tasks, std::vector<std::uint32_t>& sorted, Digit&& digit) {
-  std::array<std::uint32_t, 257> begin{};
-  for (const std::uint32_t task : tasks) ++begin[digit(task) + 1u];
-  if (std::find(begin.begin(), begin.end(), tasks.size()) != begin.end()) return;  // all the same
-  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  sorted.resize(tasks.size());
-  for (const std::uint32_t task : tasks) sorted[begin[digit(task)]++] = task;
-  tasks.swap(sorted);
-}
 
 }  // namespace
 
@@ -66,14 +53,17 @@ void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t
   }
 }
 
+// By importance, then by who has waited longest, then in the order of tasks.
 void PairScheduler::sort_tasks(const PairCache& records) {
   schedule_.clear();
   for (std::uint32_t i = 0; i < tasks_.size(); ++i) {
-    if (!tasks_[i].done) schedule_.push_back(i);
+    const CachedPair::Turn& turn = records[tasks_[i].record].turn;
+    if (!tasks_[i].done) schedule_.push_back({turn.importance, std::min(turn.waited, 255u), i});
   }
-  sort_by(schedule_, sorted_,
-          [&](std::uint32_t task) { return 255 - std::min(records[tasks_[task].record].turn.waited, 255u); });
-  sort_by(schedule_, sorted_, [&](std::uint32_t task) { return records[tasks_[task].record].turn.importance; });
+  const auto rank = [](const Turn& turn) {
+    return std::uint64_t{turn.importance} << 40 | std::uint64_t{255 - turn.waited} << 32 | turn.task;
+  };
+  std::sort(schedule_.begin(), schedule_.end(), [&](const Turn& p, const Turn& q) { return rank(p) < rank(q); });
 }
 
 void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
@@ -81,10 +71,9 @@ void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
   budget.set_aside(for_searches);
   give_turns(0, schedule_.size(), 0, budget, records);
   budget.give_back(for_searches);
-  const auto importance = [&](std::size_t i) { return records[tasks_[schedule_[i]].record].turn.importance; };
   for (std::size_t begin = 0; begin < schedule_.size();) {
     std::size_t end = begin;
-    while (end < schedule_.size() && importance(end) == importance(begin)) ++end;
+    while (end < schedule_.size() && schedule_[end].importance == schedule_[begin].importance) ++end;
     std::uint64_t slice = kFirstSlice;
     while (give_turns(begin, end, slice, budget, records)) slice = std::min<std::uint64_t>(4 * slice, 1ull << 32);
     begin = end;
@@ -97,8 +86,8 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
                                PairCache& records) {
   const bool alone = world_.options.executor.run == nullptr, searches = slice > 0;
   const std::uint64_t most_of_one = !searches ? kSimplePairWork : slice + kMaxOvershoot;
-  const auto is_open = [&](std::uint32_t index) {
-    const Task& task = tasks_[index];
+  const auto is_open = [&](const Turn& turn) {
+    const Task& task = tasks_[turn.task];
     return !task.done && records[task.record].verdict.answer != Answer::yes;
   };
   std::size_t next = begin;
@@ -106,7 +95,7 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
     const std::uint64_t left = budget.left(), most = std::min(left, slice);
     const std::size_t at_once = static_cast<std::size_t>(std::clamp<std::uint64_t>(left / most_of_one, 1, kAtOnce));
     for (order_.clear(); next < end && order_.size() < at_once; ++next) {
-      if (is_open(schedule_[next])) order_.push_back(schedule_[next]);
+      if (is_open(schedule_[next])) order_.push_back(schedule_[next].task);
     }
     each(order_.size(), [&](std::size_t i, AnswerScratch& scratch) {
       Task& task = tasks_[order_[i]];

@@ -32,9 +32,7 @@ class PairScheduler {
   void sweep_within(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
 
   Workspace* workspace() noexcept { return scratches_.size() == 0 ? nullptr : &scratches_[0].workspace; }
-  std::size_t memory_bytes() const noexcept {
-    return scratches_.memory_bytes() + bytes_of(tasks_, schedule_, sorted_, order_);
-  }
+  std::size_t memory_bytes() const noexcept { return scratches_.memory_bytes() + bytes_of(tasks_, schedule_, order_); }
 
  private:
   struct Task {
@@ -43,6 +41,10 @@ class PairScheduler {
     bool slow = false;       // what the last step found may be of use
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
+  };
+  struct Turn {
+    std::uint8_t importance;
+    std::uint32_t waited, task;
   };
   void make_tasks(PairCache& records, std::span<const std::uint32_t> open, Step now);
   void sort_tasks(const PairCache& records);
@@ -53,9 +55,9 @@ class PairScheduler {
   const World& world_;
   PairAnswerer answerer_;
   AnswerScratches scratches_;
-  std::vector<Task> tasks_;                       // in the order of pairs, then of parts
-  std::vector<std::uint32_t> schedule_, sorted_;  // of tasks
-  std::vector<std::uint32_t> order_;              // of the tasks that run at once
+  std::vector<Task> tasks_;  // in the order of pairs, then of parts
+  std::vector<Turn> schedule_;
+  std::vector<std::uint32_t> order_;  // of the tasks that run at once
 };
 
 // The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
