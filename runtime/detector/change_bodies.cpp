@@ -61,8 +61,7 @@ void Detector::State::rely_on_origins() {
 
 BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& options) {
   State& s = *state_;
-  if (!s.acceptable(parts, options) || (options.suggest && !s.sampler.watches()) || !s.sampler.has_source())
-    return kNoBody;
+  if (!s.acceptable(parts, options) || (options.suggest && !s.sampler.watches()) || !s.sampler.source()) return kNoBody;
   return s.or_fail([&] {
     const BodyId id = s.broad.add(options.importance, options.filter);
     if (id == kNoBody) return id;

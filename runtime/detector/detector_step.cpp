@@ -117,7 +117,6 @@ Advance Detector::State::advance(Step stop, StepBudget& share) {
   if (!share.limited()) {
     if (stop == world.answered + 1) sampler.sample_all(stop);
     now = broad.advance(time);
-    sampler.broad_phase_ended();
   } else {
     Budget work;
     if (share.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));

@@ -43,6 +43,12 @@ void StateSampler::sample(Step step, std::span<const BodyIndex> bodies) {
   ask_source(step);
 }
 
+void StateSampler::ask_all(Step step) {
+  asking_.clear();
+  for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) ask_for(i, step);
+  ask_source(step);
+}
+
 // For asking_. What follows from many answers is worked out by jobs.
 void StateSampler::ask_source(Step step) {
   if (asking_.empty()) return;
@@ -96,7 +102,7 @@ Motion StateSampler::given_motion(BodyIndex index, double time) const {
 // One that watches has sampled every body by now.
 void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> asked, std::span<Motion> motions) {
   const Clock& clock = world_.clock;
-  if (!sampled_all_) sample(std::llround((time - clock.start) / clock.time_step), asked);
+  if (!sampled_all()) sample(std::llround((time - clock.start) / clock.time_step), asked);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     motions[i] = given_motion(asked[i], time);
     if (!watches_) continue;
@@ -111,13 +117,9 @@ void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> as
 // Nearly every body is asked about at this step anyway.
 void StateSampler::sample_all(Step step) {
   constexpr std::size_t kMinBodies = 256;
-  sampled_all_ = false;
   const std::size_t slots = world_.bodies.slots();
   if (paired_.size() < kMinBodies || 2 * paired_.size() < slots || watches_ || world_.options.bound_given) return;
-  asking_.clear();
-  for (BodyIndex i = 0; i < slots; ++i) ask_for(i, step);
-  ask_source(step);
-  sampled_all_ = true;
+  ask_all(step);
   all_sampled_at_ = step;
 }
 
@@ -146,9 +148,7 @@ void StateSampler::sample_pairs(Step step, std::span<const BodyPair> pairs) {
 
 // Section 4.4 of the dissertation.
 void StateSampler::watch(Step step) {
-  asking_.clear();
-  for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) ask_for(i, step);
-  ask_source(step);
+  ask_all(step);
   for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) {
     Body& body = world_.bodies[i];
     if (body.id == kNoBody || body.is_static || body.steps.asked != step) continue;

@@ -10,21 +10,17 @@ class StateSampler {
  public:
   StateSampler(World& world, BroadPhase& broad, StateSource source);
 
-  bool has_source() const noexcept { return static_cast<bool>(source_); }
+  const StateSource& source() const noexcept { return source_; }
   void begin_call() noexcept { refused_.clear(), broken_.clear(); }
   // Makes the states of these bodies those of the step; a body may come up twice.
   void sample(Step step, std::span<const BodyIndex> bodies);
   // Where most bodies were in pairs at the step before: all of them at once, so that the broad phase's jobs may run at
-  // once, until it has ended.
+  // once.
   void sample_all(Step step);
-  bool sampled_all() const noexcept { return sampled_all_; }
-  void broad_phase_ended() noexcept { sampled_all_ = false; }
+  // Whether every state is that of the step that the broad phase is at.
+  bool sampled_all() const noexcept { return all_sampled_at_ == world_.answered + 1; }
   // The bodies of these pairs, in ascending order; refuses those whose states are not valid.
   void sample_pairs(Step step, std::span<const BodyPair> pairs);
-  // The states of these bodies at another time, which changes nothing here.
-  void look(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const {
-    source_(time, bodies, states);
-  }
   // What is relied on of a body whose state has been sampled: what its state says, or what the monitor makes of it.
   Motion given_motion(BodyIndex body, double time) const;
   // The broad phase asks for the motions of bodies.
@@ -43,6 +39,7 @@ class StateSampler {
 
  private:
   void ask_for(BodyIndex body, Step step);
+  void ask_all(Step step);
   void ask_source(Step step);
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   bool keeps_motion_bound(BodyIndex index, Step step);
@@ -53,7 +50,6 @@ class StateSampler {
   StateSource source_;
   MotionMonitor monitor_;
   bool watches_;
-  bool sampled_all_ = false;  // every state is that of the step that the broad phase is at
   Step all_sampled_at_ = kNotAsked, paired_at_ = kNotAsked;
   std::atomic<bool> any_flawed_ = false;  // some answer was not valid; set by jobs
   std::vector<BodyIndex> asking_, refused_, broken_;

@@ -65,9 +65,8 @@ double ShapePlacements::bounds_gap(const BodyPair& pair, std::uint32_t part_a, s
   return gap > 0 ? gap : bounds_gap(pair.b, part_b, a);
 }
 
-Verdict unasked(const PartPair& pair) noexcept { return unasked(pair, sphere_gap(pair)); }
-
-Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept {
+Verdict unasked(const PartPair& pair) noexcept {
+  const SphereGap gap = sphere_gap(pair);
   Verdict verdict;
   verdict.answer = gap.least > 0 ? Answer::no : Answer::maybe;
   verdict.lower_bound = std::max(0.0, gap.least);

@@ -100,7 +100,6 @@ inline bool spheres_part(const PartPair& pair) noexcept {
 }
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
-Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept;
 
 // A triangle of the tree that a simple shape was nearest to, as its last answer says: where looking for it begins.
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept;

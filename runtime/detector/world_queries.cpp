@@ -47,7 +47,7 @@ void WorldQueries::find_poses(const World& world, const StateSampler& sampler) {
   }
   if (asked_.empty()) return;
   answers_.resize(asked_.size());
-  sampler.look(time, asked_, answers_);
+  sampler.source()(time, asked_, answers_);
   for (std::size_t k = 0; k < asked_.size(); ++k) {
     if (is_valid(answers_[k])) poses_[asked_[k]] = answers_[k].pose;
   }
