@@ -80,11 +80,11 @@ orchard_frame step(orchard_detector& detector, double time, const orchard_budget
   result.pairs = frame.pairs, result.certain = frame.certain;
   result.work = frame.work, result.motions_asked = frame.motions_asked;
   result.worst_bound = frame.worst_bound;
-  result.incomplete_from = frame.incomplete_from;
-  result.left_over = frame.left_over;
+  result.incomplete_from = frame.unfinished.incomplete_from;
+  result.left_over = frame.unfinished.left_over;
   result.refused = frame.refused.size(), result.broken = frame.broken.size();
   result.time_refused = frame.time_refused, result.out_of_memory = frame.out_of_memory;
-  result.steps_left = frame.steps_left, result.skipped = frame.skipped;
+  result.steps_left = frame.unfinished.steps_left, result.skipped = frame.unfinished.skipped;
   return result;
 }
 

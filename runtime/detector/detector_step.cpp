@@ -58,11 +58,11 @@ void Detector::State::run(double time, const Budget& given, const StepOptions& w
     run_to(answered + 1, end, budget, frame);
   }
   if (!sampler.watches()) run_to(end, end, budget, frame);
-  frame.steps_left = static_cast<std::uint64_t>(std::max<Step>(0, end - answered));
+  frame.unfinished.steps_left = static_cast<std::uint64_t>(std::max<Step>(0, end - answered));
   frame.motions_asked = broad.motions_asked() - asked_before;
   frame.work = budget.spent();
   frame.time = world.time_of_last_step();
-  frame.next_time = next_time(frame.steps_left > 0);
+  frame.next_time = next_time(frame.unfinished.steps_left > 0);
   sampler.report(frame);
   frame.events = reporter.events();
 }
@@ -77,7 +77,7 @@ double Detector::State::next_time(bool steps_left) const noexcept {
 // Nothing was sampled at the steps that are left out, so that no sweep of a continuous body begins there.
 void Detector::State::leave_out_before(Step end, Frame& frame) {
   if (end <= world.answered + 1) return;
-  frame.skipped = static_cast<std::uint64_t>(end - 1 - world.answered);
+  frame.unfinished.skipped = static_cast<std::uint64_t>(end - 1 - world.answered);
   broad.skip_to(world.clock.time(end));
   world.answered = end - 1;
 }
@@ -97,8 +97,8 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     StepBudget share = budget.share(static_cast<std::uint64_t>(end - world.answered));
     const Advance now = advance(stop, share);
     sampler.refuse(now.refused);
-    frame.incomplete_from = std::min(frame.incomplete_from, now.incomplete_from);
-    frame.left_over += now.left_over;
+    frame.unfinished.incomplete_from = std::min(frame.unfinished.incomplete_from, now.incomplete_from);
+    frame.unfinished.left_over += now.left_over;
     const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
     if (found || under_way || world.half_space_times.next() <= step) answer(step, now, share, frame);

@@ -139,7 +139,8 @@ class Factory {
       if (!allowed(pair)) continue;
       ++touching;
       const bool told = named.contains(pair) && (budget.work < kWholeStep || yes.contains(pair) || any_bullet_);
-      EXPECT_TRUE(told || frame.incomplete_from != kNoClass) << step << ": " << pair.first << ' ' << pair.second;
+      EXPECT_TRUE(told || frame.unfinished.incomplete_from != kNoClass)
+          << step << ": " << pair.first << ' ' << pair.second;
     }
   }
   std::size_t touching = 0;
