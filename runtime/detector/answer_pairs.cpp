@@ -9,7 +9,6 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
-constexpr double kSlow = 0.02;  // of the smaller body's size, per step
 
 }  // namespace
 
@@ -41,17 +40,6 @@ void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::ui
   if (pair.b.shape == nullptr) pair.half = places_->half_space(record.bodies.b);
 }
 
-// Unless they pass each other so fast that looking for what lasts would not pay.
-bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept {
-  const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart.by;
-  const bool first = record.apart.at < 0;
-  const double slow =
-      kSlow * std::min(pair.a.reach, pair.b.reach) * static_cast<double>(std::max<Step>(1, now - record.apart.at));
-  record.apart.by = way;
-  record.apart.at = now;
-  return first || dot(change, change) <= slow * slow;
-}
-
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
 void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   record.parts = {};
@@ -60,15 +48,13 @@ void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch
   PartPair pair;
   place(record, 0, 0, pair);
   const std::uint64_t before = scratch.work++;
-  const bool slow = is_slow(record, pair, now);
-  const double apart = length(record.apart.by), reach = pair.a.reach + pair.b.reach;
+  const double apart = length(pair.b.center - pair.a.center), reach = pair.a.reach + pair.b.reach;
   if (!(apart <= reach)) verdict = unasked(pair);
   if (apart <= reach || verdict.answer != Answer::no) {
     const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
-    const bool tries = slow || record.touching;
-    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
+    if (!CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
-      record.apart.along = query_of(scratch.workspace.narrow).known().apart_along;
+      record.apart_along = query_of(scratch.workspace.narrow).known().apart_along;
     }
     scratch.work += kPairWork + verdict.work;
     if (verdict.answer == Answer::no) make_solid(verdict, pair);
@@ -180,17 +166,15 @@ void leave_open(CachedPair& record) noexcept {
 
 void PairAnswerer::sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept {
   PartPair from, to;
-  const bool half = is_half_space(record.bodies.b);
-  if (half) from.half = to.half = places_->half_space(record.bodies.b);
   Swept first;
   first.from = first.to = 2;
   double earliest = 2;
   for (std::uint32_t i = 0; i < places_->parts(record.bodies.a); ++i) {
-    places_->place_before(record.bodies.a, i, now, from.a);
-    places_->place(record.bodies.a, i, to.a);
     for (std::uint32_t j = 0; j < places_->parts(record.bodies.b); ++j) {
+      place(record, i, j, to);
+      from.half = to.half;
+      places_->place_before(record.bodies.a, i, now, from.a);
       places_->place_before(record.bodies.b, j, now, from.b);
-      places_->place(record.bodies.b, j, to.b);
       Swept swept;
       if (scratch.work < most) {
         swept = detail::sweep(scratch.workspace, from, to, most, scratch.work);

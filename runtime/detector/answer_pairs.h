@@ -23,8 +23,6 @@ class PairAnswerer {
   void sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept;
 
   void place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
-  // Whether the two move so slowly that what the last step found may be of use. Once a step.
-  static bool is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept;
 
  private:
   static Verdict answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,

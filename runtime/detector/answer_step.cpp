@@ -64,7 +64,7 @@ void Detector::State::answer_within(const ActivePairs& active, Step step, const 
   const std::size_t known = cache.size();
   const StepBudget::Part report_time{0, load_model.time_to_report(known)};
   if (budget.timed()) budget.set_aside(report_time);
-  scheduler.begin_within(cache, open_pairs, step);
+  scheduler.begin_within(cache, open_pairs);
   const double begun = watch.passed();
   const StepBudget::Part for_sweeps = sweeps ? budget.part(2) : StepBudget::Part{};
   budget.set_aside(for_sweeps);

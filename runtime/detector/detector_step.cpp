@@ -7,12 +7,6 @@ namespace orchard::runtime {
 using detail::kNeverStep;
 using detail::StepBudget;
 
-namespace {
-
-double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
-
-}  // namespace
-
 Frame Detector::step(double time, const Budget& budget, const StepOptions& options) noexcept {
   State& s = *state_;
   Frame frame;
@@ -124,7 +118,7 @@ Advance Detector::State::advance(Step stop, StepBudget& share) {
     const StepBudget::Stopwatch watch(share.timed());
     now = broad.advance(time, work, share.replay() != nullptr ? share.replay()->broad : 0);
     if (share.timed() && now.incomplete_from != kNoClass)
-      load_model.learn_broad_excess(watch.passed() - nanoseconds(work.time));
+      load_model.learn_broad_excess(watch.passed() - static_cast<double>(work.time.count()));
     if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
   }
   share.spend((broad.motions_asked() - before) * kMotionWork);

@@ -40,12 +40,7 @@ struct CachedPair {
   Step answered = -1;  // the step of `verdict`, if that is certain
   std::array<std::uint32_t, 2> parts{};
   Verdict verdict;
-  struct Apart {
-    Vec3 by{};     // from centre to centre,
-    Step at = -1;  // at that step
-    Vec3 along{};  // of the answer of the step under way, if that is "no": Clearance::along
-  };
-  Apart apart;
+  Vec3 apart_along{};  // of the answer of the step under way, if that is "no": Clearance::along
   TreePair trees;
 };
 

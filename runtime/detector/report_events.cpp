@@ -75,7 +75,7 @@ void EventReporter::conclude(const ActivePairs& active, std::size_t i) noexcept 
   outcomes_[i] = begin_or_end(pair);
   active.tell(i, pair.touching || pair.turn.waited > 0);
   if (pair.versions.allowed) skipper_.keep_clearance(active.known(i), pair);
-  pair.apart.along = {};
+  pair.apart_along = {};
 }
 
 // Each pair without a certain answer has an event that says so.

@@ -23,13 +23,13 @@ void PairScheduler::prepare() {
   scratches_.prepare(world_.shapes, jobs, world_.any.continuous);
 }
 
-void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open, Step now) {
-  make_tasks(records, open, now);
+void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open) {
+  make_tasks(records, open);
   sort_tasks(records);
 }
 
 // A task for each two parts, with what their spheres say: so much is known of every pair whatever the budget.
-void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t> open, Step now) {
+void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t> open) {
   const ShapePlacements& places = world_.places;
   tasks_.clear();
   for (const std::uint32_t index : open) {
@@ -37,17 +37,14 @@ void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t
     forget_answer(record);
     const std::uint32_t parts_a = places.parts(record.bodies.a), parts_b = places.parts(record.bodies.b);
     PartPair pair;
-    if (is_half_space(record.bodies.b)) pair.half = places.half_space(record.bodies.b);
     for (std::uint32_t i = 0; i < parts_a; ++i) {
-      places.place(record.bodies.a, i, pair.a);
       for (std::uint32_t j = 0; j < parts_b; ++j) {
-        places.place(record.bodies.b, j, pair.b);
+        answerer_.place(record, i, j, pair);
         Task& task = tasks_.emplace_back();
         task.record = index, task.part_a = i, task.part_b = j;
         task.simple = pair.simple();
         task.verdict = unasked(pair);
         task.done = task.verdict.answer == Answer::no;
-        task.slow = record.coherent && PairAnswerer::is_slow(record, pair, now);
       }
     }
   }
@@ -120,7 +117,7 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
 void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept {
   if (task.simple) return search_one(task, record, {}, scratch);
   task.work = kPairWork;
-  const bool remembers = task.slow && CoherentPair::remembers(record.trees);
+  const bool remembers = record.coherent && CoherentPair::remembers(record.trees);
   // Of bodies of several parts, whose tasks may run at once, all have their roots asked.
   if (record.coherent && !remembers && record.turn.roots_wait > 0) {
     --record.turn.roots_wait;
@@ -157,7 +154,7 @@ void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& mos
     return;
   }
   const double bound = task.verdict.separation_bound;
-  if (task.slow) {
+  if (record.coherent) {
     task.verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), most);
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);

@@ -25,7 +25,7 @@ class PairScheduler {
 
   // Answers as far as the budget goes, in three parts: what is done in any case; what the budget allows; and what that
   // makes of the records. What is not answered has the answer maybe and is not CachedPair::answered.
-  void begin_within(PairCache& records, std::span<const std::uint32_t> open, Step now);
+  void begin_within(PairCache& records, std::span<const std::uint32_t> open);
   void answer_within(PairCache& records, StepBudget& budget);
   void fold(PairCache& records, std::span<const std::uint32_t> open, Step now);
   // What happened between the step before and this one, for the records that can be swept.
@@ -38,7 +38,6 @@ class PairScheduler {
   struct Task {
     std::uint32_t record = 0, part_a = 0, part_b = 0;
     bool done = false, simple = false;
-    bool slow = false;       // what the last step found may be of use
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
   };
@@ -46,7 +45,7 @@ class PairScheduler {
     std::uint8_t importance;
     std::uint32_t waited, task;
   };
-  void make_tasks(PairCache& records, std::span<const std::uint32_t> open, Step now);
+  void make_tasks(PairCache& records, std::span<const std::uint32_t> open);
   void sort_tasks(const PairCache& records);
   void begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept;
   void search_one(Task& task, CachedPair& record, const Budget& most, AnswerScratch& scratch) const noexcept;

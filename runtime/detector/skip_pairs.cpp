@@ -158,8 +158,8 @@ void PairSkipper::keep_clearance(PairCache::Known& known, const CachedPair& pair
   const double reach = is_half_space(known.pair.b) ? std::numeric_limits<double>::infinity()
                                                    : world_.bodies.sphere_cache(known.pair.a).sphere.reach +
                                                          world_.bodies.sphere_cache(known.pair.b).sphere.reach;
-  if (dot(pair.apart.along, pair.apart.along) > 0 && std::isfinite(reach)) {
-    kept.along = rounded(pair.apart.along);
+  if (dot(pair.apart_along, pair.apart_along) > 0 && std::isfinite(reach)) {
+    kept.along = rounded(pair.apart_along);
     distance -= kRoundedToFloat * (way + reach);  // no two of their points are farther from each other
   }
   kept.distance = distance > 0 ? distance : 0;
