@@ -159,7 +159,7 @@ TEST(Pauses, GiveNoMoreEventsAtOnceThanTheOptionsSay) {
     Detector whole = same.detector({.watch = i % 2 == 0});
     const double time = 500 * kStep;
     const Frame expected = whole.step(time);
-    ASSERT_EQ(expected.steps_left, 0u);
+    ASSERT_EQ(expected.unfinished.steps_left, 0u);
     std::size_t next = 0, at_once = 0;
     std::uint32_t steps = 0;
     for (std::uint64_t left = 1; left > 0;) {
