@@ -100,7 +100,9 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
       task.work = 0;
       if (alone ? !(searches ? budget.may_refine() : budget.may_begin()) : budget.late()) return;
       if (!searches) return begin_one(task, record, scratch);
-      search_one(task, record, {budget.piece(most), budget.time_left()}, scratch);
+      // The first search is short, and neither the clock ends it nor what it has done when another run ended.
+      const Budget within = slice == kFirstSlice ? Budget{most} : Budget{budget.piece(most), budget.time_left()};
+      search_one(task, record, within, slice == kFirstSlice, scratch);
       if (alone) budget.refined(task.work);
     });
     for (const std::uint32_t index : order_) {
@@ -115,7 +117,7 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
 
 // What can be told without a search.
 void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept {
-  if (task.simple) return search_one(task, record, {}, scratch);
+  if (task.simple) return search_one(task, record, {}, true, scratch);
   task.work = kPairWork;
   const bool remembers = record.coherent && CoherentPair::remembers(record.trees);
   // Of bodies of several parts, whose tasks may run at once, all have their roots asked.
@@ -142,8 +144,9 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scr
   task.verdict.work = task.work;
 }
 
-// Begins again at each slice, which costs a third more than going on would, for the few that need several.
-void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& most,
+// Begins with what the last step found, and again at each slice, which costs a third more than going on would, for the
+// few that need several.
+void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& most, bool is_first,
                                AnswerScratch& scratch) const noexcept {
   PartPair pair;
   answerer_.place(record, task.part_a, task.part_b, pair);
@@ -154,7 +157,7 @@ void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& mos
     return;
   }
   const double bound = task.verdict.separation_bound;
-  if (record.coherent) {
+  if (record.coherent && is_first) {
     task.verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), most);
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);

@@ -48,7 +48,8 @@ class PairScheduler {
   void make_tasks(PairCache& records, std::span<const std::uint32_t> open);
   void sort_tasks(const PairCache& records);
   void begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept;
-  void search_one(Task& task, CachedPair& record, const Budget& most, AnswerScratch& scratch) const noexcept;
+  void search_one(Task& task, CachedPair& record, const Budget& most, bool is_first,
+                  AnswerScratch& scratch) const noexcept;
   bool give_turns(std::size_t begin, std::size_t end, std::uint64_t slice, StepBudget& budget, PairCache& records);
 
   const World& world_;
