@@ -23,18 +23,18 @@ struct BoundingSphere {
         size(std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius) {}
 };
 
-// Where a part is in its body's frame.
+// Where a part is in its body's frame. What a new pose needs comes first.
 struct PartPlace {
+  Vec3 center{};          // of a sphere around it,
+  double reach = 0;       // its radius,
+  double off = 0;         // and how far it is from the origin
+  BoundingSphere sphere;  // at the pose of the body that is known
   bool at_origin = true;  // `local` changes nothing
   Pose local{};
-  Vec3 center{};     // of a sphere around it,
-  double off = 0;    // which is so far from the origin,
-  double reach = 0;  // and its radius
 };
 
 struct PartRecord : PartPlace {
   ShapeId shape = kNoShape;
-  BoundingSphere sphere;  // at the pose of the body that is known
 };
 
 // Where it was up to a step, that one included.
