@@ -85,7 +85,7 @@ StepOutcome Detection::step(double time, const runtime::Budget& budget, const ru
   outcome.overlapping = frame.pairs;
   outcome.work = frame.work;
   outcome.motions = frame.motions_asked;
-  outcome.left_over = frame.left_over;
+  outcome.left_over = frame.unfinished.left_over;
   outcome.cut = frame.cut;
   for (const runtime::PairEvent& event : frame.events) {
     if (event.change == runtime::PairChange::end || event.verdict.answer == runtime::Answer::no) continue;

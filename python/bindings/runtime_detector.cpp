@@ -96,7 +96,7 @@ class World {
     result["time"] = frame.time;
     result["next_time"] = frame.next_time;
     result["steps"] = frame.steps;
-    result["steps_left"] = frame.steps_left;
+    result["steps_left"] = frame.unfinished.steps_left;
     result["pairs"] = frame.pairs;
     result["certain"] = frame.certain;
     result["work"] = frame.work;

@@ -80,11 +80,11 @@ orchard_frame step(orchard_detector& detector, double time, const orchard_budget
   result.pairs = frame.pairs, result.certain = frame.certain;
   result.work = frame.work, result.motions_asked = frame.motions_asked;
   result.worst_bound = frame.worst_bound;
-  result.incomplete_from = frame.incomplete_from;
-  result.left_over = frame.left_over;
+  result.incomplete_from = frame.unfinished.incomplete_from;
+  result.left_over = frame.unfinished.left_over;
   result.refused = frame.refused.size(), result.broken = frame.broken.size();
   result.time_refused = frame.time_refused, result.out_of_memory = frame.out_of_memory;
-  result.steps_left = frame.steps_left, result.skipped = frame.skipped;
+  result.steps_left = frame.unfinished.steps_left, result.skipped = frame.unfinished.skipped;
   return result;
 }
 
@@ -104,7 +104,7 @@ orchard_detector_options orchard_default_detector(void) {
   result.time_step = options.time_step, result.start = options.start, result.position_slack = options.position_slack;
   result.watch = -1;
   result.steps_to_end = options.steps_to_end;
-  result.max_unfinished = options.max_unfinished, result.max_events = options.max_events;
+  result.max_events = options.max_events;
   result.concurrency = 1;
   return result;
 }
@@ -121,7 +121,6 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     options.time_step = with->time_step, options.start = with->start, options.position_slack = with->position_slack;
     if (with->watch >= 0) options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
-    options.max_unfinished = with->max_unfinished;
     if (with->max_events > 0) options.max_events = with->max_events;
     options.executor = {with->run, with->run_context, with->concurrency};
     if (source == nullptr) {

@@ -9,7 +9,6 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
-constexpr double kSlow = 0.02;  // of the smaller body's size, per step
 
 }  // namespace
 
@@ -41,34 +40,21 @@ void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::ui
   if (pair.b.shape == nullptr) pair.half = places_->half_space(record.bodies.b);
 }
 
-// Unless they pass each other so fast that looking for what lasts would not pay.
-bool PairAnswerer::is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept {
-  const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart.by;
-  const bool first = record.apart.at < 0;
-  const double slow =
-      kSlow * std::min(pair.a.reach, pair.b.reach) * static_cast<double>(std::max<Step>(1, now - record.apart.at));
-  record.apart.by = way;
-  record.apart.at = now;
-  return first || dot(change, change) <= slow * slow;
-}
-
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
-void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   record.parts = {};
   record.sweep.impact = false;
   Verdict& verdict = record.verdict;
   PartPair pair;
   place(record, 0, 0, pair);
   const std::uint64_t before = scratch.work++;
-  const bool slow = is_slow(record, pair, now);
-  const double apart = length(record.apart.by), reach = pair.a.reach + pair.b.reach;
+  const double apart = length(pair.b.center - pair.a.center), reach = pair.a.reach + pair.b.reach;
   if (!(apart <= reach)) verdict = unasked(pair);
   if (apart <= reach || verdict.answer != Answer::no) {
     const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
-    const bool tries = slow || record.touching;
-    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
+    if (!CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
-      record.apart.along = query_of(scratch.workspace.narrow).known().apart_along;
+      record.apart_along = query_of(scratch.workspace.narrow).known().apart_along;
     }
     scratch.work += kPairWork + verdict.work;
     if (verdict.answer == Answer::no) make_solid(verdict, pair);
@@ -78,37 +64,16 @@ void PairAnswerer::answer_coherently(CachedPair& record, Step now, QueryPool::Sc
   verdict.work = scratch.work - before;
 }
 
-// Two bodies of one part each, at least one of them a simple shape.
-void PairAnswerer::answer_two_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
-  Verdict& verdict = record.verdict;
-  PartPair pair;
-  place(record, 0, 0, pair);
-  const std::uint32_t guess = nearest_triangle(verdict, pair);
-  const std::uint64_t before = scratch.work++;
-  record.parts = {};
-  record.sweep.impact = false;
-  if (spheres_part(pair)) {
-    verdict = unasked(pair);
-  } else {
-    ::new (&verdict) Verdict(answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess));
-  }
-  if (verdict.answer == Answer::yes) verdict.lower_bound = 0;
-  if (verdict.answer != Answer::maybe) record.answered = now;
-  verdict.work = scratch.work - before;
-}
-
-void PairAnswerer::answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
-  if (record.coherent) return answer_coherently(record, now, scratch);
-  if (places_->parts(record.bodies.a) == 1 && places_->parts(record.bodies.b) == 1) {
-    return answer_two_parts(record, now, scratch);
-  }
-  answer_parts(record, now, scratch);
+void PairAnswerer::answer(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
+  record.coherent ? answer_coherently(record, now, scratch) : answer_parts(record, now, scratch);
+  if (record.sweep.unseen) leave_open(record);
+  if (record.sweep.possible) sweep(record, now, scratch, kNoLimit);
 }
 
 // Two parts that touched at the step before, where a triangle `guess` may have been nearest. Where others of these
 // shapes have met is no more than a guess.
 Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
-                                   QueryPool::Scratch& scratch) noexcept {
+                                   AnswerScratch& scratch) noexcept {
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
                      &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
   if (!known) return answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess);
@@ -123,7 +88,7 @@ Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, cons
 }
 
 // Of two parts of bodies, what is new.
-Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept {
+Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept {
   const Verdict verdict = answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work);
   record.met = verdict.answer == Answer::yes && !pair.simple();
   if (!record.met) return verdict;
@@ -135,7 +100,7 @@ Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, Query
 // Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
 // know how they are turned. Whether all answers are certain.
 bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
-                                 QueryPool::Scratch& scratch) const noexcept {
+                                 AnswerScratch& scratch) const noexcept {
   const BodyPair& bodies = record.bodies;
   const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
   const bool half = is_half_space(bodies.b);
@@ -149,7 +114,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
       if (parts_b > 1) b = places_->sphere(bodies.b, j);
       ++scratch.work;
       SphereGap gap = half ? sphere_gap(a, pair.half) : sphere_gap(a, b);
-      if (!(gap.least > 0) && !half) gap.least = places_->bounds_gap(bodies, i, j, a, b);
+      if (!(gap.least > 0) && !half && parts_a + parts_b > 2) gap.least = places_->bounds_gap(bodies, i, j, a, b);
       if (gap.least > 0) {
         Verdict apart;
         apart.answer = Answer::no;
@@ -169,7 +134,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
 }
 
 // Bodies of several parts: those that touched mostly still do, and then no other part is asked.
-void PairAnswerer::answer_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void PairAnswerer::answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;
   if (is_half_space(record.bodies.b)) pair.half = places_->half_space(record.bodies.b);
@@ -199,19 +164,17 @@ void leave_open(CachedPair& record) noexcept {
   record.answered = -1;
 }
 
-void PairAnswerer::sweep(CachedPair& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept {
+void PairAnswerer::sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept {
   PartPair from, to;
-  const bool half = is_half_space(record.bodies.b);
-  if (half) from.half = to.half = places_->half_space(record.bodies.b);
   Swept first;
   first.from = first.to = 2;
   double earliest = 2;
   for (std::uint32_t i = 0; i < places_->parts(record.bodies.a); ++i) {
-    places_->place_before(record.bodies.a, i, now, from.a);
-    places_->place(record.bodies.a, i, to.a);
     for (std::uint32_t j = 0; j < places_->parts(record.bodies.b); ++j) {
+      place(record, i, j, to);
+      from.half = to.half;
+      places_->place_before(record.bodies.a, i, now, from.a);
       places_->place_before(record.bodies.b, j, now, from.b);
-      places_->place(record.bodies.b, j, to.b);
       Swept swept;
       if (scratch.work < most) {
         swept = detail::sweep(scratch.workspace, from, to, most, scratch.work);

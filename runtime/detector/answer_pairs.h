@@ -1,6 +1,6 @@
 #pragma once
+#include "detector/answer_scratch.h"
 #include "detector/pair_cache.h"
-#include "detector/query_pool.h"
 #include "detector/sweep.h"
 
 namespace orchard::runtime::detail {
@@ -17,29 +17,24 @@ class PairAnswerer {
  public:
   explicit PairAnswerer(const ShapePlacements& places) noexcept : places_(&places) {}
 
-  // Every pair of its parts to the end.
-  void answer(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  // Every pair of its parts to the end, and what happened between the step before and this one, if that can be swept.
+  void answer(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
   // What happened between the step before and this one, until scratch.work has reached `most`.
-  void sweep(CachedPair& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
+  void sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept;
 
   void place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
-  // Whether the two move so slowly that what the last step found may be of use. Once a step.
-  static bool is_slow(CachedPair& record, const PartPair& pair, Step now) noexcept;
-  const ShapePlacements& places() const noexcept { return *places_; }
 
  private:
   static Verdict answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
-                              QueryPool::Scratch& scratch) noexcept;
-  static Verdict answer_new(CachedPair& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept;
-  void answer_coherently(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
-  void answer_two_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+                              AnswerScratch& scratch) noexcept;
+  static Verdict answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept;
+  void answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
   static constexpr std::uint32_t kNoPart = 0xffffffffu;
   struct PartIndices {
     std::uint32_t a = kNoPart, b = kNoPart;
   };
-  bool answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
-                     QueryPool::Scratch& scratch) const noexcept;
-  void answer_parts(CachedPair& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  bool answer_others(CachedPair& record, const PartIndices& but, PartPair& pair, AnswerScratch& scratch) const noexcept;
+  void answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
 
   const ShapePlacements* places_;
 };

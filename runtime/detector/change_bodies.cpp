@@ -13,9 +13,6 @@ using detail::PartRecord;
 
 namespace {
 
-// Of a body whose parts go farther out than ever: so that it need not be told of each step on the way.
-constexpr double kStretchAhead = 1 + 0x1p-4;
-
 bool are_valid(const BodyOptions& options) noexcept {
   return options.continuous_speed >= 0 && options.continuous_speed <= kMaxNumber && options.reach >= 0 &&
          options.reach <= kMaxNumber;
@@ -23,8 +20,8 @@ bool are_valid(const BodyOptions& options) noexcept {
 
 }  // namespace
 
-bool Detector::State::acceptable(std::span<const BodyPart> parts) const noexcept {
-  if (!takes_changes() || parts.empty()) return false;
+bool Detector::State::acceptable(std::span<const BodyPart> parts, const BodyOptions& options) const noexcept {
+  if (!takes_changes() || parts.empty() || !are_valid(options)) return false;
   return std::all_of(parts.begin(), parts.end(), [this](const BodyPart& part) {
     PartRecord trial;
     return world.shapes.contains(part.shape) && detail::set_local(trial, world.shapes[part.shape], part.local);
@@ -35,47 +32,36 @@ Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const Bod
   Body& body = world.bodies.add(id, parts.size());
   ++world.body_count;
   ++world.changes;
-  body.set_filter(with.filter);
+  body.options = with;
   world.any.own_filter = world.any.own_filter || detail::PartPairs::broad_filter(body) != BodyFilter{};
-  body.importance = with.importance;
-  body.suggest = with.suggest;
-  body.continuous_speed = with.continuous_speed;
-  if (with.continuous_speed > 0 && !world.any.continuous) {
-    world.any.continuous = true;
-    world.bodies.keep_before();
-    rely_on_origins();
-  }
-  body.min_reach = with.reach;
+  world.any.parts = world.any.parts || parts.size() > 1;
+  if (body.is_continuous() && !world.any.continuous) rely_on_origins();
   for (const BodyPart& part : parts) {
     PartRecord& added = body.parts.emplace_back();
     added.shape = part.shape;
     detail::set_local(added, world.shapes[part.shape], part.local);
   }
-  world.bodies.parts_changed(id.index);
-  body.since = world.answered + 1;
-  body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
-  if (!world.any.continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
-  changed(body);
-  body.moved = -1;
+  body.steps.since = world.answered + 1;
+  body.extent.reach = std::max(with.reach, detail::reach_of(body.parts));
+  if (!world.any.continuous && !with.suggest && !(with.reach > 0)) body.find_middle();
   return body;
 }
 
 // A sweep relies on what origins do between steps, and not on middles, nor on where parts are at a step.
 void Detector::State::rely_on_origins() {
+  world.any.continuous = true;
   part_pairs.choose_none();
   for (BodyIndex i = 0; i < world.bodies.slots(); ++i) {
     Body& body = world.bodies[i];
     if (body.id == kNoBody || body.is_static || !body.has_middle()) continue;
-    detail::forget_middle(body);
-    cancel(body);
+    body.forget_middle();
+    sampler.cancel(body);
   }
 }
 
 BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& options) {
   State& s = *state_;
-  if (!s.acceptable(parts) || !are_valid(options) || (options.suggest && !s.sampler.watches()) ||
-      !s.world.bodies.has_source())
-    return kNoBody;
+  if (!s.acceptable(parts, options) || (options.suggest && !s.sampler.watches()) || !s.sampler.source()) return kNoBody;
   return s.or_fail([&] {
     const BodyId id = s.broad.add(options.importance, options.filter);
     if (id == kNoBody) return id;
@@ -87,34 +73,38 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
   });
 }
 
-Motion Detector::State::place_of(const Body& body) const noexcept {
-  Motion place = world.bodies.motion_of(body.id.index, world.clock.time_step, body.has_middle());
+// As a static body, which is where its state says.
+bool Detector::State::place_static(Body& body, const Pose& pose) {
+  const Pose before = std::exchange(body.state.pose, pose);
+  Motion place = body.motion(world.clock.time_step, body.has_middle());
   place.drift = 0;
-  return place;
+  if (!broad.move_static(body.id, place)) {
+    body.state.pose = before;
+    return false;
+  }
+  world.bodies.moved(body.id.index, before);
+  body.steps.moved = world.answered + 1;
+  ++world.static_changes;
+  return true;
 }
 
 BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, const BodyOptions& options) {
   State& s = *state_;
-  if (!s.acceptable(parts) || !are_valid(options) || !is_rigid(pose)) return kNoBody;
-  Motion somewhere;
-  somewhere.position = pose.translation;
+  if (!s.acceptable(parts, options) || !is_rigid(pose)) return kNoBody;
+  const Motion somewhere{.position = pose.translation};
   if (!is_valid(somewhere)) return kNoBody;
   return s.or_fail([&] {
     const BodyId id = s.broad.add_static(somewhere, options.importance, options.filter);
     if (id == kNoBody) return id;
     Body& body = s.add(id, parts, options);
     body.is_static = true;
-    body.moved = s.world.answered + 1;
-    s.world.bodies.state(id.index).pose = pose;
-    s.world.bodies.moved(id.index, pose);
     s.world.half_space_times.forget(id.index);
-    if (s.broad.move_static(id, s.place_of(body))) {
-      s.world.any.static_body = true;
-      s.part_pairs.static_changed(id.index);
-      return id;
+    if (!s.place_static(body, pose)) {
+      remove(id);  // too large
+      return kNoBody;
     }
-    remove(id);  // too large
-    return kNoBody;
+    s.world.any.static_body = true;
+    return id;
   });
 }
 
@@ -124,158 +114,130 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   const double size = length(Vec3(scaled.value)), height = std::ldexp(offset, scaled.power) / size;
   if (!s.takes_changes() || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
-  body.set_filter(options.filter);
-  body.importance = options.importance;
-  body.since = s.world.answered + 1;
+  body.options.filter = options.filter, body.options.importance = options.importance;
+  body.steps.since = body.steps.moved = s.world.answered + 1;
   return s.or_fail([&] {
     const BodyIndex index = s.world.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
-    s.world.halves.body(index).moved = s.world.answered + 1;
-    s.world.half_space_times.update_all(s.world.bodies.slots());
+    s.world.half_space_times.update_all();
     ++s.world.body_count;
     ++s.world.changes;
     return s.world.halves.body(index).id;
   });
 }
 
-// To change it.
-Body* Detector::State::find(BodyId body) noexcept {
-  if (stepping || !contains(body)) return nullptr;
-  ++world.changes;
-  return is_half_space(body.index) ? &world.halves.body(body.index) : &world.bodies[body.index];
-}
-
-void Detector::State::cancel(Body& body) {
-  or_fail([&] {
-    sampler.cancel(body);
-    return true;
-  });
-}
-
-bool Detector::remove(BodyId body) {
+bool Detector::remove(BodyId id) {
   State& s = *state_;
-  if (s.find(body) == nullptr) return false;
-  --s.world.body_count;
-  if (is_half_space(body.index)) return s.world.halves.remove(body.index);
-  s.part_pairs.gone(s.world.bodies[body.index]);
-  s.world.bodies.leave(body.index);
-  return s.or_fail([&] {
-    s.world.half_space_times.forget(body.index);
-    return s.broad.remove(body);
+  return s.change(id, [&](Body& body) {
+    --s.world.body_count;
+    if (is_half_space(id.index)) return s.world.halves.remove(id.index);
+    if (body.is_static) ++s.world.static_changes;
+    s.part_pairs.gone(body);
+    s.world.bodies.leave(id.index);
+    s.world.half_space_times.forget(id.index);
+    return s.broad.remove(id);
   });
 }
 
-bool Detector::cancel(BodyId body) {
-  Body* found = state_->find(body);
-  if (found == nullptr) return false;
-  state_->cancel(*found);
-  return true;
+bool Detector::cancel(BodyId id) {
+  return state_->change(id, [this](Body& body) { return state_->sampler.cancel(body), true; });
 }
 
-bool Detector::teleport(BodyId body) {
-  Body* found = state_->find(body);
-  if (found == nullptr || found->is_static) return false;
-  found->frozen = false;
-  found->asked = found->known_before = detail::kNotAsked;
-  ++found->jumps;
-  state_->world.any.jump = true;
-  state_->sampler.monitor().forget(body.index);
-  state_->cancel(*found);
-  return true;
-}
-
-bool Detector::move_static(BodyId body, const Pose& pose) {
+bool Detector::teleport(BodyId id) {
   State& s = *state_;
-  Body* found = s.find(body);
-  if (found == nullptr || !found->is_static || is_half_space(body.index) || !is_rigid(pose)) return false;
-  const Pose before = s.world.bodies.state(body.index).pose;
-  s.world.bodies.state(body.index).pose = pose;
-  if (!s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); })) {
-    s.world.bodies.state(body.index).pose = before;
-    return false;
-  }
-  s.world.bodies.moved(body.index, before);
-  s.changed(*found);
-  return s.or_fail([&] {
-    s.part_pairs.static_changed(body.index);
+  return s.change(id, [&](Body& body) {
+    if (body.is_static) return false;
+    body.frozen = false;
+    body.steps.asked = body.steps.known_before = detail::kNotAsked;
+    ++body.changes.jumps;
+    s.world.any.jump = true;
+    s.sampler.monitor().forget(id.index);
+    s.sampler.cancel(body);
     return true;
   });
 }
 
-bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
+bool Detector::move_static(BodyId id, const Pose& pose) {
+  return state_->change(id, [&](Body& body) {
+    return body.is_static && !is_half_space(id.index) && is_rigid(pose) && state_->place_static(body, pose);
+  });
+}
+
+bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
+  constexpr double kStretchAhead = 1 + 0x1p-4;  // so that the broad phase need not be told of each step on the way
   State& s = *state_;
-  Body* found = s.find(body);
-  if (found == nullptr || part >= found->parts.size()) return false;
-  const detail::PartRecord& record = found->parts[part];
-  detail::PartPlace place;
-  if (!detail::set_local(place, s.world.shapes[record.shape], local)) return false;
-  const double reach = detail::reach_of(place), reach_before = found->reach, middle_before = found->middle_reach;
-  const bool stretches = reach > reach_before, grows = stretches || found->has_middle();
-  if (stretches) found->reach = kStretchAhead * reach;
-  detail::forget_middle(*found);
-  // What is too large is told before anything has changed.
-  if (!(found->reach <= kMaxNumber) ||
-      (grows && found->is_static && !s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); }))) {
-    found->reach = reach_before, found->middle_reach = middle_before;
-    return false;
-  }
-  if (s.world.any.continuous) {
-    found->parts_before.resize(found->parts.size());
-    detail::PartBefore& before = found->parts_before[part];
-    if (before.until != s.world.answered) before = {record, s.world.answered};
-  }
-  s.world.bodies.move_part(body.index, part, place, s.world.shapes[record.shape]);
-  s.changed(*found);
-  if (stretches) found->stretched = s.world.answered;
-  if (grows && !found->is_static) s.cancel(*found);
-  if (!found->is_static) return true;
-  return s.or_fail([&] {
-    s.part_pairs.static_changed(body.index);
+  return s.change(id, [&](Body& body) {
+    if (part >= body.parts.size()) return false;
+    const PartRecord& record = body.parts[part];
+    const detail::Shape& shape = s.world.shapes[record.shape];
+    detail::PartPlace place;
+    if (!detail::set_local(place, shape, local)) return false;
+    const double reach = detail::reach_of(place);
+    const Body::Extent before = body.extent;
+    const bool stretches = reach > before.reach, grows = stretches || body.has_middle();
+    if (stretches) body.extent.reach = kStretchAhead * reach;
+    body.forget_middle();
+    // What is too large is told before anything has changed.
+    if (!(body.extent.reach <= kMaxNumber) ||
+        (grows && body.is_static && !s.place_static(body, Pose(body.state.pose)))) {
+      body.extent = before;
+      return false;
+    }
+    if (s.world.any.continuous) {
+      body.parts_before.resize(body.parts.size());
+      detail::PartBefore& was = body.parts_before[part];
+      if (was.until != s.world.answered) was = {record, s.world.answered};
+    }
+    s.world.bodies.move_part(id.index, part, place, shape);
+    body.steps.moved = s.world.answered + 1;
+    if (stretches) body.steps.stretched = s.world.answered;
+    if (body.is_static)
+      ++s.world.static_changes;
+    else if (grows)
+      s.sampler.cancel(body);
     return true;
   });
 }
 
-bool Detector::set_importance(BodyId body, std::uint8_t importance) {
-  Body* found = state_->find(body);
-  if (found == nullptr) return false;
-  found->importance = importance;
-  return is_half_space(body.index) || state_->or_fail([&] { return state_->broad.set_importance(body, importance); });
+bool Detector::set_importance(BodyId id, std::uint8_t importance) {
+  return state_->change(id, [&](Body& body) {
+    body.options.importance = importance;
+    return is_half_space(id.index) || state_->broad.set_importance(id, importance);
+  });
 }
 
-bool Detector::set_filter(BodyId body, const BodyFilter& filter) {
-  Body* found = state_->find(body);
-  if (found == nullptr) return false;
-  found->set_filter(filter);
-  ++found->filters;
-  state_->world.any.own_filter = true;
-  if (is_half_space(body.index)) return true;
-  return state_->or_fail([&] { return state_->broad.set_filter(body, detail::PartPairs::broad_filter(*found)); });
+bool Detector::set_filter(BodyId id, const BodyFilter& filter) {
+  State& s = *state_;
+  return s.change(id, [&](Body& body) {
+    body.options.filter = filter;
+    ++body.changes.filters;
+    s.world.any.own_filter = true;
+    return is_half_space(id.index) || s.broad.set_filter(id, detail::PartPairs::broad_filter(body));
+  });
 }
 
-bool Detector::sleep(BodyId body) {
-  Body* found = state_->find(body);
-  if (found == nullptr || found->is_static) return false;
-  if (found->asleep) return true;
-  found->asleep = true;
-  return state_->or_fail([&] {
-    if (state_->world.kept_states) state_->keep_state(*found, state(body));
-    state_->cancel(*found);
+bool Detector::sleep(BodyId id) {
+  State& s = *state_;
+  return s.change(id, [&](Body& body) {
+    if (body.is_static) return false;
+    if (std::exchange(body.asleep, true)) return true;
+    if (s.world.kept_states) s.world.keep_state(body, state(id));
+    s.sampler.cancel(body);
     return true;
   });
 }
 
-bool Detector::wake(BodyId body) {
-  Body* found = state_->find(body);
-  if (found == nullptr || found->is_static) return false;
-  if (!found->asleep) return true;
-  state_->world.wake(*found);
-  found->asleep = false;
-  state_->cancel(*found);
-  return true;
+bool Detector::wake(BodyId id) {
+  State& s = *state_;
+  return s.change(id, [&](Body& body) {
+    if (body.is_static) return false;
+    if (!std::exchange(body.asleep, false)) return true;
+    s.world.wake(body);
+    s.sampler.cancel(body);
+    return true;
+  });
 }
 
-bool Detector::asleep(BodyId body) const noexcept {
-  return state_->contains(body) && state_->world.places.body(body.index).asleep;
-}
+bool Detector::asleep(BodyId id) const noexcept { return state_->contains(id) && state_->world.body(id.index).asleep; }
 
 bool Detector::shape_changed(ShapeId shape) {
   State& s = *state_;
@@ -285,11 +247,10 @@ bool Detector::shape_changed(ShapeId shape) {
   for (BodyIndex i = 0; i < s.world.bodies.slots(); ++i) {
     Body& body = s.world.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
-    if (body.id != kNoBody && std::any_of(body.parts.begin(), body.parts.end(), uses)) {
-      s.changed(body);
-      s.world.bodies.deformed(i);
-      ++body.deformed;
-    }
+    if (body.id == kNoBody || std::none_of(body.parts.begin(), body.parts.end(), uses)) continue;
+    body.steps.moved = s.world.answered + 1;
+    s.world.bodies.invalidate(i);
+    ++body.changes.deformed;
   }
   return true;
 }
@@ -303,6 +264,44 @@ void Detector::set_pair_filter(PairFilter filter) {
     s.broad.set_pair_filter(std::move(filter));
     return true;
   });
+}
+
+// Where the detector keeps the states.
+
+BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptions& options) {
+  if (!state_->world.kept_states || !detail::is_valid(state)) return kNoBody;
+  const BodyId id = add_body({{shape}}, options);
+  if (id != kNoBody) set_state(id, state);
+  return id;
+}
+
+bool Detector::set_state(BodyId id, const BodyState& state) {
+  State& s = *state_;
+  return s.change(id, [&](Body& body) {
+    if (!s.world.kept_states || body.is_static || !detail::is_valid(state)) return false;
+    s.world.wake(body);
+    s.world.keep_state(body, state);
+    if (!s.sampler.watches() || body.asleep) s.sampler.cancel(body);
+    return true;
+  });
+}
+
+bool Detector::set_velocity(BodyId id, const Vec3& velocity) {
+  BodyState now = state(id);
+  now.velocity = velocity;
+  return set_state(id, now);
+}
+
+BodyState Detector::state(BodyId id) const noexcept {
+  const State& s = *state_;
+  if (!s.contains(id)) return {};
+  const Body& body = s.world.body(id.index);
+  return s.world.kept_states && !body.is_static ? s.world.kept_states->at(s.world.time_of_last_step(), id.index)
+                                                : body.state;
+}
+
+bool Detector::moves(BodyId id) const noexcept {
+  return state_->contains(id) && !state_->world.body(id.index).is_static;
 }
 
 }  // namespace orchard::runtime

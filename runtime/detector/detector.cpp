@@ -27,14 +27,13 @@ BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& 
 
 }  // namespace
 
-detail::World::World(StateSource source, const DetectorOptions& wanted)
+detail::World::World(const DetectorOptions& wanted)
     : options(wanted),
-      clock{is_valid_option(wanted) ? wanted.start : 0, is_valid_option(wanted) ? wanted.time_step : 1},
-      bodies(std::move(source)) {}
+      clock{is_valid_option(wanted) ? wanted.start : 0, is_valid_option(wanted) ? wanted.time_step : 1} {}
 
 // Jobs of the broad phase ask for motions; they may do so at once where all answers are there already.
 Detector::State::State(StateSource source, const DetectorOptions& wanted)
-    : world(std::move(source), wanted),
+    : world(wanted),
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { sampler.answer_broad_phase(time, asked, answers); },
             broad_options(wanted, {[](void* context, std::size_t count, Executor::Job job, void* data) {
@@ -45,7 +44,7 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
                                      for (std::size_t i = 0; i < count; ++i) job(data, i);
                                    },
                                    this, 1})),
-      sampler(world, broad),
+      sampler(world, broad, std::move(source)),
       part_pairs(world, broad, sampler),
       matcher(world, sampler, part_pairs),
       skipper(world),
@@ -110,7 +109,7 @@ std::size_t Detector::memory_bytes() const noexcept {
          world.bodies.memory_bytes() + world.halves.memory_bytes() + world.half_space_times.memory_bytes() +
          s.broad.memory_bytes() + s.sampler.memory_bytes() + s.part_pairs.memory_bytes() + s.matcher.memory_bytes() +
          s.skipper.memory_bytes() + s.scheduler.memory_bytes() + s.reporter.memory_bytes() + s.queries.memory_bytes() +
-         detail::bytes_of(s.open.pairs, s.open.marks);
+         detail::bytes_of(s.open_pairs);
 }
 
 }  // namespace orchard::runtime

@@ -32,13 +32,16 @@ struct Detector::State {
 
   // change_bodies.cpp: bodies come, change and go between two steps
   bool takes_changes() const noexcept { return valid && !failed && !stepping; }
-  bool acceptable(std::span<const BodyPart> parts) const noexcept;
+  bool acceptable(std::span<const BodyPart> parts, const BodyOptions& options) const noexcept;
   detail::Body& add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
-  detail::Body* find(BodyId body) noexcept;  // to change it; null if it cannot be changed now
-  void cancel(detail::Body& body);           // its bounds do not hold any more
-  void changed(detail::Body& body) noexcept { body.moved = world.answered + 1; }
-  Motion place_of(const detail::Body& body) const noexcept;  // of a static one
-  void keep_state(const detail::Body& body, BodyState state);
+  bool place_static(detail::Body& body, const Pose& pose);  // false, and as it was: too large
+  // What use(body) says. False if there is no such body, or none can be changed now.
+  template <typename Use>
+  bool change(BodyId id, Use&& use) {
+    if (stepping || !contains(id)) return false;
+    ++world.changes;
+    return or_fail([&] { return use(world.body(id.index)); });
+  }
 
   // detector_step.cpp: a step from its beginning to its end
   void run(double time, const Budget& budget, const StepOptions& with, Frame& frame);
@@ -55,15 +58,11 @@ struct Detector::State {
   detail::EventReporter reporter;
   detail::LoadModel load_model;
   detail::WorldQueries queries;
-  bool valid;                          // the options are
-  bool stepping = false;               // step() is under way, from within which the application's functions are called
-  bool failed = false;                 // out of memory
-  bool interrupted = false;            // the broad phase, at the step before
-  struct Open {                        // of the step under way
-    std::vector<std::uint32_t> pairs;  // to be asked about
-    std::vector<std::uint8_t> marks;   // of active pairs, while `pairs` is made
-  };
-  Open open;
+  bool valid;                // the options are
+  bool stepping = false;     // step() is under way, from within which the application's functions are called
+  bool failed = false;       // out of memory
+  bool interrupted = false;  // the broad phase, at the step before
+  std::vector<std::uint32_t> open_pairs;  // of a step within a budget, to be asked about
 
  private:
   void rely_on_origins();  // change_bodies.cpp
@@ -78,9 +77,7 @@ struct Detector::State {
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
   void answer_within(const detail::ActivePairs& active, Step step, const detail::StepBudget::Stopwatch& watch,
                      detail::StepBudget& budget, Frame& frame);
-  std::uint64_t answer_one_by_one(const detail::ActivePairs& active, Step step);
-  void open_pairs(const detail::ActivePairs& active, Step step);
-  void ask_filter(const detail::ActivePairs& active);
+  void begin_pairs(const detail::ActivePairs& active, Step step);
 };
 
 }  // namespace orchard::runtime

@@ -7,12 +7,6 @@ namespace orchard::runtime {
 using detail::kNeverStep;
 using detail::StepBudget;
 
-namespace {
-
-double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
-
-}  // namespace
-
 Frame Detector::step(double time, const Budget& budget, const StepOptions& options) noexcept {
   State& s = *state_;
   Frame frame;
@@ -58,13 +52,13 @@ void Detector::State::run(double time, const Budget& given, const StepOptions& w
     run_to(answered + 1, end, budget, frame);
   }
   if (!sampler.watches()) run_to(end, end, budget, frame);
-  frame.steps_left = static_cast<std::uint64_t>(std::max<Step>(0, end - answered));
+  frame.unfinished.steps_left = static_cast<std::uint64_t>(std::max<Step>(0, end - answered));
   frame.motions_asked = broad.motions_asked() - asked_before;
   frame.work = budget.spent();
   frame.time = world.time_of_last_step();
-  frame.next_time = next_time(frame.steps_left > 0);
-  const detail::StateSampler::Faults faults = sampler.faults();
-  frame.events = reporter.events(), frame.refused = faults.refused, frame.broken = faults.broken;
+  frame.next_time = next_time(frame.unfinished.steps_left > 0);
+  sampler.report(frame);
+  frame.events = reporter.events();
 }
 
 double Detector::State::next_time(bool steps_left) const noexcept {
@@ -77,7 +71,7 @@ double Detector::State::next_time(bool steps_left) const noexcept {
 // Nothing was sampled at the steps that are left out, so that no sweep of a continuous body begins there.
 void Detector::State::leave_out_before(Step end, Frame& frame) {
   if (end <= world.answered + 1) return;
-  frame.skipped = static_cast<std::uint64_t>(end - 1 - world.answered);
+  frame.unfinished.skipped = static_cast<std::uint64_t>(end - 1 - world.answered);
   broad.skip_to(world.clock.time(end));
   world.answered = end - 1;
 }
@@ -97,8 +91,8 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     StepBudget share = budget.share(static_cast<std::uint64_t>(end - world.answered));
     const Advance now = advance(stop, share);
     sampler.refuse(now.refused);
-    frame.incomplete_from = std::min(frame.incomplete_from, now.incomplete_from);
-    frame.left_over += now.left_over;
+    frame.unfinished.incomplete_from = std::min(frame.unfinished.incomplete_from, now.incomplete_from);
+    frame.unfinished.left_over += now.left_over;
     const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
     if (found || under_way || world.half_space_times.next() <= step) answer(step, now, share, frame);
@@ -117,7 +111,6 @@ Advance Detector::State::advance(Step stop, StepBudget& share) {
   if (!share.limited()) {
     if (stop == world.answered + 1) sampler.sample_all(stop);
     now = broad.advance(time);
-    sampler.broad_phase_ended();
   } else {
     Budget work;
     if (share.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
@@ -125,7 +118,7 @@ Advance Detector::State::advance(Step stop, StepBudget& share) {
     const StepBudget::Stopwatch watch(share.timed());
     now = broad.advance(time, work, share.replay() != nullptr ? share.replay()->broad : 0);
     if (share.timed() && now.incomplete_from != kNoClass)
-      load_model.learn_broad_excess(watch.passed() - nanoseconds(work.time));
+      load_model.learn_broad_excess(watch.passed() - static_cast<double>(work.time.count()));
     if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
   }
   share.spend((broad.motions_asked() - before) * kMotionWork);

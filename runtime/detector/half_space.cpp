@@ -3,72 +3,11 @@
 #include "collision/outermost_points.h"
 #include "detector/simple_pair.h"
 #include "math/vector_functions.h"
+#include "orchard/runtime/shape_query.h"
 
 // Shapes against half-spaces: the least height of a shape over the plane decides.
 namespace orchard::runtime::detail {
 namespace {
-
-constexpr double kNormalSlack = 2e-6;  // of a ball slab's normal, unit to 1e-6 and rounded
-
-// How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at least.
-double reach_of(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
-  const double radius = double{block.radius[lane]}, height = std::min(double{block.height[lane]}, radius);
-  const double across = std::min(
-      1.0, std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]}));
-  if (radius * across <= height) return radius;
-  const double along = std::sqrt(std::max(0.0, 1 - across * across));
-  const double reach = across * height + along * std::sqrt(std::max(0.0, radius * radius - height * height));
-  // A normal that is off by some angle moves the reach by that share of the radius.
-  return std::min(radius, reach + kNormalSlack * radius);
-}
-
-struct Lowest {
-  double height = kInfinity;  // normal . point, in the tree's frame
-  std::array<float, 3> point{};
-  std::uint32_t triangle = kNoTriangle;
-};
-
-Lowest lowest_of(const TreeView& tree, const Vec3& n) noexcept {
-  struct Entry {
-    double height;
-    std::uint32_t child;
-  };
-  std::array<Entry, kBlockWidth*(kTriangleTreeDepthLimit + 1) + 1> stack;
-  std::size_t size = 0;
-  Lowest lowest;
-  const auto push_children = [&](std::uint32_t index) {
-    const ObbNodeBlock& block = tree.obb_nodes[index];
-    const std::size_t begin = size;
-    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      const double middle = n[0] * double{block.x[lane]} + n[1] * double{block.y[lane]} + n[2] * double{block.z[lane]};
-      const double height = middle - reach_of(block, lane, n) * (1 + 1e-12) - 1e-14 * std::fabs(middle);
-      if (height >= lowest.height) continue;
-      std::size_t at = size++;
-      for (; at > begin && stack[at - 1].height < height; --at) stack[at] = stack[at - 1];
-      stack[at] = {height, block.child[lane]};
-    }
-  };
-  push_children(0);
-  while (size > 0) {
-    const Entry entry = stack[--size];
-    if (entry.height >= lowest.height) continue;
-    if ((entry.child & kLeafBit) == 0) {
-      push_children(entry.child);
-      continue;
-    }
-    const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
-    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-      for (const auto& corner : block.corner) {
-        const double height =
-            n[0] * double{corner[0][lane]} + n[1] * double{corner[1][lane]} + n[2] * double{corner[2][lane]};
-        if (height < lowest.height) {
-          lowest = {height, {corner[0][lane], corner[1][lane], corner[2][lane]}, block.triangle[lane]};
-        }
-      }
-    }
-  }
-  return lowest;
-}
 
 struct Bottom {
   double height = kInfinity;  // over the plane
@@ -83,12 +22,8 @@ Bottom bottom_of(const Shape& shape, const Pose& pose, const HalfSpace& half) no
     const Vec3& lower = at_p <= at_q ? p : q;
     return {std::min(at_p, at_q) - radius - half.offset, lower - radius * half.normal, kNoTriangle};
   }
-  const Vec3 turned = rotate(inverse(Pose{.rotation = pose.rotation}), half.normal);
-  const Lowest lowest = lowest_of(shape.tree, turned);
-  const Vec3 point = {double{lowest.point[0]} + shape.tree.origin[0], double{lowest.point[1]} + shape.tree.origin[1],
-                      double{lowest.point[2]} + shape.tree.origin[2]};
-  const Vec3 placed_point = transform(pose, point);
-  return {dot(half.normal, placed_point) - half.offset, placed_point, lowest.triangle};
+  const SurfacePoint lowest = deepest_point(shape.tree, pose, half.normal, half.offset);
+  return {lowest.distance, lowest.point, lowest.triangle};
 }
 
 bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.obb_nodes.empty(); }
@@ -116,6 +51,14 @@ Verdict test_half_space(const Shape& a, const Pose& pose, const HalfSpace& b) no
 }
 
 namespace {
+
+// How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at most.
+double reach_of(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+  const Vec3 normal = {double{block.nx[lane]}, double{block.ny[lane]}, double{block.nz[lane]}};
+  const double radius = double{block.radius[lane]}, cosine = std::fabs(dot(n, normal));
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + 1e-5;  // the normal is unit to 1e-6
+  return std::min(radius, double{block.height[lane]} * cosine * (1 + 1e-5) + radius * sine);
+}
 
 // Of a tree's surface what is in the plane n . x + offset = 0, in the tree's frame and relative to its origin.
 class PlaneCut {

@@ -46,86 +46,52 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
   return true;
 }
 
-void HalfSpaceTimes::make_room(std::size_t bodies) {
-  grow(due_, bodies);
-  grow(bounds_, due_.size());
-  while (moving_places_.size() < due_.size()) append(moving_places_, kNoIndex);
-  detail::make_room(moving_, due_.size());
-}
-
-// Most bodies may be static: they cost a step nothing.
 void HalfSpaceTimes::set_due(BodyIndex body, Step due) {
+  while (due_.size() <= body) append(due_, kNeverStep);
+  grow(bounds_, due_.size());
   due_[body] = due;
-  std::uint32_t& place = moving_places_[body];
-  const bool moves = due != kNeverStep;
-  if (moves == (place != kNoIndex)) return;
-  if (moves) {
-    place = static_cast<std::uint32_t>(moving_.size());
-    moving_.push_back(body);
-  } else {
-    moving_[place] = moving_.back();
-    moving_places_[moving_.back()] = place;
-    moving_.pop_back();
-    place = kNoIndex;
-  }
+  if (due == 0) next_ = 0;
 }
 
-void HalfSpaceTimes::update_again(BodyIndex body) {
-  make_room(std::size_t{body} + 1);
-  set_due(body, 0);
-  if (halves_.size() > 0) next_ = 0;
-}
-
-void HalfSpaceTimes::update_all(std::size_t bodies) {
-  make_room(bodies);
-  for (const BodyIndex body : moving_) due_[body] = 0;
+void HalfSpaceTimes::update_all() noexcept {
+  for (Step& due : due_) due = due == kNeverStep ? kNeverStep : 0;
   next_ = 0;
 }
 
-void HalfSpaceTimes::forget(BodyIndex body) {
-  make_room(std::size_t{body} + 1);
-  set_due(body, kNeverStep);
-}
-
-void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) const {
-  if (halves_.size() == 0 || next_ > now) return;
-  for (const BodyIndex body : moving_) {
-    if (due_[body] <= now) bodies.push_back(body);
-  }
-  if (!std::is_sorted(bodies.begin(), bodies.end())) std::sort(bodies.begin(), bodies.end());
-}
-
-void HalfSpaceTimes::update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies,
-                                    const BodyTable& table, std::span<const Motion> motions, double time_step,
-                                    double slack, std::vector<BodyPair>& pairs) {
-  slack_ = slack;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const BodyIndex body = bodies[k];
-    Motion motion = motions[k];
-    motion.radius += 2 * slack;  // one for where it is, one for where its bounds expect it
-    bounds_[body] = {clock.time(now), motion, table.relies_on_middle(body, time_step)};
-    if (!is_valid(motion)) {
-      set_due(body, now + 1);
-      continue;
+void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) {
+  if (next() > now) return;
+  next_ = kNeverStep;
+  for (BodyIndex body = 0; body < due_.size(); ++body) {
+    if (due_[body] <= now) {
+      bodies.push_back(body);
+    } else {
+      next_ = std::min(next_, due_[body]);
     }
-    double seconds = std::numeric_limits<double>::infinity();
-    bool meets = false;
+  }
+}
+
+void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Motion motion, double slack,
+                            std::vector<BodyPair>& pairs) {
+  const BodyIndex index = body.id.index;
+  slack_ = slack;
+  motion.radius += 2 * slack;  // one for where it is, one for where its bounds expect it
+  bounds_[index] = {clock.time(now), motion, body.relies_on_middle(clock.time_step)};
+  Step due = now + 1;
+  if (is_valid(motion)) {
+    double seconds = kInfinity;
+    const std::size_t before = pairs.size();
     halves_.each([&](const Body& of, const HalfSpace& half) {
       const double height = height_over(half, motion);
       seconds = std::min(seconds, seconds_above(half, motion, height));
-      if (height > 0) return;
-      meets = true;
-      pairs.push_back({body, of.id.index});
+      if (!(height > 0)) pairs.push_back({index, of.id.index});
     });
-    const bool rests = table[body].frozen;
-    const Step last = rests ? kNeverStep : clock.last_before_expiry(motion.expiry);
+    const Step last = body.frozen ? kNeverStep : clock.last_before_expiry(motion.expiry);
     const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
-    const Step free = clock.steps_before(std::min(seconds, 1e12 * time_step), now);
-    const Step safe = now + std::max<Step>(1, free);
-    set_due(body, meets ? now + 1 : std::min(known, safe));
+    const Step free = clock.steps_before(std::min(seconds, 1e12 * clock.time_step), now);
+    if (pairs.size() == before) due = std::min(known, now + std::max<Step>(1, free));
   }
-  next_ = kNeverStep;
-  for (const BodyIndex body : moving_) next_ = std::min(next_, due_[body]);
+  due_[index] = due;
+  next_ = std::min(next_, due);
 }
 
 bool HalfSpaceTimes::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {
@@ -134,7 +100,5 @@ bool HalfSpaceTimes::motion_bound_kept(BodyIndex body, double time, const Motion
   return keeps_motion_bound(bound.motion, bound.time, time, now.position, nullptr, slack_) &&
          now.radius <= bound.motion.radius;
 }
-
-std::size_t HalfSpaceTimes::memory_bytes() const noexcept { return bytes_of(due_, bounds_, moving_, moving_places_); }
 
 }  // namespace orchard::runtime::detail

@@ -40,23 +40,24 @@ class HalfSpaceTimes {
  public:
   explicit HalfSpaceTimes(const HalfSpaces& halves) noexcept : halves_(halves) {}
 
-  void update_again(BodyIndex body);    // at the next step: it is new, or its bounds do not hold any more
-  void update_all(std::size_t bodies);  // a half-space is new
-  void forget(BodyIndex body);          // it is gone, or does not move
+  // At the next step: it is new, or its bounds do not hold any more.
+  void update_again(BodyIndex body) { set_due(body, 0); }
+  void update_all() noexcept;                                 // a half-space is new
+  void forget(BodyIndex body) { set_due(body, kNeverStep); }  // it is gone, or does not move
   // At which any body is due.
   Step next() const noexcept { return halves_.size() > 0 ? next_ : kNeverStep; }
 
-  // The bodies due at `now` or before, in ascending order.
-  void due(Step now, std::vector<BodyIndex>& bodies) const;
-  // For each of these, of whom `motions` are relied on: its pairs, in ascending order of half-spaces, and when it is
-  // due again. `slack`: see BroadPhaseOptions::position_slack.
-  void update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
-                      std::span<const Motion> motions, double time_step, double slack, std::vector<BodyPair>& pairs);
+  // The bodies due at `now` or before, in ascending order, each of which is to be updated.
+  void due(Step now, std::vector<BodyIndex>& bodies);
+  // Of a body of which `motion` is relied on: appends its pairs, in ascending order of half-spaces, and finds when it
+  // is due again. `slack`: see BroadPhaseOptions::position_slack.
+  void update(const Body& body, Step now, const Clock& clock, Motion motion, double slack,
+              std::vector<BodyPair>& pairs);
   // Whether the body keeps the bounds that its next update relies on.
   bool motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept;
-  // Whether that is about the body's middle: see BodyTable::relies_on_middle().
+  // Whether that is about the body's middle: see Body::relies_on_middle().
   bool relies_on_middle(BodyIndex body) const noexcept { return body < bounds_.size() && bounds_[body].by_middle; }
-  std::size_t memory_bytes() const noexcept;
+  std::size_t memory_bytes() const noexcept { return bytes_of(due_, bounds_); }
 
  private:
   struct MotionBound {
@@ -64,13 +65,10 @@ class HalfSpaceTimes {
     Motion motion;
     bool by_middle = false;
   };
-  void make_room(std::size_t bodies);
   void set_due(BodyIndex body, Step due);
   const HalfSpaces& halves_;
-  std::vector<Step> due_;                     // by body
-  std::vector<BodyIndex> moving_;             // bodies that are due at some step,
-  std::vector<std::uint32_t> moving_places_;  // and by body where in there, or kNoIndex
-  std::vector<MotionBound> bounds_;           // by body
+  std::vector<Step> due_;            // by body; kNeverStep: it does not move
+  std::vector<MotionBound> bounds_;  // by body
   double slack_ = 0;
   Step next_ = kNeverStep;
 };

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "broad_phase/vectors.h"
 #include "orchard/runtime/detector.h"
 
 namespace orchard::runtime::detail {
@@ -12,10 +13,23 @@ class KeptStates {
  public:
   // put_cancels: the bounds of a body hold until put().
   explicit KeptStates(bool put_cancels) noexcept : put_cancels_(put_cancels) {}
-  void put(BodyIndex body, double time, const BodyState& state);
-  BodyState at(double time, BodyIndex body) const noexcept;
-  void fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept;
-  std::size_t memory_bytes() const noexcept { return told_.capacity() * sizeof(Told); }
+  void put(BodyIndex body, double time, const BodyState& state) {
+    grow(told_, std::size_t{body} + 1);
+    told_[body] = {state, time};
+  }
+  BodyState at(double time, BodyIndex body) const noexcept {
+    BodyState state = told_[body].state;
+    state.pose.translation = Vec3(state.pose.translation) + (time - told_[body].time) * state.velocity;
+    return state;
+  }
+  // No body turns until its state is changed, which cancels its bounds.
+  void fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      states[i] = at(time, bodies[i]);
+      if (put_cancels_) states[i].angular_speed = 0;
+    }
+  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(told_); }
 
  private:
   struct Told {

@@ -1,7 +1,6 @@
 #pragma once
 #include "detector/load_model.h"
 #include "detector/search_by_parts.h"
-#include "detector/step_pairs.h"
 
 namespace orchard::runtime::detail {
 
@@ -21,7 +20,7 @@ class PairMatcher {
   // keeps it.
   template <typename GoesOn>
   void match(GoesOn&& goes_on);
-  std::size_t pair_count() const noexcept { return pairs_.all().size(); }
+  std::size_t pair_count() const noexcept { return pairs_.size(); }
   const LoadModel::Pairs& seen() const noexcept { return seen_; }
 
   PairCache& cache() noexcept { return cache_; }
@@ -32,10 +31,11 @@ class PairMatcher {
   bool allowed(CachedPair& pair) const;
   bool is_there(const CachedPair& pair) const noexcept { return world_.contains(pair.a) && world_.contains(pair.b); }
   bool has_jumped(const CachedPair& pair) const noexcept {
-    return pair.versions.jumps != world_.places.body(pair.bodies.a).jumps + world_.places.body(pair.bodies.b).jumps;
+    return pair.versions.jumps !=
+           world_.places.body(pair.bodies.a).changes.jumps + world_.places.body(pair.bodies.b).changes.jumps;
   }
   std::size_t memory_bytes() const noexcept {
-    return cache_.memory_bytes() + pairs_.memory_bytes() + bytes_of(due_, left_out_, due_motions_);
+    return cache_.memory_bytes() + bytes_of(others_, merged_, due_, left_out_);
   }
 
  private:
@@ -50,27 +50,27 @@ class PairMatcher {
   StateSampler& sampler_;
   PartPairs& part_pairs_;
   PairCache cache_;
-  StepPairs pairs_;
+  std::span<const BodyPair> pairs_;  // of the step: those of the broad phase and
+  std::vector<BodyPair> others_;     // those that it does not know of,
+  std::vector<BodyPair> merged_;     // together, if there are any
   LoadModel::Pairs seen_;
   std::vector<BodyIndex> due_, left_out_;
-  std::vector<Motion> due_motions_;
 };
 
 template <typename GoesOn>
 void PairMatcher::match(GoesOn&& goes_on) {
   seen_.known = cache_.size(), seen_.fresh = 0;
   BodyTable& bodies = world_.bodies;
-  const bool any = bodies.any_invalidated();
-  const auto doubted = [&](const BodyPair& pair) {
-    return any && (bodies.invalidated(pair.a) || (!is_half_space(pair.b) && bodies.invalidated(pair.b)));
+  const auto same = [&](std::size_t place) {
+    const BodyPair& pair = cache_.pair(place);
+    return !bodies.invalidated(pair) || cache_.known(place).generations == generations(pair);
   };
-  const auto same = [&](const PairCache::Known& known) { return known.generations == generations(known.pair); };
   const auto gone = [&](const PairCache::Known& known) { return goes_on(cache_[known.record]); };
   const auto fresh = [&](const BodyPair& pair) {
     ++seen_.fresh;
     return generations(pair);
   };
-  cache_.match(pairs_.all(), doubted, same, gone, fresh);
+  cache_.match(pairs_, same, gone, fresh);
   seen_.parted = seen_.known + seen_.fresh + cache_.kept().size() - cache_.size();
   bodies.forget_invalidated();
 }

@@ -1,53 +1,23 @@
 #include "detector/pair_cache.h"
 
-#include <cstring>
-
 namespace orchard::runtime::detail {
 
 void PairCache::take(std::size_t place) {
-  std::uint32_t record = record_count_;
   if (free_.empty()) {
-    if (record / kPiece == pieces_.size()) {
-      pieces_.push_back(std::make_unique_for_overwrite<Piece>());
-      free_.reserve(pieces_.size() * kPiece);
-    }
-    ++record_count_;
+    records_.push_back(std::make_unique<CachedPair>());
+    free_.reserve(records_.capacity());
+    known(place).record = static_cast<std::uint32_t>(records_.size() - 1);
   } else {
-    record = free_.back();
+    known(place).record = free_.back();
     free_.pop_back();
+    *records_[known(place).record] = {};
   }
-  known(place).record = record & kNoRecord;
-  known(place).begun = 0;
-}
-
-CachedPair& PairCache::begin(Known& known) noexcept {
-  known.begun = 1;
-  return *::new (pieces_[known.record / kPiece]->memory[known.record % kPiece].data()) CachedPair;
-}
-
-// Of how many pairs the two begin alike: most of them do, from one step to the next.
-std::size_t PairCache::common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept {
-  constexpr std::size_t kAtOnce = 8;
-  const std::size_t count = std::min(a.size(), b.size());
-  std::size_t i = 0;
-  for (; i + kAtOnce <= count; i += kAtOnce) {
-    static_assert(sizeof(BodyPair) == sizeof(std::uint64_t));
-    std::array<std::uint64_t, kAtOnce> of_a, of_b;
-    std::memcpy(of_a.data(), &a[i], sizeof of_a);
-    std::memcpy(of_b.data(), &b[i], sizeof of_b);
-    std::uint64_t differ = 0;
-    for (std::size_t k = 0; k < kAtOnce; ++k) differ |= of_a[k] ^ of_b[k];
-    if (differ != 0) break;
-  }
-  while (i < count && a[i] == b[i]) ++i;
-  return i;
 }
 
 void PairCache::keep(std::size_t from, std::size_t count) {
-  const auto some = [&](const auto& of) { return std::span(of).subspan(from, count); };
-  const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
-  append_some(next_pairs_, some(pairs_));
-  append_some(next_slots_, some(slots_));
+  const auto at = static_cast<std::ptrdiff_t>(from), end = static_cast<std::ptrdiff_t>(from + count);
+  next_pairs_.insert(next_pairs_.end(), pairs_.begin() + at, pairs_.begin() + end);
+  next_slots_.insert(next_slots_.end(), slots_.begin() + at, slots_.begin() + end);
 }
 
 void PairCache::add(const BodyPair& pair, std::uint32_t generations) {

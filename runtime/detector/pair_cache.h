@@ -2,8 +2,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <new>
-#include <type_traits>
 
 #include "detector/shape_placements.h"
 #include "orchard/runtime/collide.h"
@@ -42,12 +40,7 @@ struct CachedPair {
   Step answered = -1;  // the step of `verdict`, if that is certain
   std::array<std::uint32_t, 2> parts{};
   Verdict verdict;
-  struct Apart {
-    Vec3 by{};     // from centre to centre,
-    Step at = -1;  // at that step
-    Vec3 along{};  // of the answer of the step under way, if that is "no": Clearance::along
-  };
-  Apart apart;
+  Vec3 apart_along{};  // of the answer of the step under way, if that is "no": Clearance::along
   TreePair trees;
 };
 
@@ -81,8 +74,7 @@ class PairCache {
  public:
   struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this, if that
     BodyPair pair;
-    std::uint32_t record : 31;  // or kNoRecord
-    std::uint32_t begun : 1;
+    std::uint32_t record;       // or kNoRecord
     std::uint32_t generations;  // of both bodies: others have others
     Clearance clearance;
   };
@@ -99,40 +91,26 @@ class PairCache {
   void tell(std::size_t place, bool busy) noexcept { slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0); }
   ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
-  CachedPair& operator[](std::uint32_t record) noexcept { return *place_of(record); }
-  const CachedPair& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
-  // A record for known(place), to be begun by begin(), in any thread.
-  void take(std::size_t place);
-  bool is_begun(const Known& known) const noexcept { return known.begun != 0; }
-  CachedPair& begin(Known& known) noexcept;
+  CachedPair& operator[](std::uint32_t record) noexcept { return *records_[record]; }
+  const CachedPair& operator[](std::uint32_t record) const noexcept { return *records_[record]; }
+  void take(std::size_t place);  // a new record for known(place)
 
-  // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
-  // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
-  // the former if that says true; generations(pair) for each that is new.
-  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
-  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
+  // The known ones are these from now on, which ascend. Asks same(place) of each that has been one, whether it is the
+  // same pair still. Calls gone(known) for each busy one that is not among them, or not the same, and keeps the former
+  // if that says true; generations(pair) for each that is new.
+  template <typename IsSame, typename Gone, typename Generations>
+  void match(std::span<const BodyPair> pairs, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
-    return pieces_.size() * sizeof(Piece) +
-           bytes_of(pieces_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
+    return records_.size() * sizeof(CachedPair) +
+           bytes_of(records_, free_, known_, free_slots_, pairs_, slots_, next_pairs_, next_slots_, kept_places_);
   }
 
  private:
-  static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
 
-  // In pieces, so that they stay where they are, and whose memory is not touched before begin().
-  static constexpr std::size_t kPiece = 256;
-  static_assert(std::is_trivially_destructible_v<CachedPair> && alignof(CachedPair) <= alignof(std::max_align_t));
-  struct Piece {
-    alignas(CachedPair) std::array<std::byte, sizeof(CachedPair)> memory[kPiece];
-  };
-  CachedPair* place_of(std::uint32_t record) const noexcept {
-    return std::launder(reinterpret_cast<CachedPair*>(pieces_[record / kPiece]->memory[record % kPiece].data()));
-  }
-  std::vector<std::unique_ptr<Piece>> pieces_;
-  std::uint32_t record_count_ = 0;  // in use, or free
+  std::vector<std::unique_ptr<CachedPair>> records_;  // in use, or free
   std::vector<std::uint32_t> free_;
   std::vector<Known> known_;
   std::vector<std::uint32_t> free_slots_;
@@ -142,38 +120,30 @@ class PairCache {
   std::vector<std::uint32_t> kept_places_;
 };
 
-template <typename Doubted, typename IsSame, typename Gone, typename Generations>
-void PairCache::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                      Generations&& generations) {
+template <typename IsSame, typename Gone, typename Generations>
+void PairCache::match(std::span<const BodyPair> pairs, IsSame&& same, Gone&& gone, Generations&& generations) {
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
-  const auto look_at = [&](std::size_t place) {
-    if (same(known(place))) return keep(place, 1);
-    if (busy(place)) gone(known(place));  // of a body that is no more: it cannot stay
-    leave(place);
-    add(pairs_[place], generations(pairs_[place]));
-  };
-  const auto take_over = [&](std::size_t place, std::size_t end) {
-    while (place < end) {
-      std::size_t sure = place;
-      while (sure < end && !doubted(pairs_[sure])) ++sure;
-      keep(place, sure - place);
-      if (sure < end) look_at(sure++);
-      place = sure;
-    }
-  };
-  const auto part = [&](std::size_t place) {
-    if (!busy(place) || !gone(known(place))) return leave(place);
-    kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
-    keep(place, 1);
-  };
   const std::size_t had = pairs_.size();
   for (std::size_t old = 0, now = 0; old < had || now < pairs.size();) {
-    const std::size_t alike = common(pairs.subspan(now), std::span(pairs_).subspan(old));
-    take_over(old, old + alike);
+    const std::size_t most = std::min(had - old, pairs.size() - now);
+    std::size_t alike = 0;  // most of them are, from one step to the next
+    while (alike < most && pairs_[old + alike] == pairs[now + alike] && same(old + alike)) ++alike;
+    keep(old, alike);
     old += alike, now += alike;
-    for (; old < had && (now == pairs.size() || pairs_[old] < pairs[now]); ++old) part(old);
-    for (; now < pairs.size() && (old == had || pairs[now] < pairs_[old]); ++now)
+    const bool is_known = old < had && now < pairs.size() && pairs_[old] == pairs[now];
+    if (now < pairs.size() && (old == had || is_known || pairs[now] < pairs_[old])) {
+      if (is_known) {  // of a body that is no more: it cannot stay
+        if (busy(old)) gone(known(old));
+        leave(old++);
+      }
       add(pairs[now], generations(pairs[now]));
+      ++now;
+    } else if (old < had && busy(old) && gone(known(old))) {
+      kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
+      keep(old++, 1);
+    } else if (old < had) {
+      leave(old++);
+    }
   }
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }

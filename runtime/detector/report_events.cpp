@@ -17,139 +17,85 @@ Verdict nothing_known(Answer answer) noexcept {
 
 }  // namespace
 
-void EventReporter::describe(const CachedPair& pair, Step step, PairChange change, PairEvent& event) const noexcept {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+PairEvent EventReporter::describe(const CachedPair& pair, Step step, PairChange change) const noexcept {
   const Clock& clock = world_.clock;
+  PairEvent event;
   event.change = change;
   event.a = pair.a, event.b = pair.b;
   event.part_a = pair.parts[0], event.part_b = pair.parts[1];
   event.time = clock.time(step);
   event.verdict = pair.verdict;
-  const auto at = [&](double share) { return clock.time(step) + (share - 1) * clock.time_step; };
-  event.impact_from = pair.sweep.impact ? at(pair.sweep.impact_from) : kNone;
-  event.impact_to = pair.sweep.impact ? at(pair.sweep.impact_to) : kNone;
+  if (!pair.sweep.impact) return event;
+  event.impact_from = event.time + (pair.sweep.impact_from - 1) * clock.time_step;
+  event.impact_to = event.time + (pair.sweep.impact_to - 1) * clock.time_step;
+  return event;
 }
 
 bool EventReporter::part(CachedPair& pair, bool there, bool jumped, Step step) {
   pair.sweep.impact = false;
   pair.answered = -1;
   pair.verdict = nothing_known(there ? Answer::no : Answer::maybe);
-  if (there && !jumped && pair.touching && ++pair.separated_steps < world_.options.steps_to_end) {
-    describe(pair, step, PairChange::stay, ended_.emplace_back());
-    return true;
-  }
-  if (pair.touching) describe(pair, step, PairChange::end, ended_.emplace_back());
-  return false;
+  const bool stays = there && !jumped && pair.touching && ++pair.separated_steps < world_.options.steps_to_end;
+  if (pair.touching) ended_.push_back(describe(pair, step, stays ? PairChange::stay : PairChange::end));
+  return stays;
 }
 
 void EventReporter::end_by_teleport(CachedPair& pair, Step step) {
   pair.verdict = nothing_known(Answer::maybe);
   pair.sweep.impact = false;
-  describe(pair, step, PairChange::end, ended_.emplace_back());
+  pair.answered = -1;
+  ended_.push_back(describe(pair, step, PairChange::end));
   pair.touching = false;
-}
-
-void EventReporter::begin_jobs(const ActivePairs& active, std::size_t jobs) {
-  grow(outcomes_, active.size());
-  job_count_ = jobs;
-  grow(tallies_, job_count_);
 }
 
 // What the answer makes of the pair, and which event that is.
 EventReporter::Outcome EventReporter::begin_or_end(CachedPair& pair) const noexcept {
   const Answer answer = pair.verdict.answer;
   if (!pair.versions.allowed) {
-    if (!pair.touching) return Outcome::nothing;
+    if (!pair.touching) return std::nullopt;
     pair.touching = pair.sweep.impact = false;
     pair.verdict = Verdict{};
     pair.answered = -1;
-    return Outcome::end;
+    return PairChange::end;
   }
   pair.turn.waited = answer == Answer::maybe ? pair.turn.waited + 1 : 0;
   if (answer == Answer::yes) {
     pair.separated_steps = 0;
-    const bool before = pair.touching;
-    pair.touching = true;
-    return before ? Outcome::stay : Outcome::begin;
+    return std::exchange(pair.touching, true) ? PairChange::stay : PairChange::begin;
   }
-  if (!pair.touching) return answer == Answer::maybe ? Outcome::possible : Outcome::nothing;
+  if (!pair.touching) return answer == Answer::maybe ? Outcome(PairChange::possible) : std::nullopt;
   pair.separated_steps = answer == Answer::no ? pair.separated_steps + 1 : 0;
-  if (pair.separated_steps < world_.options.steps_to_end) return Outcome::stay;
+  if (pair.separated_steps < world_.options.steps_to_end) return PairChange::stay;
   pair.touching = false, pair.separated_steps = 0;
-  return Outcome::end;
+  return PairChange::end;
 }
 
-// What the answer, or that none was asked for, makes of an active pair.
-void EventReporter::conclude(const ActivePairs& active, std::size_t i, Tally& tally) noexcept {
+void EventReporter::conclude(const ActivePairs& active, std::size_t i) noexcept {
   CachedPair& pair = active.cached(i);
-  // Of what is not allowed it is certain that nothing is asked.
-  const bool maybe = pair.versions.allowed && pair.verdict.answer == Answer::maybe;
-  tally.certain += !maybe;
-  if (maybe) tally.worst_bound = std::max(tally.worst_bound, pair.verdict.separation_bound);
   outcomes_[i] = begin_or_end(pair);
-  tally.events += outcomes_[i] != Outcome::nothing;
   active.tell(i, pair.touching || pair.turn.waited > 0);
   if (pair.versions.allowed) skipper_.keep_clearance(active.known(i), pair);
-  pair.apart.along = {};
+  pair.apart_along = {};
 }
 
-void EventReporter::conclude_all(const ActivePairs& active) {
-  constexpr std::size_t kPerJob = 512;
-  begin_jobs(active, std::max<std::size_t>(1, (active.size() + kPerJob - 1) / kPerJob));
-  auto conclude_some = [&](std::size_t job) {
-    Tally& tally = tallies_[job];
-    tally = {};
-    const std::size_t end = first_of_job(active, job + 1);
-    for (std::size_t i = first_of_job(active, job); i < end; ++i) {
-      active.prefetch(i, end);
-      conclude(active, i, tally);
-    }
-  };
-  run_jobs(world_.options.executor, job_count_, conclude_some);
-}
-
-// Where each job's events go, those that have ended among its pairs included.
-void EventReporter::place_events(const ActivePairs& active, Frame& frame) {
-  std::size_t written = event_count_;
-  for (std::size_t job = 0; job < job_count_; ++job) {
-    Tally& of = tallies_[job];
-    frame.certain += of.certain;
-    frame.worst_bound = std::max(frame.worst_bound, of.worst_bound);
-    of.events_from = written;
-    if (job > 0) {
-      const BodyPair first = active.pair(first_of_job(active, job));
-      const auto from = std::partition_point(ended_.begin(), ended_.end(),
-                                             [&](const PairEvent& event) { return bodies_of(event) < first; });
-      of.ended_from = static_cast<std::size_t>(from - ended_.begin());
-      of.events_from += of.ended_from - tallies_[job - 1].ended_from;
-    }
-    written = of.events_from + of.events;
-  }
-  event_count_ = written + ended_.size() - tallies_[job_count_ - 1].ended_from;
-  grow(events_, event_count_);
-}
-
-void EventReporter::write_events(const ActivePairs& active, std::size_t job, Step step) noexcept {
-  const std::size_t end = first_of_job(active, job + 1);
-  const std::size_t ended_to = job + 1 < job_count_ ? tallies_[job + 1].ended_from : ended_.size();
-  std::size_t next = tallies_[job].ended_from, to = tallies_[job].events_from;
-  for (std::size_t i = first_of_job(active, job); i < end; ++i) {
-    active.prefetch(i, end);
-    const auto& known = active.known(i);
-    for (; next < ended_to && !(known.pair < bodies_of(ended_[next])); ++next) events_[to++] = ended_[next];
-    if (outcomes_[i] == Outcome::nothing) continue;
-    describe(active.cached(i), step, static_cast<PairChange>(outcomes_[i]), events_[to++]);
-  }
-  for (; next < ended_to; ++next) events_[to++] = ended_[next];
-}
-
+// Each pair without a certain answer has an event that says so.
 void EventReporter::report(const ActivePairs& active, Step step, Frame& frame) {
   const auto by_bodies = [](const PairEvent& p, const PairEvent& q) { return bodies_of(p) < bodies_of(q); };
   // Teleports come after all others.
   if (!std::is_sorted(ended_.begin(), ended_.end(), by_bodies)) std::sort(ended_.begin(), ended_.end(), by_bodies);
-  place_events(active, frame);
-  auto write_some = [&](std::size_t job) { write_events(active, job, step); };
-  run_jobs(world_.options.executor, job_count_, write_some);
+  auto ended = ended_.begin();
+  frame.certain += active.size();
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (!outcomes_[i]) continue;
+    active.prefetch(i);
+    for (; ended != ended_.end() && !(active.pair(i) < bodies_of(*ended)); ++ended) append(events_, *ended);
+    const CachedPair& pair = active.cached(i);
+    append(events_, describe(pair, step, *outcomes_[i]));
+    if (pair.verdict.answer != Answer::maybe || outcomes_[i] == PairChange::end) continue;
+    --frame.certain;
+    frame.worst_bound = std::max(frame.worst_bound, pair.verdict.separation_bound);
+  }
+  for (; ended != ended_.end(); ++ended) append(events_, *ended);
   ended_.clear();
 }
 

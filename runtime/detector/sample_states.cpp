@@ -2,35 +2,112 @@
 
 #include <algorithm>
 
-namespace orchard::runtime::detail {
+namespace orchard::runtime {
 
-StateSampler::StateSampler(World& world, BroadPhase& broad)
+StateSource states_of(const std::vector<BodyState>& values) {
+  return [&values](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
+    BodyState none;  // refused
+    none.pose.rotation = {};
+    for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
+  };
+}
+
+namespace detail {
+namespace {
+
+constexpr std::size_t kAhead = 8;  // bodies, in loops over them
+
+}  // namespace
+
+StateSampler::StateSampler(World& world, BroadPhase& broad, StateSource source)
     : world_(world),
       broad_(broad),
+      source_(std::move(source)),
       monitor_({.position_slack = world.options.position_slack}),
       watches_(world.options.watch.value_or(true)) {}
 
-void StateSampler::sample(Step step, double time, std::span<const BodyIndex> bodies) {
-  world_.bodies.ask(step, time, bodies, world_.options.executor);
+void StateSampler::ask_for(BodyIndex index, Step step) {
+  Body& body = world_.bodies[index];
+  if (body.steps.asked == step || !body.is_asked()) return;
+  body.steps.known_before = std::exchange(body.steps.asked, step);
+  asking_.push_back(index);
+}
+
+void StateSampler::sample(Step step, std::span<const BodyIndex> bodies) {
+  asking_.clear();
+  make_room(asking_, world_.bodies.slots());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + kAhead < bodies.size()) prefetch_all(world_.bodies[bodies[i + kAhead]].steps);
+    ask_for(bodies[i], step);
+  }
+  ask_source(step);
+}
+
+void StateSampler::ask_all(Step step) {
+  asking_.clear();
+  for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) ask_for(i, step);
+  ask_source(step);
+}
+
+// For asking_. What follows from many answers is worked out by jobs.
+void StateSampler::ask_source(Step step) {
+  if (asking_.empty()) return;
+  constexpr std::size_t kAlone = 256,
+                        kPerJob = 256;  // a thread that is alone takes answers while they are in its cache
+  const Executor& executor = world_.options.executor;
+  const std::size_t at_once = executor.run == nullptr ? std::min(asking_.size(), kAlone) : asking_.size();
+  grow(answers_, at_once);
+  for (std::size_t done = 0; done < asking_.size(); done += at_once) {
+    const auto some = std::span(std::as_const(asking_)).subspan(done, std::min(at_once, asking_.size() - done));
+    source_(world_.clock.time(step), some, std::span(answers_).first(some.size()));
+    auto take_some = [&](std::size_t job) {
+      const std::size_t end = std::min(some.size(), (job + 1) * kPerJob);
+      for (std::size_t i = job * kPerJob; i < end; ++i) {
+        if (i + kAhead < end) prefetch_all(world_.bodies[some[i + kAhead]]);
+        take_answer(step, some[i], answers_[i]);
+      }
+    };
+    run_jobs(executor, (some.size() + kPerJob - 1) / kPerJob, take_some);
+  }
+}
+
+void StateSampler::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
+  Body& body = world_.bodies[index];
+  BodyState& state = body.state;
+  const Pose before = state.pose;
+  if (world_.any.continuous) body.before = before;
+  const bool valid = is_valid(answer);
+  const bool same = body.steps.moved >= 0 && before == answer.pose && body.valid == valid;
+  state = answer;
+  body.valid = valid;
+  if (!valid) any_flawed_.store(true, std::memory_order_relaxed);
+  if (!same) {
+    body.steps.moved = step;
+    world_.bodies.moved(index, before);
+  }
+  if (!body.asleep) return;
+  body.frozen = true;
+  state.velocity = state.half_space = {};
+  state.acceleration = state.drift = state.angular_speed = 0;
+  state.expiry = kInfinity;
 }
 
 Motion StateSampler::given_motion(BodyIndex index, double time) const {
-  const Motion motion = world_.bodies.motion_of(index, world_.clock.time_step);
   const Body& body = world_.bodies[index];
-  const bool suggests = watches_ && body.suggest && !body.frozen && motion.radius >= 0;
+  const Motion motion = body.motion(world_.clock.time_step);
+  const bool suggests = watches_ && body.options.suggest && !body.frozen && motion.radius >= 0;
   return suggests ? monitor_.suggest(index, time, motion.radius) : motion;
 }
 
 // One that watches has sampled every body by now.
 void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> asked, std::span<Motion> motions) {
   const Clock& clock = world_.clock;
-  if (!sampled_all_) sample(std::llround((time - clock.start) / clock.time_step), time, asked);
+  if (!sampled_all()) sample(std::llround((time - clock.start) / clock.time_step), asked);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     motions[i] = given_motion(asked[i], time);
     if (!watches_) continue;
     Body& body = world_.bodies[asked[i]];
-    body.told_radius = motions[i].radius;
-    body.told_by_middle = world_.bodies.relies_on_middle(asked[i], clock.time_step);
+    body.told = {motions[i].radius, body.relies_on_middle(clock.time_step)};
     monitor_.note_bound(asked[i], time, motions[i]);
   }
   if (!world_.options.bound_given) return;
@@ -40,11 +117,9 @@ void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> as
 // Nearly every body is asked about at this step anyway.
 void StateSampler::sample_all(Step step) {
   constexpr std::size_t kMinBodies = 256;
-  sampled_all_ = false;
-  const bool many = paired_.size() >= kMinBodies && 2 * paired_.size() >= world_.bodies.slots();
-  if (!many || watches_ || world_.options.bound_given) return;
-  world_.bodies.ask_everyone(step, world_.clock.time(step), world_.options.executor);
-  sampled_all_ = true;
+  const std::size_t slots = world_.bodies.slots();
+  if (paired_.size() < kMinBodies || 2 * paired_.size() < slots || watches_ || world_.options.bound_given) return;
+  ask_all(step);
   all_sampled_at_ = step;
 }
 
@@ -52,15 +127,12 @@ void StateSampler::sample_all(Step step) {
 // at the next steps.
 void StateSampler::sample_pairs(Step step, std::span<const BodyPair> pairs) {
   constexpr Step kKept = 16;
-  const BodyTable& bodies = world_.bodies;
-  if (all_sampled_at_ == step && bodies.all_valid() && step < paired_at_ + kKept) return;
+  if (all_sampled_at_ == step && !any_flawed_.load(std::memory_order_relaxed) && step < paired_at_ + kKept) return;
   paired_at_ = step;
   paired_.clear();
-  grow(is_paired_, bodies.slots());
+  grow(is_paired_, world_.bodies.slots());
   const auto note = [&](BodyIndex body) {
-    if (is_paired_[body] != 0) return;
-    paired_.push_back(body);
-    is_paired_[body] = 1;
+    if (std::exchange(is_paired_[body], 1) == 0) paired_.push_back(body);
   };
   BodyIndex last = kNoIndex;
   for (const BodyPair& pair : pairs) {
@@ -70,22 +142,18 @@ void StateSampler::sample_pairs(Step step, std::span<const BodyPair> pairs) {
   for (const BodyIndex body : paired_) is_paired_[body] = 0;
   sample(step, paired_);
   for (const BodyIndex body : paired_) {
-    if (!bodies[body].valid) refused_.push_back(body);
+    if (!world_.bodies[body].valid) refused_.push_back(body);
   }
 }
 
 // Section 4.4 of the dissertation.
 void StateSampler::watch(Step step) {
-  const BodyTable& bodies = world_.bodies;
-  everyone_.clear();
-  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
-    if (bodies[i].id != kNoBody && !bodies[i].is_static && !bodies[i].frozen) everyone_.push_back(i);
-  }
-  sample(step, everyone_);
-  for (const BodyIndex i : everyone_) {
+  ask_all(step);
+  for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) {
     Body& body = world_.bodies[i];
-    if (!is_valid(bodies.motion_of(i, world_.clock.time_step))) {  // it is refused, and its bounds do not hold any more
-      if (body.told_radius >= 0) cancel(body);
+    if (body.id == kNoBody || body.is_static || body.steps.asked != step) continue;
+    if (!is_valid(body.motion(world_.clock.time_step))) {  // it is refused, and its bounds do not hold any more
+      if (body.told.radius >= 0) cancel(body);
     } else if (!keeps_motion_bound(i, step)) {
       broken_.push_back(i);
       cancel(body);
@@ -97,9 +165,8 @@ void StateSampler::watch(Step step) {
 bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
   const Body& body = world_.bodies[index];
   const double time = world_.clock.time(step);
-  const Motion motion =
-      world_.bodies.motion_of(index, world_.clock.time_step, body.has_middle() && body.told_by_middle);
-  const bool given = !body.suggest || dot(motion.velocity, motion.velocity) > 0;
+  const Motion motion = body.motion(world_.clock.time_step, body.has_middle() && body.told.by_middle);
+  const bool given = !body.options.suggest || dot(motion.velocity, motion.velocity) > 0;
   const bool kept = given ? monitor_.observe(index, time, motion.position, motion.velocity)
                           : monitor_.observe(index, time, motion.position);
   if (!kept) return false;
@@ -113,30 +180,27 @@ bool StateSampler::keeps_more(const Body& body, Step step, const Motion& motion)
   const BodyIndex index = body.id.index;
   const Clock& clock = world_.clock;
   const bool by_middle = body.has_middle() && world_.half_space_times.relies_on_middle(index);
-  const Motion of_half_spaces = world_.bodies.motion_of(index, clock.time_step, by_middle);
+  const Motion of_half_spaces = body.motion(clock.time_step, by_middle);
   if (!world_.half_space_times.motion_bound_kept(index, clock.time(step), of_half_spaces)) return false;
-  if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
-  if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
+  if (body.told.radius >= 0 && motion.radius > body.told.radius) return false;
+  if (!body.is_continuous() || body.steps.known_before != step - 1) return true;
   const Vec3 way = motion.position - Vec3(body.before.translation);
-  return length(way) <= body.continuous_speed * clock.time_step * (1 + 1e-9);
+  return length(way) <= body.options.continuous_speed * clock.time_step * (1 + 1e-9);
 }
 
 void StateSampler::cancel(Body& body) {
   if (is_half_space(body.id.index)) return;
-  body.told_radius = -1;
+  body.told.radius = -1;
   if (watches_) monitor_.cancelled(body.id.index);
   if (!body.is_static) world_.half_space_times.update_again(body.id.index);
   broad_.cancel(body.id);
 }
 
-StateSampler::Faults StateSampler::faults() {
+void StateSampler::report(Frame& frame) {
   std::sort(refused_.begin(), refused_.end());
   refused_.erase(std::unique(refused_.begin(), refused_.end()), refused_.end());
-  return {refused_, broken_};
+  frame.refused = refused_, frame.broken = broken_;
 }
 
-std::size_t StateSampler::memory_bytes() const noexcept {
-  return monitor_.memory_bytes() + bytes_of(everyone_, refused_, broken_, paired_, is_paired_);
-}
-
-}  // namespace orchard::runtime::detail
+}  // namespace detail
+}  // namespace orchard::runtime

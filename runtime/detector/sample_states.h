@@ -4,20 +4,21 @@
 
 namespace orchard::runtime::detail {
 
-// Sample: where bodies are at a step, and what the broad phase may rely on. Every question for a body's state goes
-// through sample().
+// Sample: where bodies are at a step, and what the broad phase may rely on. Every question for a body's state is asked
+// here, at most once a step.
 class StateSampler {
  public:
-  StateSampler(World& world, BroadPhase& broad);
+  StateSampler(World& world, BroadPhase& broad, StateSource source);
 
+  const StateSource& source() const noexcept { return source_; }
   void begin_call() noexcept { refused_.clear(), broken_.clear(); }
   // Makes the states of these bodies those of the step; a body may come up twice.
-  void sample(Step step, std::span<const BodyIndex> bodies) { sample(step, world_.clock.time(step), bodies); }
+  void sample(Step step, std::span<const BodyIndex> bodies);
   // Where most bodies were in pairs at the step before: all of them at once, so that the broad phase's jobs may run at
-  // once, until it has ended.
+  // once.
   void sample_all(Step step);
-  bool sampled_all() const noexcept { return sampled_all_; }
-  void broad_phase_ended() noexcept { sampled_all_ = false; }
+  // Whether every state is that of the step that the broad phase is at.
+  bool sampled_all() const noexcept { return all_sampled_at_ == world_.answered + 1; }
   // The bodies of these pairs, in ascending order; refuses those whose states are not valid.
   void sample_pairs(Step step, std::span<const BodyPair> pairs);
   // What is relied on of a body whose state has been sampled: what its state says, or what the monitor makes of it.
@@ -29,30 +30,30 @@ class StateSampler {
   // Before the broad phase relies on anything at this step: compares every body's state with its motion bounds.
   void watch(Step step);
   void cancel(Body& body);  // its bounds do not hold any more
-  void refuse(std::span<const BodyIndex> bodies) { append_all(refused_, bodies); }
+  void refuse(std::span<const BodyIndex> bodies) { refused_.insert(refused_.end(), bodies.begin(), bodies.end()); }
   MotionMonitor& monitor() noexcept { return monitor_; }
-  struct Faults {
-    std::span<const BodyIndex> refused;  // in ascending order
-    std::span<const BodyIndex> broken;   // motion bounds
-  };
-  Faults faults();  // since begin_call()
-  std::size_t memory_bytes() const noexcept;
+  void report(Frame& frame);  // what was refused, and whose bounds were broken, since begin_call()
+  std::size_t memory_bytes() const noexcept {
+    return monitor_.memory_bytes() + bytes_of(asking_, answers_, refused_, broken_, paired_, is_paired_);
+  }
 
  private:
-  static void append_all(std::vector<BodyIndex>& to, std::span<const BodyIndex> bodies) {
-    to.insert(to.end(), bodies.begin(), bodies.end());
-  }
-  void sample(Step step, double time, std::span<const BodyIndex> bodies);
+  void ask_for(BodyIndex body, Step step);
+  void ask_all(Step step);
+  void ask_source(Step step);
+  void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   bool keeps_motion_bound(BodyIndex index, Step step);
   bool keeps_more(const Body& body, Step step, const Motion& motion) const noexcept;
 
   World& world_;
   BroadPhase& broad_;
+  StateSource source_;
   MotionMonitor monitor_;
   bool watches_;
-  bool sampled_all_ = false;  // every state is that of the step that the broad phase is at
   Step all_sampled_at_ = kNotAsked, paired_at_ = kNotAsked;
-  std::vector<BodyIndex> everyone_, refused_, broken_;
+  std::atomic<bool> any_flawed_ = false;  // some answer was not valid; set by jobs
+  std::vector<BodyIndex> asking_, refused_, broken_;
+  std::vector<BodyState> answers_;
   std::vector<BodyIndex> paired_;        // of sample_pairs(), at the step paired_at_
   std::vector<std::uint8_t> is_paired_;  // by body, while `paired_` is made
 };

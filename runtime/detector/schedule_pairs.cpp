@@ -2,59 +2,196 @@
 
 #include <algorithm>
 
+#include "collision/coherent_pair.h"
+#include "collision/pair_query.h"
+
 namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::uint64_t kFirstSlice = 1024;       // tests; each further slice is four times as large
+constexpr std::uint64_t kSearchShare = 8;         // of the budget, one part in so many is set aside for searches
+constexpr std::uint8_t kSearchesBeforeRoots = 4;  // of a pair that its roots have not told apart
+constexpr std::size_t kAtOnce = 64;               // tasks, so that the turns depend on no number of threads
+
+}  // namespace
 
 void PairScheduler::prepare() {
+  constexpr std::size_t kJobsPerThread = 4;
   const Executor& executor = world_.options.executor;
-  queries_.prepare(world_.shapes, world_.shapes.size(),
-                   executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * 4,
-                   world_.any.continuous);
+  const std::size_t jobs =
+      executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * kJobsPerThread;
+  scratches_.prepare(world_.shapes, jobs, world_.any.continuous);
 }
 
-// The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
-std::size_t PairScheduler::jobs(std::size_t count) const noexcept {
-  constexpr std::size_t kJobsPerThread = 4, kMinPerJob = 8;  // some pairs cost a hundred times what others do
-  const Executor& executor = world_.options.executor;
-  const std::size_t wanted = executor.run == nullptr ? 1 : executor.concurrency * kJobsPerThread;
-  return std::clamp<std::size_t>(std::min(wanted, queries_.jobs()), 1, count / kMinPerJob + 1);
+void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open) {
+  make_tasks(records, open);
+  sort_tasks(records);
 }
 
-std::uint64_t PairScheduler::answer_all(PairCache& records, std::span<const std::uint32_t> open, Step now) {
-  const std::size_t among = jobs(open.size());
-  return answer_by(among, [&](std::size_t job, QueryPool::Scratch& scratch) {
-    const std::size_t end = open.size() * (job + 1) / among;
-    for (std::size_t i = open.size() * job / among; i < end; ++i) {  // what a pair needs is all over memory
-      constexpr std::size_t kRecord = 6, kBodies = 4;                // pairs ahead
-      if (i + kRecord < end) prefetch_all(records[open[i + kRecord]]);
-      if (i + kBodies < end) answerer_.places().prefetch_bodies(records[open[i + kBodies]].bodies);
-      answerer_.answer(records[open[i]], now, scratch);
-    }
-  });
-}
-
-bool PairScheduler::sweeps(const PairCache& records, std::span<const std::uint32_t> open) noexcept {
-  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].sweep.possible; });
-}
-
-void PairScheduler::sweep_all(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget) {
-  sweeps_.clear();
+// A task for each two parts, with what their spheres say: so much is known of every pair whatever the budget.
+void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t> open) {
+  const ShapePlacements& places = world_.places;
+  tasks_.clear();
   for (const std::uint32_t index : open) {
-    if (records[index].sweep.possible) sweeps_.push_back(index);
-    if (records[index].sweep.unseen) leave_open(records[index]);
+    CachedPair& record = records[index];
+    forget_answer(record);
+    const std::uint32_t parts_a = places.parts(record.bodies.a), parts_b = places.parts(record.bodies.b);
+    PartPair pair;
+    for (std::uint32_t i = 0; i < parts_a; ++i) {
+      for (std::uint32_t j = 0; j < parts_b; ++j) {
+        answerer_.place(record, i, j, pair);
+        Task& task = tasks_.emplace_back();
+        task.record = index, task.part_a = i, task.part_b = j;
+        task.simple = pair.simple();
+        task.verdict = unasked(pair);
+        task.done = task.verdict.answer == Answer::no;
+      }
+    }
   }
-  if (sweeps_.empty()) return;
-  std::size_t done = 0;
-  while (done < sweeps_.size() && budget.may_sweep(done)) {
-    const std::size_t count = budget.limited() ? 1 : sweeps_.size() - done;
-    const std::uint64_t most = budget.left();
-    for (std::size_t job = 0; job < queries_.jobs(); ++job) queries_.scratch(job).work = 0;
-    in_parallel(count, [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
-      for (std::size_t i = begin; i < end; ++i) answerer_.sweep(records[sweeps_[done + i]], now, scratch, most);
+}
+
+// By importance, then by who has waited longest, then in the order of tasks.
+void PairScheduler::sort_tasks(const PairCache& records) {
+  schedule_.clear();
+  for (std::uint32_t i = 0; i < tasks_.size(); ++i) {
+    const CachedPair::Turn& turn = records[tasks_[i].record].turn;
+    if (!tasks_[i].done) schedule_.push_back({turn.importance, std::min(turn.waited, 255u), i});
+  }
+  const auto rank = [](const Turn& turn) {
+    return std::uint64_t{turn.importance} << 40 | std::uint64_t{255 - turn.waited} << 32 | turn.task;
+  };
+  std::sort(schedule_.begin(), schedule_.end(), [&](const Turn& p, const Turn& q) { return rank(p) < rank(q); });
+}
+
+void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
+  const StepBudget::Part for_searches = budget.part(kSearchShare);
+  budget.set_aside(for_searches);
+  give_turns(0, schedule_.size(), 0, budget, records);
+  budget.give_back(for_searches);
+  for (std::size_t begin = 0; begin < schedule_.size();) {
+    std::size_t end = begin;
+    while (end < schedule_.size() && schedule_[end].importance == schedule_[begin].importance) ++end;
+    std::uint64_t slice = kFirstSlice;
+    while (give_turns(begin, end, slice, budget, records)) slice = std::min<std::uint64_t>(4 * slice, 1ull << 32);
+    begin = end;
+  }
+}
+
+// A search of `slice` tests for each of schedule_[begin, end) that is open; of none: what can be told without one. What
+// is done at once has its overshoot set aside, so that the budget holds. Returns whether another turn is of use.
+bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t slice, StepBudget& budget,
+                               PairCache& records) {
+  const bool alone = world_.options.executor.run == nullptr, searches = slice > 0;
+  const std::uint64_t most_of_one = !searches ? kSimplePairWork : slice + kMaxOvershoot;
+  const auto is_open = [&](const Turn& turn) {
+    const Task& task = tasks_[turn.task];
+    return !task.done && records[task.record].verdict.answer != Answer::yes;
+  };
+  std::size_t next = begin;
+  while (next < end && (searches ? budget.may_refine() : budget.may_go_on())) {
+    const std::uint64_t left = budget.left(), most = std::min(left, slice);
+    const std::size_t at_once = static_cast<std::size_t>(std::clamp<std::uint64_t>(left / most_of_one, 1, kAtOnce));
+    for (order_.clear(); next < end && order_.size() < at_once; ++next) {
+      if (is_open(schedule_[next])) order_.push_back(schedule_[next].task);
+    }
+    each(order_.size(), [&](std::size_t i, AnswerScratch& scratch) {
+      Task& task = tasks_[order_[i]];
+      CachedPair& record = records[task.record];
+      task.work = 0;
+      if (alone ? !(searches ? budget.may_refine() : budget.may_begin()) : budget.late()) return;
+      if (!searches) return begin_one(task, record, scratch);
+      // The first search is short, and neither the clock ends it nor what it has done when another run ended.
+      const Budget within = slice == kFirstSlice ? Budget{most} : Budget{budget.piece(most), budget.time_left()};
+      search_one(task, record, within, slice == kFirstSlice, scratch);
+      if (alone) budget.refined(task.work);
     });
-    for (std::size_t job = 0; job < queries_.jobs(); ++job) budget.spend(queries_.scratch(job).work);
-    done += count;
+    for (const std::uint32_t index : order_) {
+      const Task& task = tasks_[index];
+      budget.spend(task.work);
+      if (task.verdict.answer == Answer::yes) records[task.record].verdict.answer = Answer::yes;
+    }
   }
-  for (; done < sweeps_.size(); ++done) leave_open(records[sweeps_[done]]);
+  const auto all = std::span(std::as_const(schedule_)).subspan(begin, end - begin);
+  return next == end && std::any_of(all.begin(), all.end(), is_open);
+}
+
+// What can be told without a search.
+void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept {
+  if (task.simple) return search_one(task, record, {}, true, scratch);
+  task.work = kPairWork;
+  const bool remembers = record.coherent && CoherentPair::remembers(record.trees);
+  // Of bodies of several parts, whose tasks may run at once, all have their roots asked.
+  if (record.coherent && !remembers && record.turn.roots_wait > 0) {
+    --record.turn.roots_wait;
+    return;
+  }
+  PartPair pair;
+  answerer_.place(record, task.part_a, task.part_b, pair);
+  const double bound = task.verdict.separation_bound;
+  Verdict known;
+  if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), known)) {
+    task.verdict = solid_verdict(known, pair);
+    task.done = true;
+  } else {
+    PairQuery& narrow = query_of(scratch.workspace.narrow);
+    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+    narrow.start(pair.a.pose(), pair.b.pose());
+    task.verdict = verdict_of(narrow, pair);
+    task.done = narrow.finished();
+    if (record.coherent) record.turn.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
+  }
+  task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
+  task.verdict.work = task.work;
+}
+
+// Begins with what the last step found, and again at each slice, which costs a third more than going on would, for the
+// few that need several.
+void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& most, bool is_first,
+                               AnswerScratch& scratch) const noexcept {
+  PartPair pair;
+  answerer_.place(record, task.part_a, task.part_b, pair);
+  PairQuery& narrow = query_of(scratch.workspace.narrow);
+  if (task.simple) {
+    task.verdict = answer_exactly(narrow, pair, task.work);
+    task.done = true;
+    return;
+  }
+  const double bound = task.verdict.separation_bound;
+  if (record.coherent && is_first) {
+    task.verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), most);
+  } else {
+    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+    task.verdict = collide(narrow, pair.a.pose(), pair.b.pose(), most);
+  }
+  task.work = task.verdict.work;
+  task.done = task.verdict.answer != Answer::maybe || narrow.finished();
+  make_solid(task.verdict, pair);
+  task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
+  task.verdict.work = kPairWork + task.work;
+}
+
+void PairScheduler::fold(PairCache& records, std::span<const std::uint32_t> open, Step now) {
+  for (const std::uint32_t index : open) forget_answer(records[index]);
+  for (const Task& task : tasks_) add(records[task.record], task.verdict, task.part_a, task.part_b);
+  for (const std::uint32_t index : open) {
+    if (records[index].verdict.answer != Answer::maybe) records[index].answered = now;
+  }
+}
+
+void PairScheduler::sweep_within(PairCache& records, std::span<const std::uint32_t> open, Step now,
+                                 StepBudget& budget) {
+  std::uint64_t swept = 0;
+  for (const std::uint32_t index : open) {
+    CachedPair& record = records[index];
+    if (record.sweep.unseen || (record.sweep.possible && !budget.may_sweep(swept)))
+      leave_open(record);
+    else if (record.sweep.possible) {
+      scratches_[0].work = 0;
+      answerer_.sweep(record, now, scratches_[0], budget.left());
+      budget.spend(scratches_[0].work);
+      ++swept;
+    }
+  }
 }
 
 }  // namespace orchard::runtime::detail

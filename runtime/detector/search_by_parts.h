@@ -1,7 +1,7 @@
 #pragma once
 #include "detector/pair_cache.h"
 #include "detector/sample_states.h"
-#include "detector/static_spheres.h"
+#include "detector/sphere_tree.h"
 
 namespace orchard::runtime::detail {
 
@@ -18,29 +18,32 @@ class PartPairs {
   bool any() const noexcept { return !bodies_.empty(); }
   // Whether the pair is found here and by no other part of the detector.
   bool finds(const BodyPair& pair) const noexcept;
-  // The pairs of the step, in ascending order. `before`: those of the step before.
+  // Appends the pairs of the step. `before`: those of the step before.
   void find(Step step, const PairCache& before, std::vector<BodyPair>& found);
   // Which bodies are searched by parts at the steps after this one. O(pairs), every 16 steps.
   void choose(Step step, const PairCache& pairs);
   void choose_none();
+  void gone(const Body& body) noexcept;
 
   // What of the body the broad phase is to look at.
   static BodyFilter broad_filter(const Body& body) noexcept;
-  void static_changed(BodyIndex body);  // it was added or moved
-  void gone(const Body& body) noexcept;
-  std::size_t memory_bytes() const noexcept;
+  std::size_t memory_bytes() const noexcept {
+    return bytes_of(bodies_, touching_, static_pairs_, to_change_) + spheres_.memory_bytes() + 4 * bytes_of(lanes_[0]);
+  }
 
  private:
-  void keep_pairs_of(BodyIndex body, const PairCache& before, std::vector<BodyPair>& found) const;
   void search(BodyIndex body, bool wanted);
-  void end(BodyIndex body) noexcept;
-  std::span<const BodyIndex> touching(std::span<const FloatSphere> spheres);
+  void place_static();
+  void append_touching(const BoundingSphere& sphere);
 
   World& world_;
   BroadPhase& broad_;
   StateSampler& sampler_;
-  std::vector<BodyIndex> bodies_, touching_;  // the former, in ascending order, are searched for by parts
-  StaticSpheres spheres_;                     // of all static bodies while there are such bodies
+  std::vector<BodyIndex> bodies_;             // in ascending order, are searched for by parts
+  std::vector<BodyIndex> touching_;           // of static bodies
+  SphereTree spheres_;                        // of all static bodies' parts, while there are such bodies,
+  std::array<std::vector<double>, 4> lanes_;  // their x, y, z and radii, and some that are not numbers
+  std::uint64_t static_changes_ = 0;          // as they were after so many changes
   Step choose_at_ = 0;
   std::vector<std::uint32_t> static_pairs_;  // by body, in choose()
   std::vector<BodyIndex> to_change_;

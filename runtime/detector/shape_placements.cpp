@@ -10,47 +10,29 @@ void ShapePlacements::place_at(const Pose& pose, bool rigid, ShapeId shape, cons
   placed_part.there = &pose;
   if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
   placed_part.rigid = rigid;
-  placed_part.be_in({transform(pose, part.center), part.reach * pose.scale});
 }
 
 void ShapePlacements::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
-  if (!is_half_space(body)) {
-    const Body& of = (*bodies_)[body];
-    const BoundingSphere& where = bodies_->sphere_cache(body).sphere;
-    if (of.one && of.at_origin && where.reach < std::numeric_limits<double>::infinity()) {
-      placed_part.shape = &(*shapes_)[of.shape];
-      placed_part.there = &bodies_->state(body).pose;
-      placed_part.rigid = true;
-      placed_part.be_in(where);
-      return;
-    }
-    const PartRecord& record = of.parts[part];
-    return place_at(bodies_->state(body).pose, of.valid, record.shape, record, placed_part);
-  }
   placed_part.shape = nullptr;
+  if (is_half_space(body)) return;
+  const Body& of = (*bodies_)[body];
+  const PartRecord& record = of.parts[part];
+  place_at(of.state.pose, of.valid, record.shape, record, placed_part);
+  placed_part.be_in(record.sphere);
 }
 
 void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
                                    PlacedPart& placed_part) const noexcept {
-  if (is_half_space(body)) {
-    placed_part.shape = nullptr;
-    return;
-  }
+  placed_part.shape = nullptr;
+  if (is_half_space(body)) return;
   const Body& of = (*bodies_)[body];
-  const bool moves = !of.is_static && of.asked == now;  // one that falls asleep has come here first
-  const Pose& pose = moves ? bodies_->before(body) : bodies_->state(body).pose;
+  const bool moves = !of.is_static && of.steps.asked == now;  // one that falls asleep has come here first
+  const Pose& pose = moves ? of.before : of.state.pose;
   const PartRecord& record = of.parts[part];
   const bool was_elsewhere = !of.parts_before.empty() && of.parts_before[part].until == now - 1;
   const PartPlace& place = was_elsewhere ? of.parts_before[part].place : record;
   place_at(pose, is_rigid(pose), record.shape, place, placed_part);
-}
-
-// Mostly the squares tell: a gap that is computed as more than 0 has a square of its way that is larger.
-bool spheres_part(const PartPair& pair) noexcept {
-  if (pair.b.shape == nullptr) return sphere_gap(pair).least > 0;
-  const Vec3 way = pair.b.center - pair.a.center;
-  const double reach = pair.a.reach + pair.b.reach;
-  return !(dot(way, way) < reach * reach) && sphere_gap(pair).least > 0;
+  placed_part.be_in({transform(pose, place.center), place.reach * pose.scale});
 }
 
 double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept {
@@ -69,7 +51,7 @@ double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const Bou
     }
     scale *= frame.scale;
   };
-  enter(bodies_->state(body).pose);
+  enter(of.state.pose);
   if (!record.at_origin) enter(record.local);
   const Shape& shape = (*shapes_)[record.shape];
   size += scale * (length(shape.center) + shape.reach);
@@ -83,9 +65,8 @@ double ShapePlacements::bounds_gap(const BodyPair& pair, std::uint32_t part_a, s
   return gap > 0 ? gap : bounds_gap(pair.b, part_b, a);
 }
 
-Verdict unasked(const PartPair& pair) noexcept { return unasked(pair, sphere_gap(pair)); }
-
-Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept {
+Verdict unasked(const PartPair& pair) noexcept {
+  const SphereGap gap = sphere_gap(pair);
   Verdict verdict;
   verdict.answer = gap.least > 0 ? Answer::no : Answer::maybe;
   verdict.lower_bound = std::max(0.0, gap.least);

@@ -36,16 +36,11 @@ class ShapePlacements {
     return is_half_space(index) ? halves_->body(index) : (*bodies_)[index];
   }
   std::uint32_t parts(BodyIndex index) const noexcept {
-    if (is_half_space(index)) return 1;
-    const Body& of = (*bodies_)[index];
-    return of.one ? 1 : static_cast<std::uint32_t>(of.parts.size());
+    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts.size());
   }
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
-  BoundingSphere sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
-    const Body& of = (*bodies_)[body];
-    if (!of.one) return of.part_spheres[part];
-    const Pose& pose = of.state.pose;
-    return {transform(pose, of.first_center), of.first_reach * pose.scale};
+  const BoundingSphere& sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
+    return (*bodies_)[body].parts[part].sphere;
   }
   // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
   // sphere: long shapes fill little of theirs. Else at most 0.
@@ -54,11 +49,15 @@ class ShapePlacements {
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
   ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
-    bodies_->prefetch_body(pair.a);
-    if (!is_half_space(pair.b)) bodies_->prefetch_body(pair.b);
+    constexpr std::size_t kInCache = 2048;  // of so few bodies
+    if (bodies_->slots() <= kInCache) return;
+    for (const BodyIndex body : {pair.a, pair.b}) {
+      if (is_half_space(body)) continue;
+      prefetch_all((*bodies_)[body].state.pose), prefetch(&(*bodies_)[body]);
+      bodies_->prefetch_sphere_cache(body);
+    }
   }
   const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->half_space(index); }
-  const BodyTable& bodies() const noexcept { return *bodies_; }
 
  private:
   double bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept;
@@ -90,10 +89,17 @@ inline SphereGap sphere_gap(const BoundingSphere& a, const HalfSpace& half) noex
 inline SphereGap sphere_gap(const PartPair& pair) noexcept {
   return pair.b.shape == nullptr ? sphere_gap(pair.a, pair.half) : sphere_gap(pair.a, pair.b);
 }
-bool spheres_part(const PartPair& pair) noexcept;  // whether the least gap is more than 0
+// Whether the least gap is more than 0, or not quite.
+inline bool spheres_part(const BoundingSphere& a, const BoundingSphere& b) noexcept {
+  const Vec3 way = b.center - a.center;
+  const double reach = a.reach + b.reach + kPlaceRounding * (a.size + b.size), square = dot(way, way);
+  return square > reach * reach * (1 + 1e-14) && square <= std::numeric_limits<double>::max();
+}
+inline bool spheres_part(const PartPair& pair) noexcept {
+  return pair.b.shape == nullptr ? sphere_gap(pair).least > 0 : spheres_part(pair.a, pair.b);
+}
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
-Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept;
 
 // A triangle of the tree that a simple shape was nearest to, as its last answer says: where looking for it begins.
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept;

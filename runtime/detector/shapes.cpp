@@ -15,43 +15,13 @@ float float_above(double x) noexcept {
   return double{nearest} < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
-// Just above half of the diagonal: twelve triangles between the corners of a box, in one node. The corners are rounded
-// outward, so that what does not touch the triangles, or lies at a distance from them, does so of the box.
-PackedSphereTree box_tree(const Vec3& half) {
-  PackedSphereTree tree;
-  std::array<float, 3> rounded{};
-  Vec3 beyond{};
-  for (unsigned i = 0; i < 3; ++i) {
-    rounded[i] = float_above(half[i]);
-    beyond[i] = double{rounded[i]} - half[i];
-  }
-  tree.vertex_error = length(beyond) * (1 + 1e-12);
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    std::array<float, 3> vertex{};
-    for (unsigned i = 0; i < 3; ++i) vertex[i] = corner >> i & 1 ? rounded[i] : -rounded[i];
-    tree.vertices.push_back(vertex);
-  }
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const std::uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, w = 1u << axis;
-    tree.triangles.push_back({0, v, u}), tree.triangles.push_back({u, v, u + v});
-    tree.triangles.push_back({w, w + u, w + v}), tree.triangles.push_back({w + u, w + u + v, w + v});
-  }
-  double square = 0;
-  for (const float x : tree.vertices[7]) square += double{x} * double{x};
-  const auto radius = std::nextafter(static_cast<float>(std::sqrt(square) * (1 + 1e-7)), 2e18f);
-  tree.bounding_radius = double{radius};
-  tree.branching = 1;
-  tree.node_count = 1;
-  SiblingBlock& block = tree.blocks.emplace_back();
-  block.radius.fill(-1);
-  block.radius[0] = radius;
-  // The solid holds its centre, so no point of the ball is farther from it than the radius.
-  block.error[0] = radius;
-  block.depth[0] = 0;
-  std::array<std::uint32_t, 12> all{};
-  std::iota(all.begin(), all.end(), 0u);
-  block.link[0] = add_list(tree, all);
-  index_triangles(tree);
+// The corners are rounded outward, so that what does not touch the triangles, or lies at a distance from them, does so
+// of the box.
+PackedSphereTree solid_box_tree(const Vec3& half) {
+  Vec3 rounded{};
+  for (std::size_t i = 0; i < 3; ++i) rounded[i] = double{float_above(half[i])};
+  PackedSphereTree tree = box_tree(rounded);
+  tree.vertex_error = length(rounded - half) * (1 + 1e-12);
   return tree;
 }
 
@@ -149,10 +119,10 @@ ShapeId ShapeTable::add_box(const Vec3& half_lengths) {
   }
   Shape shape;
   shape.kind = ShapeKind::box;
-  shape.own = box_tree(half_lengths);
+  shape.own = solid_box_tree(half_lengths);
   shape.p = half_lengths;
   shape.reach = shape.own.bounding_radius;
-  for (std::size_t i = 0; i < 3; ++i) shape.box_high[i] = double{shape.own.vertices[7][i]};
+  for (std::size_t i = 0; i < 3; ++i) shape.box_high[i] = double{float_above(half_lengths[i])};
   shape.box_low = -1.0 * shape.box_high;
   shape.pieces = {shape.p};
   return add(std::move(shape));

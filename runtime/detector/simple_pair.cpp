@@ -116,18 +116,12 @@ Verdict yes_at(const Vec3& center, const Vec3& normal) noexcept {
   return verdict;
 }
 
-Verdict no_with(double gap) noexcept {
+// Known is a gap less what computing it may have added, from coordinates of that size.
+Verdict no_with(double gap, double size) noexcept {
   Verdict verdict;
   verdict.answer = Answer::no;
   verdict.level = 1;
   verdict.separation_bound = gap;
-  verdict.lower_bound = gap;
-  return verdict;
-}
-
-// A gap less what computing it may have added.
-Verdict no_with(double gap, double size) noexcept {
-  Verdict verdict = no_with(gap);
   verdict.lower_bound = std::max(0.0, gap - kSimpleRounding * size);
   return verdict;
 }
@@ -173,7 +167,7 @@ Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::u
   }
   if (near.distance == 0) return unknown_verdict();
   const double size = beyond + round.radius + length(round.p) + length(round.q) + length(Vec3(pose.translation));
-  Verdict verdict = no_with(std::max(0.0, beyond - round.radius - kSimpleRounding * size));
+  Verdict verdict = no_with(beyond - round.radius, size);
   verdict.separation_bound = length(round.p - Vec3(transform(pose, shape.center))) + shape.reach * pose.scale;
   return verdict;
 }
@@ -250,8 +244,7 @@ double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Po
     moved.translation = Vec3(pose_b.translation) + way;
     const Verdict verdict = test_simple(a, pose_a, b, moved, kNoTriangle);
     if (verdict.answer == Answer::no) {
-      const double gap = i % 3 == 2 ? simple_distance(a, pose_a, b, moved) : 0;
-      free = std::max(touching, at - std::max(0.0, gap - slack));
+      free = std::max(touching, at - std::max(0.0, verdict.lower_bound - slack));
     } else if (verdict.answer == Answer::yes) {
       const Vec3 of_round = second ? way : Vec3{}, center = verdict.contact.center;
       const Vec3 core = nearest_of_segment(round.p + of_round, round.q + of_round, center);
@@ -261,23 +254,6 @@ double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Po
     }
   }
   return free;
-}
-
-double simple_distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
-  if (!is_rigid(pose_a) || !is_rigid(pose_b)) return 0;
-  if (!a.has_tree() && !b.has_tree()) {
-    const Verdict verdict = of_rounds(Round(a, pose_a), Round(b, pose_b));
-    return verdict.lower_bound * (1 - kSimpleRounding);
-  }
-  const bool first = a.has_tree();
-  const Shape& tree = first ? a : b;
-  const Pose& pose = first ? pose_a : pose_b;
-  const Round round(first ? b : a, first ? pose_b : pose_a);
-  if (tree.tree.obb_nodes.empty()) return 0;
-  const SurfacePoint near = nearest_point_to_segment(tree.tree, pose, round.p, round.q);
-  if (tree.kind == ShapeKind::box && holds(tree, pose, round.p)) return 0;
-  const double size = near.distance + round.radius + length(round.p) + length(Vec3(pose.translation));
-  return std::max(0.0, near.distance - round.radius - kSimpleRounding * size);
 }
 
 }  // namespace orchard::runtime::detail

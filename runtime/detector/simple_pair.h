@@ -27,9 +27,7 @@ void half_space_contact(const Shape& a, const Pose& pose, const HalfSpace& b, Ma
 // both have trees.
 bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& contact) noexcept;
 
-// A lower bound on the distance between two shapes of which at least one is round: for advancing safely. 0 if they
-// touch, or if nothing can be said.
-double simple_distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept;
+// A lower bound on the distance, for advancing safely. 0 if they touch, or if nothing can be said.
 double half_space_distance(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;
 
 }  // namespace orchard::runtime::detail

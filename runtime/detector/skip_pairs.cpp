@@ -18,22 +18,6 @@ bool spheres_apart(const BoundingSphereCache& a, const BoundingSphereCache& b) n
          static_cast<int>(square <= std::numeric_limits<double>::max());
 }
 
-// Then they are so for spheres_apart(), too.
-bool float_spheres_apart(const FloatSphere& a, const FloatSphere& b) noexcept {
-  const float x = b.x - a.x, y = b.y - a.y, z = b.z - a.z, reach = a.radius + b.radius;
-  return x * x + y * y + z * z > reach * reach;
-}
-
-// Whether each part of the one is apart from each of the other.
-bool parts_apart(std::span<const FloatSphere> a, std::span<const FloatSphere> b) noexcept {
-  for (const FloatSphere& q : b) {
-    for (const FloatSphere& p : a) {
-      if (!float_spheres_apart(p, q)) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 RelativePlacement PairSkipper::relative_placement(const BodyPair& pair) const noexcept {
@@ -63,58 +47,44 @@ bool PairSkipper::sphere_above(const BodyPair& pair) const noexcept {
   return height > kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
 }
 
-// Those of cache.pair(begin .. end - 1) that their spheres in floats do not tell apart, and those whose records would
-// be changed by that. Of bodies with several parts each part's sphere is looked at, if there are such bodies.
-template <bool kParts>
-std::size_t PairSkipper::find_near_spheres(const PairCache& cache, std::size_t begin, std::size_t end,
-                                           std::uint32_t* near) const noexcept {
-  constexpr std::size_t kAhead = 24;
-  const BodyPair* const pairs_of = &cache.pair(0);
-  std::size_t found = 0;
-  for (std::size_t place = begin; place < end;) {
-    const BodyIndex first = pairs_of[place].a;
-    const FloatSphere a = world_.bodies.float_sphere(first);
-    const auto look_at = [&](BodyIndex second) ORCHARD_INLINE_LAMBDA {
-      bool apart = !is_half_space(second) && float_spheres_apart(a, world_.bodies.float_sphere(second));
-      if constexpr (kParts) {
-        apart =
-            apart || (!is_half_space(second) && world_.bodies.either_has_parts({first, second}) &&
-                      parts_apart(world_.bodies.float_part_spheres(first), world_.bodies.float_part_spheres(second)));
-      }
-      near[found] = static_cast<std::uint32_t>(place);
-      found += static_cast<std::size_t>(cache.busy(place)) | static_cast<std::size_t>(!apart);
-    };
-    for (; place + kAhead < end && pairs_of[place].a == first; ++place) {
-      world_.bodies.prefetch_float_sphere(pairs_of[place + kAhead].b);
-      look_at(pairs_of[place].b);
+// Whether each part of the one is apart from each of the other: for bodies of several parts.
+bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
+  const Body &a = world_.bodies[pair.a], &b = world_.bodies[pair.b];
+  if (a.parts.size() + b.parts.size() == 2 || !a.valid || !b.valid || a.is_continuous() || b.is_continuous())
+    return false;
+  for (const PartRecord& p : a.parts) {
+    for (const PartRecord& q : b.parts) {
+      if (!spheres_part(p.sphere, q.sphere)) return false;
     }
-    for (; place < end && pairs_of[place].a == first; ++place) look_at(pairs_of[place].b);
   }
-  return found;
+  return true;
 }
 
 // Those of cache.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
 // records would be changed by that. Plus kNoRecordYet where there is none.
 std::size_t PairSkipper::find_near(PairCache& cache, std::size_t begin, std::size_t end,
                                    std::uint32_t* near) const noexcept {
-  std::size_t found = world_.bodies.any_parts() ? find_near_spheres<true>(cache, begin, end, near)
-                                                : find_near_spheres<false>(cache, begin, end, near),
-              count_near = 0;
-  constexpr std::size_t kAhead = 8;
+  constexpr std::size_t kAhead = 16;
+  const BodyPair* const pairs = &cache.pair(0);
+  std::size_t found = 0, count = 0;
+  for (std::size_t place = begin; place < end; ++place) {
+    if (place + kAhead < end) world_.bodies.prefetch_sphere_cache(pairs[place + kAhead].b);
+    const BodyPair& pair = pairs[place];
+    const bool apart =
+        !is_half_space(pair.b) && spheres_apart(world_.bodies.sphere_cache(pair.a), world_.bodies.sphere_cache(pair.b));
+    near[found] = static_cast<std::uint32_t>(place);
+    found += static_cast<std::size_t>(cache.busy(place)) | static_cast<std::size_t>(!apart);
+  }
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) cache.prefetch_known(near[i + kAhead]);
-    if (i + kAhead < found) world_.bodies.prefetch_sphere_cache(cache.pair(near[i + kAhead]).b);
-    const BodyPair& pair = cache.pair(near[i]);
-    if (!cache.busy(near[i]) &&
-        (is_half_space(pair.b) ? sphere_above(pair)
-                               : spheres_apart(world_.bodies.sphere_cache(pair.a), world_.bodies.sphere_cache(pair.b))))
-      continue;
+    const BodyPair& pair = pairs[near[i]];
+    if (!cache.busy(near[i]) && (is_half_space(pair.b) ? sphere_above(pair) : parts_apart(pair))) continue;
     auto& known = cache.known(near[i]);
     if (known.clearance.distance > 0 && moved_less_than_gap(known)) continue;
     known.clearance.distance = 0;
-    near[count_near++] = near[i] | (known.record == kNoRecord ? kNoRecordYet : 0);
+    near[count++] = near[i] | (known.record == kNoRecord ? kNoRecordYet : 0);
   }
-  return count_near;
+  return count;
 }
 
 ActivePairs PairSkipper::find_active(PairCache& cache) {
@@ -144,30 +114,28 @@ ActivePairs PairSkipper::find_active(PairCache& cache) {
 // Neither has moved since the last certain answer.
 bool PairSkipper::rest(const CachedPair& pair) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  return pair.answered >= 0 && std::max(a.moved, b.moved) <= pair.answered && !pair.sweep.impact;
+  return pair.answered >= 0 && std::max(a.steps.moved, b.steps.moved) <= pair.answered && !pair.sweep.impact;
 }
 
-bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted, bool& over) const noexcept {
+bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  pair.turn.importance = std::max(a.importance, b.importance);
+  pair.turn.importance = std::max(a.options.importance, b.options.importance);
   if (!pair.versions.allowed) return false;
-  const bool continuous = a.continuous_speed > 0 || b.continuous_speed > 0;
-  const std::uint32_t jumps = a.jumps + b.jumps;
+  const bool continuous = a.is_continuous() || b.is_continuous();
+  const std::uint32_t jumps = a.changes.jumps + b.changes.jumps;
   const auto known_before = [&](const Body& body) {
-    return body.is_static || (body.frozen && body.asked < step) || body.known_before == step - 1;
+    return body.is_static || (body.frozen && body.steps.asked < step) || body.steps.known_before == step - 1;
   };
   pair.sweep.possible = continuous && pair.versions.jumps == jumps && known_before(a) && known_before(b);
   // As spheres reach as far as a step leads, a body that was not sampled at the step before had nothing near it then:
   // unless the broad phase was interrupted, or the body's parts go farther now. Nothing was between it and a new body.
-  const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
-  const bool both_before = std::max(a.since, b.since) < step;
+  const bool sphere_fell_short = interrupted || a.steps.stretched == step - 1 || b.steps.stretched == step - 1;
+  const bool both_before = std::max(a.steps.since, b.steps.since) < step;
   pair.sweep.unseen =
       continuous && pair.versions.jumps == jumps && !pair.sweep.possible && sphere_fell_short && both_before;
-  over = pair.versions.jumps != jumps && pair.touching;
-  if (over) pair.answered = -1;
   pair.versions.jumps = jumps;
-  if (pair.versions.deformed != a.deformed + b.deformed) {
-    pair.versions.deformed = a.deformed + b.deformed;
+  if (pair.versions.deformed != a.changes.deformed + b.changes.deformed) {
+    pair.versions.deformed = a.changes.deformed + b.changes.deformed;
     pair.trees.forget();
   }
   return !rest(pair);
@@ -176,8 +144,8 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted, bo
 // After a certain "no". What is swept is asked at each step.
 void PairSkipper::keep_clearance(PairCache::Known& known, const CachedPair& pair) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  const bool lasts = pair.verdict.answer == Answer::no && !pair.touching && !(a.continuous_speed > 0) &&
-                     !(b.continuous_speed > 0) && a.valid && b.valid && std::isfinite(pair.verdict.lower_bound);
+  const bool lasts = pair.verdict.answer == Answer::no && !pair.touching && !a.is_continuous() && !b.is_continuous() &&
+                     a.valid && b.valid && std::isfinite(pair.verdict.lower_bound);
   if (!lasts) return;
   const RelativePlacement now = relative_placement(known.pair);
   const double way = length(now.way);
@@ -190,8 +158,8 @@ void PairSkipper::keep_clearance(PairCache::Known& known, const CachedPair& pair
   const double reach = is_half_space(known.pair.b) ? std::numeric_limits<double>::infinity()
                                                    : world_.bodies.sphere_cache(known.pair.a).sphere.reach +
                                                          world_.bodies.sphere_cache(known.pair.b).sphere.reach;
-  if (dot(pair.apart.along, pair.apart.along) > 0 && std::isfinite(reach)) {
-    kept.along = rounded(pair.apart.along);
+  if (dot(pair.apart_along, pair.apart_along) > 0 && std::isfinite(reach)) {
+    kept.along = rounded(pair.apart_along);
     distance -= kRoundedToFloat * (way + reach);  // no two of their points are farther from each other
   }
   kept.distance = distance > 0 ? distance : 0;

@@ -12,16 +12,15 @@ class ActivePairs {
   std::size_t size() const noexcept { return active_.size(); }
   const BodyPair& pair(std::size_t i) const noexcept { return cache_->pair(active_[i]); }
   PairCache::Known& known(std::size_t i) const noexcept { return cache_->known(active_[i]); }
-  // Precondition: PairMatcher::cached() has begun it.
   CachedPair& cached(std::size_t i) const noexcept { return (*cache_)[known(i).record]; }
   // Whether a certain "no" at the next step would change what is remembered, or the pair's end would be noticed.
   void tell(std::size_t i, bool busy) const noexcept { cache_->tell(active_[i], busy); }
-  // For loops that end at `end`: what the next ones need is on its way from memory.
-  ORCHARD_INLINE void prefetch(std::size_t i, std::size_t end) const noexcept {
+  // For loops: what the next ones need is on its way from memory.
+  ORCHARD_INLINE void prefetch(std::size_t i) const noexcept {
     constexpr std::size_t kKnown = 12, kCached = 8, kBodies = 6;  // places ahead
-    if (i + kKnown < end) cache_->prefetch_known(active_[i + kKnown]);
-    if (i + kCached < end) prefetch_all(cached(i + kCached));
-    if (i + kBodies < end) places_->prefetch_bodies(pair(i + kBodies));
+    if (i + kKnown < size()) cache_->prefetch_known(active_[i + kKnown]);
+    if (i + kCached < size()) prefetch_all(cached(i + kCached));
+    if (i + kBodies < size()) places_->prefetch_bodies(pair(i + kBodies));
   }
 
  private:
@@ -39,8 +38,7 @@ class PairSkipper {
   // All pairs but those of the first two kinds. Valid until the next call.
   ActivePairs find_active(PairCache& cache);
   // Of an active pair, whether it is of no third kind either. `interrupted`: the broad phase was at the step before.
-  // `over`: it touched, and has been teleported since.
-  bool needs_answer(CachedPair& pair, Step step, bool interrupted, bool& over) const noexcept;
+  bool needs_answer(CachedPair& pair, Step step, bool interrupted) const noexcept;
   // After an answer: how far the two may move before they have to be asked about again.
   void keep_clearance(PairCache::Known& known, const CachedPair& pair) const noexcept;
   std::size_t memory_bytes() const noexcept { return bytes_of(active_, active_of_job_); }
@@ -50,9 +48,7 @@ class PairSkipper {
   bool moved_less_than_gap(const PairCache::Known& known) const noexcept;
   bool sphere_above(const BodyPair& pair) const noexcept;
   bool rest(const CachedPair& pair) const noexcept;
-  template <bool kParts>
-  std::size_t find_near_spheres(const PairCache& cache, std::size_t begin, std::size_t end,
-                                std::uint32_t* near) const noexcept;
+  bool parts_apart(const BodyPair& pair) const noexcept;
   std::size_t find_near(PairCache& cache, std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept;
 
   const World& world_;

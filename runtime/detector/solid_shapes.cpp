@@ -6,15 +6,6 @@
 namespace orchard::runtime::detail {
 namespace {
 
-Vec3 into(const Pose& pose, const Vec3& v) noexcept {  // a vector in the shape's coordinates
-  const auto& r = pose.rotation;
-  const double shrink = 1 / pose.scale;
-  return {shrink * (r[0] * v[0] + r[3] * v[1] + r[6] * v[2]), shrink * (r[1] * v[0] + r[4] * v[1] + r[7] * v[2]),
-          shrink * (r[2] * v[0] + r[5] * v[1] + r[8] * v[2])};
-}
-
-Vec3 point_into(const Pose& pose, const Vec3& p) noexcept { return into(pose, p - Vec3(pose.translation)); }
-
 // The smaller root of a t^2 + 2 b t + c, if it is not below 0; else infinite.
 double first_root(double a, double b, double c) noexcept {
   const double h = b * b - a * c;
@@ -45,7 +36,8 @@ double enters_capsule(const Vec3& p, const Vec3& q, double radius, const Vec3& o
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Pose& pose, const Ray& ray) noexcept {
   if (shape.kind == ShapeKind::tree) return cast_ray(shape.tree, pose, ray.origin, ray.direction, ray.longest);
-  const Vec3 origin = point_into(pose, ray.origin), way = into(pose, ray.direction);
+  const Pose back = inverse(pose);
+  const Vec3 origin = transform(back, ray.origin), way = back.scale * Vec3(rotate(back, ray.direction));
   const double along = shape.kind == ShapeKind::box ? enters_box(-shape.p, shape.p, origin, way, kInfinity)
                                                     : enters_capsule(shape.p, shape.q, shape.radius, origin, way);
   if (!(along <= ray.longest) || along == kInfinity) return std::nullopt;
@@ -61,7 +53,7 @@ std::optional<RayHit> cast_ray(const HalfSpace& half, const Ray& ray) noexcept {
 
 SurfacePoint nearest_point(const Shape& shape, const Pose& pose, const Vec3& point, double limit) noexcept {
   if (shape.kind == ShapeKind::tree) return nearest_point(shape.tree, pose, point, limit);
-  const Vec3 at = point_into(pose, point);
+  const Vec3 at = transform(inverse(pose), point);
   Vec3 near = at;
   if (shape.kind == ShapeKind::box) {
     for (std::size_t i = 0; i < 3; ++i) near[i] = std::clamp(at[i], -shape.p[i], shape.p[i]);

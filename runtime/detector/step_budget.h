@@ -49,8 +49,9 @@ class WorkLeft {
     std::uint64_t work = 0;
     std::chrono::nanoseconds time{};
   };
-  Part half() const noexcept {
-    return {limited_ ? left_ / 2 : 0, timed_ ? time_left() / 2 : std::chrono::nanoseconds{}};
+  Part part(std::uint64_t among) const noexcept {
+    return {limited_ ? left_ / among : 0,
+            timed_ ? time_left() / static_cast<std::int64_t>(among) : std::chrono::nanoseconds{}};
   }
   void set_aside(const Part& part) noexcept {
     left_ -= part.work;

@@ -34,86 +34,66 @@ Travel travel_of(const PlacedPart& from, const PlacedPart& to) noexcept {
   return travel_between(from.pose(), to.pose(), from.shape->center);
 }
 
+// What is known at the time of an impact.
+Verdict touch_at(Workspace& workspace, const PartPair& pair, const Impact& impact, std::uint64_t most,
+                 std::uint64_t& work) noexcept {
+  Verdict verdict;
+  if (work < most) verdict = answer_exactly(query_of(workspace.narrow), pair, work, most);
+  if (verdict.answer == Answer::yes) return verdict;
+  // Rounding, or the end of the budget: what the search knows of the place.
+  const Vec3 way = Vec3(impact.on_b) - Vec3(impact.on_a);
+  const double size = length(way);
+  verdict = {};
+  verdict.answer = Answer::yes;
+  verdict.separation_bound = 0;
+  verdict.contact.center = impact.on_a;
+  verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
+  verdict.contact.triangle_a = impact.triangle_a;
+  verdict.contact.triangle_b = impact.triangle_b;
+  return verdict;
+}
+
 // Two shapes that have, or are around, trees.
-class PairSweep {
- public:
-  PairSweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
-            std::uint64_t& work) noexcept
-      : workspace_(workspace),
-        from_(from),
-        most_(most),
-        work_(work),
-        a_(travel_of(from.a, to.a)),
-        b_(travel_of(from.b, to.b)),
-        pair_(from.a.shape->prepared, from.b.shape->prepared) {}
-
-  Swept run() noexcept {
-    const double speed = speed_of(a_, from_.a.reach) + speed_of(b_, from_.b.reach);
-    if (speed == 0 || starts_inside()) return result_;
-    ImpactOptions options;
-    options.margin = margin_of(from_.a) + margin_of(from_.b);
-    const auto [smaller, larger] = std::minmax(from_.a.reach, from_.b.reach);
-    options.tolerance = kCloseness * (smaller > 0 ? smaller : larger);
-    double skip = std::clamp(kSkip * options.tolerance / speed, kMinSkip, kMaxSkip);
-    result_.answer = Answer::maybe;
-    for (bool certain = true; work_ < most_; certain = false, skip *= kSkipGrowth) {
-      work_ += kPairWork;
-      options.budget.work = most_ - std::min(work_, most_);
-      const Impact impact = time_of_impact(workspace_, pair_, a_, b_, options);
-      work_ += impact.work;
-      if (certain) result_.from = impact.t0;
-      if (impact.answer == Answer::yes) return touch(impact), result_;
-      if (impact.answer == Answer::no) {
-        if (certain) result_.answer = Answer::no;
-        return result_;
-      }
-      // So near that rounding decides; later they may be nearer still.
-      options.begin = impact.t0 + skip;
-      if (!impact.finished || impact.refused || !(options.begin < options.end)) return result_;
-    }
-    return result_;
-  }
-
- private:
+Swept sweep_trees(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
+                  std::uint64_t& work) noexcept {
+  Swept result;
+  const Travel a = travel_of(from.a, to.a), b = travel_of(from.b, to.b);
+  const double speed = speed_of(a, from.a.reach) + speed_of(b, from.b.reach);
+  if (speed == 0) return result;
   // A box is solid, and what lies wholly in it touches it although the surfaces are apart.
-  bool starts_inside() noexcept {
-    if (from_.a.shape->kind != ShapeKind::box && from_.b.shape->kind != ShapeKind::box) return false;
-    const Verdict verdict = answer_exactly(query_of(workspace_.narrow), from_, work_, most_);
-    if (verdict.answer == Answer::no) return false;
-    result_.answer = verdict.answer;
-    result_.to = 0;
-    result_.verdict = verdict;
-    return true;
+  if (from.a.shape->kind == ShapeKind::box || from.b.shape->kind == ShapeKind::box) {
+    result.verdict = answer_exactly(query_of(workspace.narrow), from, work, most);
+    result.answer = result.verdict.answer;
+    if (result.answer != Answer::no) return result.to = 0, result;
   }
-
-  void touch(const Impact& impact) noexcept {
-    PartPair now = from_;
-    now.a.move_to(a_.at(impact.t1)), now.b.move_to(b_.at(impact.t1));
-    result_.answer = Answer::yes;
-    result_.to = impact.t1;
-    result_.verdict =
-        work_ < most_ ? answer_exactly(query_of(workspace_.narrow), now, work_, most_) : unknown_verdict();
-    if (result_.verdict.answer == Answer::yes) return;
-    // Rounding, or the end of the budget: what the search knows of the place.
-    const Vec3 way = Vec3(impact.on_b) - Vec3(impact.on_a);
-    const double size = length(way);
-    result_.verdict = Verdict{};
-    result_.verdict.answer = Answer::yes;
-    result_.verdict.separation_bound = 0;
-    result_.verdict.contact.center = impact.on_a;
-    result_.verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
-    result_.verdict.contact.triangle_a = impact.triangle_a;
-    result_.verdict.contact.triangle_b = impact.triangle_b;
+  ImpactOptions options;
+  options.margin = margin_of(from.a) + margin_of(from.b);
+  const auto [smaller, larger] = std::minmax(from.a.reach, from.b.reach);
+  options.tolerance = kCloseness * (smaller > 0 ? smaller : larger);
+  double skip = std::clamp(kSkip * options.tolerance / speed, kMinSkip, kMaxSkip);
+  const TreePair pair(from.a.shape->prepared, from.b.shape->prepared);
+  result.answer = Answer::maybe;
+  for (bool certain = true; work < most; certain = false, skip *= kSkipGrowth) {
+    work += kPairWork;
+    options.budget.work = most - std::min(work, most);
+    const Impact impact = time_of_impact(workspace, pair, a, b, options);
+    work += impact.work;
+    if (certain) result.from = impact.t0;
+    if (impact.answer == Answer::yes) {
+      PartPair now = from;
+      now.a.move_to(a.at(impact.t1)), now.b.move_to(b.at(impact.t1));
+      result.answer = Answer::yes;
+      result.to = impact.t1;
+      result.verdict = touch_at(workspace, now, impact, most, work);
+      return result;
+    }
+    if (impact.answer == Answer::no && certain) result.answer = Answer::no;
+    // So near that rounding decides; later they may be nearer still.
+    options.begin = impact.t0 + skip;
+    if (impact.answer == Answer::no || !impact.finished || impact.refused || !(options.begin < options.end)) break;
   }
-
-  Workspace& workspace_;
-  const PartPair& from_;
-  std::uint64_t most_;
-  std::uint64_t& work_;
-  Travel a_, b_;
-  TreePair pair_;
-  Swept result_;
-};
+  return result;
+}
 
 // The height over the plane shrinks no faster than the centre sinks, and what turns about it.
 Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
@@ -169,7 +149,7 @@ Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std:
     unknown.answer = Answer::maybe;
     return unknown;
   }
-  return half ? sweep_to_half_space(workspace, from, to, most, work) : PairSweep(workspace, from, to, most, work).run();
+  return half ? sweep_to_half_space(workspace, from, to, most, work) : sweep_trees(workspace, from, to, most, work);
 }
 
 }  // namespace orchard::runtime::detail

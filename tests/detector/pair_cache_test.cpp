@@ -59,8 +59,7 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
       for (const BodyPair& pair : now) expected.try_emplace(pair, ModelPair{generation_of(pair)});
       const std::vector<BodyPair> pairs(now.begin(), now.end());
       table.match(
-          pairs, [&](const BodyPair& pair) { return replaced.contains(pair.a) || replaced.contains(pair.b); },
-          [&](const PairCache::Known& known) { return known.generations == generation_of(known.pair); },
+          pairs, [&](std::size_t place) { return table.known(place).generations == generation_of(table.pair(place)); },
           [&](const PairCache::Known& known) {
             gone.push_back(known.pair);
             EXPECT_EQ(known.clearance.changes, model[known.pair].mark);
@@ -87,8 +86,8 @@ TEST(PairCache, RemembersOfEachPairWhatAMapWould) {
         }
         if (!known.record && draw.bits() % 2 == 0) {
           table.take(place);
-          ASSERT_FALSE(table.is_begun(of));
-          ASSERT_EQ(table.begin(of).answered, -1);
+          ASSERT_EQ(table[of.record].answered, -1);
+          ASSERT_EQ(table[of.record].turn.waited, 0u);
           known.record = true;
         }
         known.mark = of.clearance.changes = ++marks;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "detector/static_spheres.h"
+#include "detector/sphere_tree.h"
 #include "orchard/runtime/detector.h"
 #include "runtime/numbers.h"
 #include "support.h"
@@ -17,74 +17,49 @@ using Touching = std::set<std::pair<std::size_t, std::size_t>>;
 
 using test::kStep;
 
-// Sizes from crumbs to what holds all others, some in one place, and some that are nowhere in particular.
-detail::FloatSphere drawn_sphere(Draw& draw) {
+// Sizes from crumbs to what holds all others, some in one place, and some that may be anywhere.
+detail::BoundingSphere drawn_sphere(Draw& draw) {
   if (draw.uniform(0, 1) < 0.01) return {};
-  const Vec3 at = draw.uniform(0, 10) * Vec3(draw.direction());
-  const double radius = std::exp(draw.uniform(-6, draw.uniform(0, 1) < 0.1 ? 2 : 0));
   const bool coarse = draw.uniform(0, 1) < 0.2;
-  const auto rounded = [coarse](double x) { return static_cast<float>(coarse ? std::round(x / 4) * 4 : x); };
-  return {rounded(at[0]), rounded(at[1]), rounded(at[2]), static_cast<float>(radius)};
+  Vec3 at = draw.uniform(0, 10) * Vec3(draw.direction());
+  for (double& x : at) x = coarse ? std::round(x / 4) * 4 : x;
+  return {at, std::exp(draw.uniform(-6, draw.uniform(0, 1) < 0.1 ? 2 : 0))};
 }
 
-// How far apart, relative to the sum of the radii, in the squares that are compared.
-double excess(const detail::FloatSphere& a, const detail::FloatSphere& b) {
-  const double x = double{b.x} - a.x, y = double{b.y} - a.y, z = double{b.z} - a.z, reach = double{b.radius} + a.radius;
-  return std::isinf(reach) ? -1 : (x * x + y * y + z * z) / (reach * reach) - 1;
-}
-
-TEST(StaticSpheres, FindWhatAScanFindsWhateverHasChanged) {
-  std::size_t found_at_all = 0;
+// Whatever the leaves, those near a sphere have all that touch it, and few others.
+TEST(SphereTree, FindsWhatAScanFinds) {
+  std::size_t touching = 0, offered = 0, all = 0;
   const std::uint64_t first = orchard::test::first_seed(), count = 30 * orchard::test::more();
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     Draw draw(seed);
-    const auto bodies = static_cast<std::size_t>(std::exp(draw.uniform(0, seed % 10 == 0 ? 10 : 6)));
-    std::vector<std::vector<detail::FloatSphere>> now(bodies);
-    detail::StaticSpheres spheres;
-    const auto put = [&](BodyIndex body) {
-      now[body].clear();
-      for (int k = static_cast<int>(draw.uniform(1, 4)); k > 0; --k) now[body].push_back(drawn_sphere(draw));
-      spheres.put(body, now[body]);
-    };
-    for (BodyIndex body = 0; body < bodies; ++body) put(body);
+    const auto bodies = static_cast<BodyIndex>(std::exp(draw.uniform(0, seed % 10 == 0 ? 10 : 6)));
+    std::vector<detail::BoundingSphere> spheres(bodies);
+    detail::SphereTree tree;
+    for (BodyIndex body = 0; body < bodies; ++body) tree.add(spheres[body] = drawn_sphere(draw), body, body % 3);
+    tree.build(static_cast<std::uint32_t>(draw.uniform(1, 40)));
+    ASSERT_EQ(tree.parts().size(), bodies);
     for (int round = 0; round < 20; ++round) {
-      spheres.prepare();
-      const detail::FloatSphere sphere = drawn_sphere(draw);
-      std::vector<BodyIndex> touching;
-      spheres.append_touching(sphere, touching);
-      const std::set<BodyIndex> found(touching.begin(), touching.end());
-      found_at_all += found.size();
+      const Vec3 center = draw.uniform(0, 10) * Vec3(draw.direction());
+      const double radius = std::exp(draw.uniform(-4, 1));
+      std::set<BodyIndex> found;
+      tree.walk([&](const Vec3& low, const Vec3& high) { return detail::square_to_box(low, high, center); },
+                [&] { return radius * radius; },
+                [&](std::uint32_t begin, std::uint32_t end) {
+                  for (std::uint32_t i = begin; i < end; ++i) {
+                    EXPECT_EQ(tree.parts()[i].part, tree.parts()[i].body % 3);
+                    EXPECT_TRUE(found.insert(tree.parts()[i].body).second) << seed;
+                  }
+                });
+      all += bodies, offered += found.size();
       for (BodyIndex body = 0; body < bodies; ++body) {
-        double least = 1;
-        for (const auto& other : now[body]) least = std::min(least, excess(sphere, other));
-        if (std::fabs(least) > 1e-5) {
-          EXPECT_EQ(found.contains(body), least < 0) << seed << ' ' << body;
-        }
-      }
-      const auto changes = static_cast<std::size_t>(draw.uniform(0, round % 5 == 0 ? static_cast<double>(bodies) : 5));
-      for (std::size_t k = 0; k < changes; ++k) {
-        const auto body = static_cast<BodyIndex>(draw.uniform(0, static_cast<double>(bodies)));
-        if (draw.uniform(0, 1) < 0.3) {
-          now[body].clear();
-          spheres.take_away(body);
-        } else {
-          put(body);
-        }
+        if (!(length(spheres[body].center - center) <= spheres[body].reach + radius)) continue;
+        ++touching;
+        EXPECT_TRUE(found.contains(body)) << seed << ' ' << body;
       }
     }
   }
-  EXPECT_GT(found_at_all, 1000u);
-}
-
-// A body that changes all the time keeps no more memory than that of twice as many.
-TEST(StaticSpheres, ForgetWhereBodiesHaveBeen) {
-  Draw draw(1);
-  detail::StaticSpheres spheres;
-  for (int k = 0; k < 100'000; ++k) {
-    const detail::FloatSphere sphere = drawn_sphere(draw);
-    spheres.put(static_cast<BodyIndex>(k % 100), {&sphere, 1});
-  }
-  EXPECT_LT(spheres.size(), 1000u);
+  EXPECT_GT(touching, 1000u);
+  EXPECT_LT(offered, all / 2);
 }
 
 // What a body is in the world, and who it is for the judge.
@@ -164,7 +139,8 @@ class Factory {
       if (!allowed(pair)) continue;
       ++touching;
       const bool told = named.contains(pair) && (budget.work < kWholeStep || yes.contains(pair) || any_bullet_);
-      EXPECT_TRUE(told || frame.incomplete_from != kNoClass) << step << ": " << pair.first << ' ' << pair.second;
+      EXPECT_TRUE(told || frame.unfinished.incomplete_from != kNoClass)
+          << step << ": " << pair.first << ' ' << pair.second;
     }
   }
   std::size_t touching = 0;

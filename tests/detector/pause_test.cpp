@@ -96,8 +96,8 @@ TEST(Pauses, AreLeftOutWhereOnlyTheLatestStepIsWanted) {
       const double time = static_cast<double>(step) * kStep;
       const StepOptions latest_only{.latest_only = true};
       const Frame frame = world.step(time, {}, latest_only);
-      ASSERT_EQ(frame.skipped, static_cast<std::uint64_t>(pause - 1));
-      ASSERT_EQ(frame.steps_left, 0u);
+      ASSERT_EQ(frame.unfinished.skipped, static_cast<std::uint64_t>(pause - 1));
+      ASSERT_EQ(frame.unfinished.steps_left, 0u);
       ASSERT_LE(frame.steps, 1u);
       ASSERT_NEAR(frame.time, time, 1e-9);
       ASSERT_LE(frame.motions_asked, 4 * all.riders.size() * all.riders.size());
@@ -121,7 +121,7 @@ TEST(Pauses, OfNoLengthAreNothingSpecial) {
   for (int step = 0; step < 200; ++step) {
     const StepOptions latest_only{.latest_only = true};
     const Frame frame = latest.step(step * kStep, {}, latest_only), other = each.step(step * kStep);
-    ASSERT_EQ(frame.skipped, 0u);
+    ASSERT_EQ(frame.unfinished.skipped, 0u);
     ASSERT_EQ(frame.events.size(), other.events.size());
     ASSERT_EQ(frame.work, other.work);
   }
@@ -159,12 +159,12 @@ TEST(Pauses, GiveNoMoreEventsAtOnceThanTheOptionsSay) {
     Detector whole = same.detector({.watch = i % 2 == 0});
     const double time = 500 * kStep;
     const Frame expected = whole.step(time);
-    ASSERT_EQ(expected.steps_left, 0u);
+    ASSERT_EQ(expected.unfinished.steps_left, 0u);
     std::size_t next = 0, at_once = 0;
     std::uint32_t steps = 0;
     for (std::uint64_t left = 1; left > 0;) {
       const Frame frame = world.step(time);
-      left = frame.steps_left;
+      left = frame.unfinished.steps_left;
       ASSERT_TRUE(left == 0 || frame.events.size() >= most);
       steps += frame.steps;
       for (const PairEvent& event : frame.events) {
@@ -194,7 +194,7 @@ TEST(Pauses, TakeNoMoreMemoryThanTheOptionsSay) {
   std::size_t events = 0;
   for (int call = 0; call < 5; ++call) {
     const Frame frame = world.step(600);
-    left = frame.steps_left;
+    left = frame.unfinished.steps_left;
     events += frame.events.size();
   }
   EXPECT_GT(left, 0u);

@@ -129,7 +129,7 @@ TEST(Detector, WithinABudgetOnlySaysWhatIsTrue) {
         // Besides one unit that the broad phase gets in any case: a pair's two motions.
         EXPECT_LT(frame.work, work + kMaxOvershoot + 2 * kMotionWork) << c.scene->name;
         EXPECT_TRUE(without(without(answers.yes, truth.touching), truth.close).empty()) << c.scene->name;
-        if (frame.incomplete_from == kNoClass) {
+        if (frame.unfinished.incomplete_from == kNoClass) {
           Touching known = answers.yes;
           known.insert(answers.maybe.begin(), answers.maybe.end());
           ASSERT_TRUE(without(without(truth.touching, known), truth.close).empty())
@@ -159,7 +159,7 @@ TEST(Detector, AnswersAWholeAsteroidField) {
     EXPECT_LT(frame.work, work + kMaxOvershoot + 2 * kMotionWork);
     const Answers known = answers_of(within, frame);
     EXPECT_TRUE(without(known.yes, truth.touching).empty());
-    if (frame.incomplete_from == kNoClass) {
+    if (frame.unfinished.incomplete_from == kNoClass) {
       EXPECT_TRUE(without(without(truth.touching, known.yes), known.maybe).empty());
     }
   }
@@ -197,7 +197,7 @@ struct Load {
   void take(const Frame& frame) {
     pairs = std::max(pairs, frame.pairs);
     motions = std::max(motions, frame.motions_asked);
-    waiting = std::max(waiting, std::uint64_t{frame.left_over});
+    waiting = std::max(waiting, std::uint64_t{frame.unfinished.left_over});
   }
   bool is_within(const Load& other) const {
     return pairs <= other.pairs && motions <= other.motions && waiting <= other.waiting;

@@ -317,7 +317,7 @@ TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
     }
     const Frame frame = detector.step(step * kSweepStep, {.work = step < 2 ? 1 : Budget{}.work});
     if (step < 2) {
-      EXPECT_NE(frame.incomplete_from, kNoClass);
+      EXPECT_NE(frame.unfinished.incomplete_from, kNoClass);
       continue;
     }
     std::size_t told = 0;

@@ -92,7 +92,7 @@ int put_point(int found, const orchard_world_point& point, double* out) {
 
 }  // namespace
 
-// `row`: time step, start, position slack, watch, steps to end, most unfinished pairs, and events; a negative
+// `row`: time step, start, position slack, watch, steps to end, and most events; a negative
 // number keeps the default.
 ORCHARD_EXPORT(detector_new)
 orchard_detector* web_detector_new(std::uint32_t number, int has_source, const double* row) {
@@ -102,8 +102,7 @@ orchard_detector* web_detector_new(std::uint32_t number, int has_source, const d
   options.position_slack = row[2];
   options.watch = static_cast<int>(row[3]);
   if (row[4] >= 0) options.steps_to_end = static_cast<std::uint32_t>(row[4]);
-  if (row[5] >= 0) options.max_unfinished = static_cast<std::size_t>(row[5]);
-  if (row[6] >= 0) options.max_events = static_cast<std::size_t>(row[6]);
+  if (row[5] >= 0) options.max_events = static_cast<std::size_t>(row[5]);
   void* const context = reinterpret_cast<void*>(static_cast<std::uintptr_t>(number));
   return orchard_detector_new(has_source != 0 ? ask : nullptr, context, &options);
 }

@@ -23,7 +23,7 @@ export class Detector extends Owned {
     if (!(timeStep > 0) || ![timeStep, start, positionSlack].every(Number.isFinite)) {
       throw new RangeError("The options of the detector are not valid: the time step must be above 0, all of them finite.");
     }
-    const rest = [options.stepsToEnd, options.maxUnfinished, options.maxEvents];
+    const rest = [options.stepsToEnd, options.maxEvents];
     const number = source ? module.addSource(source) : 0;
     const watched = watch === undefined ? -1 : watch ? 1 : 0;
     const row = module.write([timeStep, start, positionSlack, watched], rest.map((value) => value ?? -1));

@@ -58,7 +58,6 @@ export interface DetectorOptions {
   /** Whether every step compares each moving body with its motion bounds; by default with a source only. */
   watch?: boolean;
   stepsToEnd?: number;
-  maxUnfinished?: number;
   /** A call of step() ends early once it has so many events. */
   maxEvents?: number;
 }

@@ -119,11 +119,8 @@ struct DetectorOptions {
   // The number of successive steps with a certain "no" after which a contact ends, at least 1. Raise it to debounce
   // pairs that jitter at contact.
   std::uint32_t steps_to_end = 1;
-  // The maximum number of pairs of trees whose interrupted searches are kept to be continued. Further pairs are
-  // reported as possible.
-  std::size_t max_unfinished = 4096;
   // A call of step() ends once it has at least this number of events, at least 1. So its memory does not grow with the
-  // length of a pause: see Frame::steps_left.
+  // length of a pause: see Unfinished::steps_left.
   std::size_t max_events = std::size_t{1} << 18;
   // Runs pairs, poses and events in parallel, and the broad phase's windows if many bodies are in pairs. Results are
   // the same with any executor. Sources and filters are always called in the thread that calls step().
@@ -136,8 +133,8 @@ struct DetectorOptions {
 // was not interrupted has kWholeStep.
 struct StepCut {
   std::uint64_t broad = kWholeStep;    // The broad phase: `replay` of BroadPhase::advance().
-  std::uint64_t begun = kWholeStep;    // The number of pairs of parts started and first searches made.
-  std::uint64_t refined = kWholeStep;  // The work of further searches, plus 1 for each piece of it.
+  std::uint64_t begun = kWholeStep;    // The number of pairs of parts started.
+  std::uint64_t refined = kWholeStep;  // The work of searches, plus 1 for each of them.
   std::uint64_t swept = kWholeStep;    // The number of pairs swept.
   friend bool operator==(const StepCut&, const StepCut&) = default;
 };
@@ -160,9 +157,9 @@ struct StepOptions {
   // After the same calls with the same states, the frame equals that of the other run. A replayed call answers at most
   // one step, and neither run may use an executor.
   const StepCut* replay = nullptr;
-  // Whether only the last step up to the given time is answered; use it after a pause. Frame::skipped counts the steps
-  // before it. Contacts that existed only at skipped steps are not reported, and sweeps of continuous bodies do not
-  // include them. Contacts that held before and hold now continue; other contacts end.
+  // Whether only the last step up to the given time is answered; use it after a pause. Unfinished::skipped counts the
+  // steps before it. Contacts that existed only at skipped steps are not reported, and sweeps of continuous bodies do
+  // not include them. Contacts that held before and hold now continue; other contacts end.
   bool latest_only = false;
 };
 
@@ -189,15 +186,21 @@ struct PairEvent {
   double impact_to = std::numeric_limits<double>::quiet_NaN();
 };
 
-// The result of step(). The spans are valid until the next call of a member that is not const.
-struct Frame {
-  double time = 0;          // The time of the last step that was answered.
-  double next_time = 0;     // Nothing can begin or end before this time; earlier calls are unnecessary.
-  std::uint32_t steps = 0;  // The steps answered in this call.
+// What a call of step() did not do.
+struct Unfinished {
   // The steps up to the given time that were not answered because DetectorOptions::max_events ended the call. Another
   // call with the same time continues.
   std::uint64_t steps_left = 0;
-  std::uint64_t skipped = 0;          // The steps left out by StepOptions::latest_only.
+  std::uint64_t skipped = 0;            // The steps left out by StepOptions::latest_only.
+  unsigned incomplete_from = kNoClass;  // Set if the broad phase was interrupted: see Advance.
+  std::size_t left_over = 0;            // Set if the broad phase was interrupted: see Advance.
+};
+
+// The result of step(). The spans are valid until the next call of a member that is not const.
+struct Frame {
+  double time = 0;                    // The time of the last step that was answered.
+  double next_time = 0;               // Nothing can begin or end before this time; earlier calls are unnecessary.
+  std::uint32_t steps = 0;            // The steps answered in this call.
   std::span<const PairEvent> events;  // Ordered by time, then by pair.
   std::uint64_t pairs = 0;            // The number of pairs of bodies whose spheres overlapped, summed over the steps.
   std::uint64_t certain = 0;          // The number of these pairs that have a certain answer.
@@ -205,8 +208,7 @@ struct Frame {
   double worst_bound = 0;             // The largest separation bound of the pairs without a certain answer.
   std::uint64_t work = 0;             // In units of Budget::work.
   std::uint64_t motions_asked = 0;    // Motions asked for; each costs kMotionWork.
-  unsigned incomplete_from = kNoClass;  // Set if the broad phase was interrupted: see Advance.
-  std::size_t left_over = 0;            // Set if the broad phase was interrupted: see Advance.
+  Unfinished unfinished{};
   // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its last
   // bounds still hold, in possible pairs.
   std::span<const BodyIndex> refused;

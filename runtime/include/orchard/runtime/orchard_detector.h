@@ -58,7 +58,6 @@ typedef struct orchard_detector_options {
    * silently if bounds are not kept. Below 0, the default: with a state source only. */
   int watch;
   uint32_t steps_to_end;
-  size_t max_unfinished;
   orchard_run_jobs run; /* Null: serial. */
   void* run_context;
   size_t concurrency;
