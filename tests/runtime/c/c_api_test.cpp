@@ -160,7 +160,7 @@ TEST(CInterface, HasContactsClearanceAndTimesOfImpact) {
   EXPECT_EQ(m.complete, 1);
   EXPECT_NEAR(m.normal[0], 1, 1e-9);
   EXPECT_NEAR(m.depth, 0.01, 1e-9);
-  EXPECT_LT(m.triangles[0][0], 12u);
+  EXPECT_LT(m.points[0].triangle_a, 12u);
   EXPECT_EQ(orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &far).answer, ORCHARD_NO);
   EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 3.9), 0);
   EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 4.1), 1);
@@ -292,6 +292,10 @@ TEST(CInterface, MeasuresManyPairsAsItMeasuresEach) {
                       distances.data());
   orchard_closer_than_all(workspaces, 3, &backward, first.data(), a.data(), second.data(), b.data(), 60, 1,
                           closer.data());
+  std::vector<int> serially(60);
+  orchard_closer_than_all(workspaces, 1, nullptr, first.data(), a.data(), second.data(), b.data(), 60, 1,
+                          serially.data());
+  EXPECT_EQ(serially, closer);
   orchard_pair* const pair = orchard_pair_new(cube.tree, ball.tree);
   for (std::size_t i = 0; i < 60; ++i) {
     const orchard_distance alone = orchard_measure(pair, &a[i], &b[i], 0.01);
@@ -343,13 +347,13 @@ TEST(CInterface, HasContactsBeforeBodiesTouchAndSignedDistancesOfPoints) {
   EXPECT_EQ(m.answer, ORCHARD_NO);
   ASSERT_EQ(m.count, 1u);
   EXPECT_NEAR(m.depth, -0.25, 1e-9);
-  EXPECT_EQ(m.depths[0], m.depth);
+  EXPECT_EQ(m.points[0].depth, m.depth);
   EXPECT_NEAR(m.normal[0], 1, 1e-9);
   apart.translation[0] = 0.75;
   m = orchard_contacts_within(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
   EXPECT_EQ(m.answer, ORCHARD_YES);
   ASSERT_GT(m.count, 0u);
-  for (std::uint32_t i = 0; i < m.count; ++i) EXPECT_LE(m.depths[i], m.depth);
+  for (std::uint32_t i = 0; i < m.count; ++i) EXPECT_LE(m.points[i].depth, m.depth);
   orchard_workspace_free(workspace);
   const double inside[3] = {0.5, 0.5, 0.9};
   double distance = 0, point[3], normal[3];

@@ -287,8 +287,8 @@ TEST(SelfCollision, LeavesOutWhatIsAllowedToTouch) {
   for (int i = 0; i < 4; ++i) rest[static_cast<std::size_t>(i)].translation = {1.95 * i, 0, 0};  // neighbours overlap
   EXPECT_EQ(arm.first(workspace, rest).answer, Answer::yes);
   arm.allow_touching(workspace, rest);
-  EXPECT_TRUE(arm.allowed.allowed(1, 2));
-  EXPECT_FALSE(arm.allowed.allowed(0, 2));
+  EXPECT_TRUE(arm.allows(1, 2));
+  EXPECT_FALSE(arm.allows(0, 2));
   EXPECT_EQ(arm.first(workspace, rest).answer, Answer::no);
   std::vector<Pose> curled = rest;
   curled[3].translation = {0.5, 0.05, 0};
@@ -302,7 +302,7 @@ TEST(SelfCollision, LeavesOutWhatIsAllowedToTouch) {
     return ++all, true;
   });
   EXPECT_EQ(all, 2);
-  arm.allowed.allow_all_of(3);
+  for (std::size_t part = 0; part < parts.size(); ++part) arm.allow(3, part);
   EXPECT_EQ(arm.first(workspace, curled).answer, Answer::no);
 }
 
