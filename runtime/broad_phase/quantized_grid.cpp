@@ -26,8 +26,8 @@ struct MotionColumns {
 struct PlainMotions {
   static constexpr std::size_t kLanes = 4;
   static constexpr bool kClips = true;  // boxes to the quantized grid; others tell that some do not lie in it
-  using Numbers = Plain<double, kLanes>;
-  using Mask = Numbers::Mask;
+  using Numbers = Several<double, kLanes>;
+  using Mask = decltype(Numbers{} < Numbers{});
   using Columns = MotionColumns<Numbers>;
   static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });

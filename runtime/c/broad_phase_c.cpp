@@ -3,9 +3,6 @@
 #include <array>
 
 #include "c/bodies_c.h"
-#include "c/orchard_c.h"
-#include "orchard/runtime/broad_queries.h"
-#include "orchard/runtime/orchard_broad_phase.h"
 
 namespace rt = orchard::runtime;
 

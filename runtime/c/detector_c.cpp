@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "c/bodies_c.h"
-#include "c/orchard_c.h"
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/orchard_detector.h"
 

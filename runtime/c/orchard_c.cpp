@@ -5,9 +5,6 @@
 #include <vector>
 
 #include "c/orchard_c.h"
-#include "orchard/runtime/collide.h"
-#include "orchard/runtime/packed_tree.h"
-#include "orchard/runtime/shape_query.h"
 
 namespace rt = orchard::runtime;
 
@@ -44,7 +41,7 @@ orchard_tree* opened(const char** error, const Load& load) noexcept {
     if (error != nullptr) *error = rt::message(status);
     return nullptr;
   }
-  const rt::TreeView& mapped = tree->mapped.view();
+  const rt::TreeView mapped = tree->mapped.view();
   tree->prepared = rt::PreparedTree(mapped.blocks.empty() ? rt::TreeView(tree->loaded) : mapped);
   return tree.release();
 }

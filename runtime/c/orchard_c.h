@@ -7,11 +7,8 @@
 #include <type_traits>
 
 #include "execution/guarded.h"
-#include "orchard/runtime/collide.h"
 #include "orchard/runtime/contacts.h"
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/orchard.h"
-#include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
 
@@ -74,11 +71,5 @@ inline Executor executor_of(const orchard_executor* from) noexcept {
 
 // 1, 0, or -1 for "maybe".
 inline int in_c(Answer answer) noexcept { return answer == Answer::yes ? 1 : answer == Answer::no ? 0 : -1; }
-
-// What `make` gives, or `otherwise` if there is no memory for it.
-template <typename Result, typename Make>
-Result made_or(Result otherwise, Make&& make) noexcept {
-  return guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
-}
 
 }  // namespace orchard::runtime::detail

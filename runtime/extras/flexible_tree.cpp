@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "math/vector_functions.h"
 #include "tree/tree_nodes.h"
 
 namespace orchard::runtime {
@@ -56,8 +57,7 @@ void FlexibleTree::enlarge_permanently() {
     block.depth[lane] = raised(block.depth[lane], largest_);
   });
   for (const auto& v : tree_.vertices) reach = std::max(reach, length(Vec3(v[0], v[1], v[2]) - root_center));
-  const double root_radius = (reach + largest_) * (1 + 1e-14);
-  tree_.blocks[0].radius[0] = std::nextafter(static_cast<float>(root_radius), kMaxFloat);
+  tree_.blocks[0].radius[0] = detail::stored_above(reach + largest_);
   tree_.blocks[0].error[0] = raised(tree_.blocks[0].error[0], double{tree_.blocks[0].radius[0]} - double{root_before});
   for (std::uint32_t i = 0; i < tree_.supports.size(); ++i) {
     tree_.supports[i] = raised(tree_.supports[i], largest_ * length(support_direction(i)));

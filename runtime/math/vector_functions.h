@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "math/exact_sign.h"
 
@@ -16,6 +17,11 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
 // a + t d.
 inline Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
   return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
+}
+
+// A float that is at least `value`, rounding of a few operations in double included.
+inline float stored_above(double value) noexcept {
+  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
 // As std::ilogb and std::ldexp, which the sizes that occur need no call for.

@@ -176,14 +176,14 @@ class Recorder {
   void closer_than() {
     const Question q = question();
     const double margin = draws_.uniform(0, 1);
-    const int closer = orchard_closer_than(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], margin);
+    const int closer =
+        orchard_closer_than(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], margin, nullptr);
     Row answers;
     recording_.add(Kind::closer_than, arguments(q).add_all(margin), answers.add_all(closer));
   }
   void contacts() {
     const Question q = question();
-    const orchard_manifold m =
-        orchard_contacts_within(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], 0.05);
+    const orchard_manifold m = orchard_contacts(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], 0.05);
     Row answers;
     answers.add_all(m.answer, m.count).add(m.normal, 3);
     answers.add_all(m.depth, m.error, m.complete);

@@ -13,8 +13,8 @@ namespace {
 constexpr float kFar = 4e18f;  // x of unused lanes: keeps them out of min_excess unless bodies are as large
 
 struct PlainKind {
-  using Floats = Plain<float, kBlockWidth>;
-  using Words = Plain<std::uint32_t, kBlockWidth>;
+  using Floats = Several<float, kBlockWidth>;
+  using Words = Several<std::uint32_t, kBlockWidth>;
   static Words words(const Words& mask) noexcept { return mask; }
   static std::uint64_t low_bytes(const Words& w) noexcept {
     std::uint64_t bytes = 0;

@@ -168,14 +168,10 @@ orchard_tree* orchard_hull_tree(const double* points, size_t count);
 orchard_workspace* orchard_workspace_new(void);
 void orchard_workspace_free(orchard_workspace* workspace); /* The workspace may be null. */
 
-/* Returns whether the surfaces are within `margin` of each other: 1 yes, 0 no, -1 not known. */
+/* Returns whether the surfaces are within `margin` of each other: 1 yes, 0 no, -1 not known. Unless `points` is null,
+ * it receives for 1 a point of each surface, at most `margin` apart, which costs a distance query. */
 int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                        const orchard_tree* b, const orchard_pose* pose_b, double margin);
-
-/* Does the same and, for 1, also stores a point of each surface, at most `margin` apart. */
-int orchard_closer_with_points(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                               const orchard_tree* b, const orchard_pose* pose_b, double margin,
-                               orchard_distance* distance);
+                        const orchard_tree* b, const orchard_pose* pose_b, double margin, orchard_distance* points);
 
 typedef struct orchard_contact_point {
   double place[3];
@@ -191,13 +187,10 @@ typedef struct orchard_manifold {
   double error;     /* For maybe: the radius of a ball around the only point, which is a guess. */
   bool complete;
 } orchard_manifold;
+/* Returns where two bodies touch. Surfaces that do not touch and are at most `margin` apart, if it is above 0, have a
+ * point, too: the answer is then "no", and the depth is minus the distance. */
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                                  const orchard_tree* b, const orchard_pose* pose_b);
-/* Does the same, and returns a point also for surfaces that do not touch and are at most `margin` apart: the answer is
- * then "no", and the depth is minus the distance. */
-orchard_manifold orchard_contacts_within(orchard_workspace* workspace, const orchard_tree* a,
-                                         const orchard_pose* pose_a, const orchard_tree* b, const orchard_pose* pose_b,
-                                         double margin);
+                                  const orchard_tree* b, const orchard_pose* pose_b, double margin);
 
 typedef struct orchard_signed_distance {
   double lower, upper; /* lower <= distance <= upper; minus the manifold's depth where the surfaces meet. */
@@ -247,20 +240,23 @@ orchard_verdict orchard_collide_again(orchard_pair* pair, const orchard_pose* a,
 void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const double* origins,
                        const double* directions, double longest, size_t count, int* hit, double* along);
 
-/* Answers pairs in one call: pair i is a[i] at poses_a[i] and b[i] at poses_b[i]. There is one workspace for each job
- * that may run at once, at least one. Answers do not depend on their number. The executor may be null: no jobs. */
-void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts);
-/* These functions do the same for orchard_measure(), and for orchard_closer_than() with one margin: closer[i] is 1, 0
- * or -1. */
-void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances);
-void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t workspace_count,
-                             const orchard_executor* executor, const orchard_tree* const* a,
-                             const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
-                             size_t count, double margin, int* closer);
+/* Many pairs: pair i is a[i] at poses_a[i] and b[i] at poses_b[i]. There is one workspace for each job that may run at
+ * once, at least one. Answers do not depend on their number. The executor may be null: one pair after the other. */
+typedef struct orchard_batch {
+  const orchard_tree* const* a;
+  const orchard_pose* poses_a;
+  const orchard_tree* const* b;
+  const orchard_pose* poses_b;
+  size_t count;
+  orchard_workspace* const* workspaces;
+  size_t workspace_count;
+  const orchard_executor* executor;
+} orchard_batch;
+/* These functions answer all pairs as orchard_collide() without limits, orchard_measure() and orchard_closer_than() do:
+ * closer[i] is 1, 0 or -1. */
+void orchard_collide_all(const orchard_batch* batch, orchard_verdict* verdicts);
+void orchard_measure_all(const orchard_batch* batch, double tolerance, orchard_distance* distances);
+void orchard_closer_than_all(const orchard_batch* batch, double margin, int* closer);
 
 /* Finds whether a robot touches itself or its surroundings. Parts 0 .. count - 1 have a tree each. Pairs that may
  * touch are not tested; at first there are none. An object belongs to one thread at a time; queries allocate nothing.
