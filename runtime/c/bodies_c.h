@@ -34,7 +34,7 @@ void ask_in_c(Source source, void* context, double time, std::span<const BodyInd
   for (std::size_t done = 0; done < bodies.size(); done += answers.size()) {
     const std::size_t count = std::min(answers.size(), bodies.size() - done);
     source(context, time, bodies.data() + done, count, answers.data());
-    std::transform(answers.begin(), answers.begin() + count, results.begin() + done, convert);
+    std::transform(answers.begin(), answers.begin() + count, results.data() + done, convert);
   }
 }
 
