@@ -36,11 +36,11 @@ int main(int argc, char** argv) {
   const std::vector<PreparedTree> links(kLinks, PreparedTree(link));
   SelfCollision arm(links);
   Workspace workspace;
-  for (std::size_t i = 0; i + 1 < kLinks; ++i) arm.allowed.allow(i, i + 1);  // neighbours share a joint
+  for (std::size_t i = 0; i + 1 < kLinks; ++i) arm.allow(i, i + 1);  // neighbours share a joint
   arm.allow_touching(workspace, rest);
   std::size_t checked = 0;
   for (std::size_t a = 0; a < kLinks; ++a) {
-    for (std::size_t b = a + 1; b < kLinks; ++b) checked += !arm.allowed.allowed(a, b);
+    for (std::size_t b = a + 1; b < kLinks; ++b) checked += !arm.allows(a, b);
   }
   std::printf("%zu of %zu pairs of links are checked\n", checked, kLinks * (kLinks - 1) / 2);
 

@@ -1,9 +1,12 @@
 #pragma once
-#include "execution/guarded.h"
+#include <algorithm>
+#include <span>
+
+#include "c/orchard_c.h"
 #include "orchard/runtime/broad_queries.h"
 #include "orchard/runtime/orchard_broad_phase.h"
 
-// Bodies and their filters, which the C interfaces of the broad phase and of the detector share.
+// Bodies, their filters and callbacks, which the C interfaces of the broad phase and of the detector share.
 namespace orchard::runtime::detail {
 
 inline BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
@@ -12,11 +15,10 @@ inline constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 
 // Without a filter: the default one.
 inline BodyFilter filter_of(const orchard_body_filter* from) noexcept {
-  return from == nullptr ? BodyFilter{}
-                         : BodyFilter{from->category, from->mask, from->group, from->ignores_static != 0};
+  return from == nullptr ? BodyFilter{} : converted<BodyFilter>(*from);
 }
 inline QueryFilter filter_of(const orchard_query_filter* from) noexcept {
-  return from == nullptr ? QueryFilter{} : QueryFilter{from->category, from->mask};
+  return from == nullptr ? QueryFilter{} : converted<QueryFilter>(*from);
 }
 
 inline PairFilter filter_of(orchard_pair_filter filter, void* context) {
@@ -24,10 +26,16 @@ inline PairFilter filter_of(orchard_pair_filter filter, void* context) {
   return [filter, context](BodyId a, BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
 }
 
-// What `make` gives, or `otherwise` if there is no memory for it.
-template <typename Result, typename Make>
-Result made_or(Result otherwise, Make&& make) noexcept {
-  return guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
+// Fills `results` by a source in C, a few at a time, each by convert(answer).
+template <typename InC, typename Source, typename Result, typename Convert>
+void ask_in_c(Source source, void* context, double time, std::span<const BodyIndex> bodies, std::span<Result> results,
+              const Convert& convert) {
+  std::array<InC, 64> answers;
+  for (std::size_t done = 0; done < bodies.size(); done += answers.size()) {
+    const std::size_t count = std::min(answers.size(), bodies.size() - done);
+    source(context, time, bodies.data() + done, count, answers.data());
+    std::transform(answers.begin(), answers.begin() + count, results.data() + done, convert);
+  }
 }
 
 // 1 if a change has been made, else 0.

@@ -3,9 +3,6 @@
 #include <array>
 
 #include "c/bodies_c.h"
-#include "c/orchard_c.h"
-#include "orchard/runtime/broad_queries.h"
-#include "orchard/runtime/orchard_broad_phase.h"
 
 namespace rt = orchard::runtime;
 
@@ -20,20 +17,13 @@ namespace {
 
 using namespace rt::detail;
 
-// They are alike in both languages, number by number.
-rt::Motion motion_of(const orchard_motion& from) noexcept { return std::bit_cast<rt::Motion>(from); }
-orchard_motion motion_in_c(const rt::Motion& from) noexcept { return std::bit_cast<orchard_motion>(from); }
+static_assert(sizeof(orchard_motion) == sizeof(rt::Motion));
+rt::Motion motion_of(const orchard_motion& from) noexcept { return converted<rt::Motion>(from); }
 
 rt::MotionSource source_of(orchard_motion_source source, void* context) {
   if (source == nullptr) return {};
   return [source, context](double time, std::span<const rt::BodyIndex> bodies, std::span<rt::Motion> motions) {
-    std::array<orchard_motion, 64> answers;
-    for (std::size_t done = 0; done < bodies.size();) {
-      const std::size_t count = std::min(answers.size(), bodies.size() - done);
-      source(context, time, bodies.data() + done, count, answers.data());
-      for (std::size_t i = 0; i < count; ++i) motions[done + i] = motion_of(answers[i]);
-      done += count;
-    }
+    ask_in_c<orchard_motion>(source, context, time, bodies, motions, motion_of);
   };
 }
 
@@ -41,64 +31,50 @@ rt::MotionBoundViolationListener listener_of(orchard_motion_bound_listener liste
   if (listener == nullptr) return {};
   return [listener, context](const rt::MotionBoundViolation& broken) {
     const rt::MotionBoundExcess& by = broken.by;
-    orchard_motion_bound_violation in_c{};
-    in_c.body = body_of(broken.body);
-    in_c.bound_time = broken.bound_time, in_c.time = broken.time;
-    in_c.bound = motion_in_c(broken.bound), in_c.given = motion_in_c(broken.given);
-    in_c.position = by.position, in_c.side = by.side, in_c.velocity = by.velocity, in_c.turn = by.turn;
-    in_c.radius = by.radius;
-    listener(context, &in_c);
+    const orchard_motion_bound_violation violation = {body_of(broken.body),
+                                                      broken.bound_time,
+                                                      broken.time,
+                                                      converted<orchard_motion>(broken.bound),
+                                                      converted<orchard_motion>(broken.given),
+                                                      by.position,
+                                                      by.side,
+                                                      by.velocity,
+                                                      by.turn,
+                                                      by.radius};
+    listener(context, &violation);
   };
 }
-
-// Indices one after the other.
-const std::uint32_t* indices_of(std::span<const rt::BodyPair> pairs) noexcept {
-  static_assert(sizeof(rt::BodyPair) == 2 * sizeof(std::uint32_t));
-  return pairs.empty() ? nullptr : &pairs.front().a;
-}
-
-int as_int(bool done) noexcept { return done ? 1 : 0; }
 
 template <typename Ask>
 int first(orchard_broad_phase* world, orchard_body_hit* hit, const Ask& ask) noexcept {
   return made_or(-1, [&] {
     const std::optional<rt::BodyHit> found = ask();
-    if (found && hit != nullptr) *hit = {found->body, found->along};
-    return world->queries.refused() ? -1 : as_int(found.has_value());
+    if (found && hit != nullptr) *hit = converted<orchard_body_hit>(*found);
+    return world->queries.refused() ? -1 : int{found.has_value()};
   });
 }
 
 // Those that ask() gives, as far as there is room.
-template <typename InC, typename Ask, typename Convert>
-std::size_t written(orchard_broad_phase* world, InC* to, std::size_t room, const Ask& ask,
-                    const Convert& convert) noexcept {
+template <typename InC, typename Ask>
+std::size_t written(orchard_broad_phase* world, InC* to, std::size_t room, const Ask& ask) noexcept {
   return made_or(std::size_t{ORCHARD_REFUSED}, [&]() -> std::size_t {
     const auto found = ask();
+    static_assert(sizeof(InC) == sizeof found[0]);
     if (world->queries.refused()) return ORCHARD_REFUSED;
-    for (std::size_t i = 0; i < std::min(room, found.size()); ++i) to[i] = convert(found[i]);
+    for (std::size_t i = 0; i < std::min(room, found.size()); ++i) to[i] = converted<InC>(found[i]);
     return found.size();
   });
 }
-
-orchard_body_hit hit_in_c(const rt::BodyHit& hit) noexcept { return {hit.body, hit.along}; }
-std::uint32_t same(rt::BodyIndex body) noexcept { return body; }
 
 }  // namespace
 
 extern "C" {
 
-orchard_motion orchard_default_motion(void) { return motion_in_c(rt::Motion{}); }
-orchard_body_filter orchard_default_filter(void) {
-  const rt::BodyFilter filter;
-  return {filter.category, filter.mask, filter.group, filter.ignores_static ? 1 : 0};
-}
+orchard_motion orchard_default_motion(void) { return converted<orchard_motion>(rt::Motion{}); }
+orchard_body_filter orchard_default_filter(void) { return converted<orchard_body_filter>(rt::BodyFilter{}); }
 orchard_broad_phase_options orchard_default_broad_phase(void) {
-  const rt::BroadPhaseOptions options;
-  orchard_broad_phase_options result{};
-  result.time_step = options.time_step, result.start = options.start;
-  result.window = options.window, result.position_slack = options.position_slack;
-  result.concurrency = 1;
-  return result;
+  const rt::BroadPhaseOptions o;
+  return {o.time_step, o.start, o.window, o.position_slack, o.validate, nullptr, nullptr, {nullptr, nullptr, 1}};
 }
 
 orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void* context,
@@ -110,15 +86,15 @@ orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void*
     options.time_step = with->time_step, options.start = with->start;
     options.window = with->window;
     options.position_slack = with->position_slack;
-    options.validate = with->validate != 0;
+    options.validate = with->validate;
     options.broken = listener_of(with->broken, with->broken_context);
-    options.executor = {with->run, with->run_context, with->concurrency};
+    options.executor = executor_of(&with->executor);
     return std::make_unique<orchard_broad_phase>(source_of(source, context), options).release();
   });
 }
 
 void orchard_broad_phase_free(orchard_broad_phase* world) { delete world; }
-int orchard_broad_phase_valid(const orchard_broad_phase* world) { return as_int(world->world.valid()); }
+int orchard_broad_phase_valid(const orchard_broad_phase* world) { return int{world->world.valid()}; }
 size_t orchard_broad_phase_size(const orchard_broad_phase* world) { return world->world.size(); }
 double orchard_broad_phase_next_time(const orchard_broad_phase* world) { return world->world.next_time(); }
 
@@ -157,39 +133,33 @@ orchard_body orchard_broad_phase_body(const orchard_broad_phase* world, uint32_t
   return body_of(world->world.id_of(index));
 }
 
-orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now,
-                                            const orchard_work_budget* budget) {
+orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now, const orchard_budget* budget,
+                                            uint64_t replay) {
   orchard_advance result{};
   const auto advance = [&] {
-    const rt::Budget within =
-        budget == nullptr ? rt::Budget{} : rt::Budget{budget->work, rt::detail::time_of(budget->nanoseconds)};
-    const rt::Advance now = world->world.advance(t_now, within, budget == nullptr ? 0 : budget->replay);
+    const rt::Advance now = world->world.advance(t_now, budget == nullptr ? rt::Budget{} : budget_of(*budget), replay);
     result.time = now.time;
-    result.pairs = indices_of(now.pairs), result.pair_count = now.pairs.size();
+    result.pairs = reinterpret_cast<const std::uint32_t*>(now.pairs.data()), result.pair_count = now.pairs.size();
     result.refused = now.refused.data(), result.refused_count = now.refused.size();
     result.incomplete_from = now.incomplete_from, result.left_over = now.left_over;
     result.work = now.work;
     result.time_refused = now.time_refused;
-    return true;
+    return false;
   };
-  result.out_of_memory = as_int(!guarded(advance, [] { return false; }));
-  if (result.out_of_memory != 0) result.time = world->world.next_time();
+  result.out_of_memory = guarded(advance, [] { return true; });
+  if (result.out_of_memory) result.time = world->world.next_time();
   return result;
 }
 
 uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t) {
   return made_or(uint64_t{0}, [&] { return world->world.skip_to(t); });
 }
-size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
-                                        size_t* meetings, size_t* overlaps) {
-  std::array<rt::StepsAhead, 254> steps;
-  const std::size_t known = world->world.predict_load(time, std::span(steps).first(std::min(count, steps.size())));
-  for (std::size_t i = 0; i < known; ++i) {
-    if (updates != nullptr) updates[i] = steps[i].updates;
-    if (meetings != nullptr) meetings[i] = steps[i].meetings;
-    if (overlaps != nullptr) overlaps[i] = steps[i].overlaps;
-  }
-  return known;
+size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, orchard_steps_ahead* steps,
+                                        size_t count) {
+  std::array<rt::StepsAhead, 254> known;
+  count = world->world.predict_load(time, std::span(known).first(std::min(count, known.size())));
+  std::transform(known.begin(), known.begin() + count, steps, converted<orchard_steps_ahead, rt::StepsAhead>);
+  return count;
 }
 
 uint64_t orchard_broad_phase_motions_asked(const orchard_broad_phase* world) { return world->world.motions_asked(); }
@@ -217,31 +187,26 @@ size_t orchard_broad_phase_all_hits(orchard_broad_phase* world, const double ori
                                     double longest, const orchard_query_filter* filter, orchard_body_hit* hits,
                                     size_t room) {
   const rt::Ray ray{vector_of(origin), vector_of(direction), longest};
-  return written(
-      world, hits, room, [&] { return world->queries.all_hits(ray, filter_of(filter)); }, hit_in_c);
+  return written(world, hits, room, [&] { return world->queries.all_hits(ray, filter_of(filter)); });
 }
 size_t orchard_broad_phase_all_on_segment(orchard_broad_phase* world, const double p[3], const double q[3],
                                           const orchard_query_filter* filter, orchard_body_hit* hits, size_t room) {
   const auto ask = [&] { return world->queries.all_on_segment(vector_of(p), vector_of(q), filter_of(filter)); };
-  return written(world, hits, room, ask, hit_in_c);
+  return written(world, hits, room, ask);
 }
 size_t orchard_broad_phase_touching_sphere(orchard_broad_phase* world, const double center[3], double radius,
                                            const orchard_query_filter* filter, uint32_t* bodies, size_t room) {
   const auto ask = [&] { return world->queries.touching_sphere(vector_of(center), radius, filter_of(filter)); };
-  return written(world, bodies, room, ask, same);
+  return written(world, bodies, room, ask);
 }
 size_t orchard_broad_phase_touching_box(orchard_broad_phase* world, const double lower[3], const double upper[3],
                                         const orchard_query_filter* filter, uint32_t* bodies, size_t room) {
   const auto ask = [&] { return world->queries.touching_box(vector_of(lower), vector_of(upper), filter_of(filter)); };
-  return written(world, bodies, room, ask, same);
+  return written(world, bodies, room, ask);
 }
 size_t orchard_broad_phase_nearest(orchard_broad_phase* world, const double point[3], size_t k,
                                    const orchard_query_filter* filter, orchard_near_body* near) {
-  return written(
-      world, near, k, [&] { return world->queries.nearest(vector_of(point), k, filter_of(filter)); },
-      [](const rt::NearBody& body) {
-        return orchard_near_body{body.body, body.distance};
-      });
+  return written(world, near, k, [&] { return world->queries.nearest(vector_of(point), k, filter_of(filter)); });
 }
 
 }  // extern "C"

@@ -5,10 +5,6 @@
 #include <vector>
 
 #include "c/orchard_c.h"
-#include "execution/guarded.h"
-#include "orchard/runtime/collide.h"
-#include "orchard/runtime/packed_tree.h"
-#include "orchard/runtime/shape_query.h"
 
 namespace rt = orchard::runtime;
 
@@ -27,37 +23,36 @@ namespace {
 using namespace rt::detail;
 
 int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
-  if (from) *to = pose_in_c(*from);
-  return from ? 1 : 0;
-}
-
-// A tree made here, or null where `make` gives none or there is no memory for it.
-template <typename Make>
-orchard_tree* made(Make&& make) noexcept {
-  const auto work = [&]() -> orchard_tree* {
-    std::optional<rt::PackedSphereTree> tree = make();
-    if (!tree || rt::structure_fault(*tree) != nullptr) return nullptr;
-    auto result = std::make_unique<orchard_tree>();
-    result->loaded = std::move(*tree);
-    result->view = result->loaded;
-    result->prepared = rt::PreparedTree(result->view);
-    return result.release();
-  };
-  return rt::detail::guarded(work, []() -> orchard_tree* { return nullptr; });
+  if (from) *to = converted<orchard_pose>(*from);
+  return int{from.has_value()};
 }
 
 // A tree that load(tree) has filled, or null and why there is none.
 template <typename Load>
 orchard_tree* opened(const char** error, const Load& load) noexcept {
-  std::unique_ptr<orchard_tree> tree(new (std::nothrow) orchard_tree);
-  const rt::LoadStatus status = tree ? load(*tree) : rt::LoadStatus::out_of_memory;
+  std::unique_ptr<orchard_tree> tree;
+  const rt::LoadStatus status = made_or(rt::LoadStatus::out_of_memory, [&] {
+    tree = std::make_unique<orchard_tree>();
+    return load(*tree);
+  });
   if (status != rt::LoadStatus::ok) {
     if (error != nullptr) *error = rt::message(status);
     return nullptr;
   }
-  if (tree->view.blocks.empty()) tree->view = tree->loaded;
-  tree->prepared = rt::PreparedTree(tree->view);
+  const rt::TreeView mapped = tree->mapped.view();
+  tree->prepared = rt::PreparedTree(mapped.blocks.empty() ? rt::TreeView(tree->loaded) : mapped);
   return tree.release();
+}
+
+// A tree made here, or null where `make` gives none or there is no memory for it.
+template <typename Make>
+orchard_tree* made(const Make& make) noexcept {
+  return opened(nullptr, [&](orchard_tree& tree) {
+    std::optional<rt::PackedSphereTree> shape = make();
+    if (!shape || rt::structure_fault(*shape) != nullptr) return rt::LoadStatus::invalid_structure;
+    tree.loaded = std::move(*shape);
+    return rt::LoadStatus::ok;
+  });
 }
 
 // Whether there is a nearest point, and where.
@@ -74,7 +69,7 @@ extern "C" {
 
 const char* orchard_version(void) { return ORCHARD_VERSION_STRING; }
 
-orchard_pose orchard_identity(void) { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1}; }
+orchard_pose orchard_identity(void) { return converted<orchard_pose>(rt::Pose{}); }
 
 int orchard_is_rigid(const orchard_pose* pose) { return rt::is_rigid(pose_of(*pose)); }
 
@@ -97,11 +92,7 @@ orchard_tree* orchard_tree_read(const char* path, const char** error) {
 }
 
 orchard_tree* orchard_tree_open(const char* path, const char** error) {
-  return opened(error, [path](orchard_tree& tree) {
-    const rt::LoadStatus status = tree.mapped.open(path);
-    tree.view = tree.mapped.view();
-    return status;
-  });
+  return opened(error, [path](orchard_tree& tree) { return tree.mapped.open(path); });
 }
 
 orchard_tree* orchard_tree_load(const void* bytes, size_t size, const char** error) {
@@ -110,8 +101,8 @@ orchard_tree* orchard_tree_load(const void* bytes, size_t size, const char** err
 }
 
 void orchard_tree_close(orchard_tree* tree) { delete tree; }
-double orchard_tree_bounding_radius(const orchard_tree* tree) { return tree->view.bounding_radius; }
-size_t orchard_tree_triangles(const orchard_tree* tree) { return tree->view.triangles.size(); }
+double orchard_tree_bounding_radius(const orchard_tree* tree) { return tree->view().bounding_radius; }
+size_t orchard_tree_triangles(const orchard_tree* tree) { return tree->view().triangles.size(); }
 
 orchard_pair* orchard_pair_new(const orchard_tree* a, const orchard_tree* b) {
   return new (std::nothrow) orchard_pair(a, b);
@@ -128,8 +119,8 @@ orchard_verdict orchard_collide(orchard_pair* pair, const orchard_pose* a, const
 orchard_verdict orchard_collide_again(orchard_pair* pair, const orchard_pose* a, const orchard_pose* b) {
   pair->bind();  // the verdict's flags are of a query of this pair, even if none is needed
   const rt::Verdict verdict = rt::collide_coherently(pair->workspace, pair->pair, pose_of(*a), pose_of(*b));
-  orchard_verdict result = rt::detail::verdict_of(verdict);
-  result.finished = 1;
+  auto result = converted<orchard_verdict>(verdict);
+  result.finished = true;
   result.refused = verdict.answer == rt::Answer::maybe && pair->workspace.narrow.refused();
   return result;
 }
@@ -146,26 +137,26 @@ orchard_verdict orchard_refine(orchard_pair* pair, orchard_budget budget) {
 }
 
 orchard_distance orchard_measure(orchard_pair* pair, const orchard_pose* a, const orchard_pose* b, double tolerance) {
-  return distance_of(
+  return converted<orchard_distance>(
       rt::distance(pair->workspace, pair->pair, pose_of(*a), pose_of(*b), {.relative = tolerance, .absolute = 0}));
 }
 
 int orchard_capsule_touches(const orchard_tree* tree, const orchard_pose* pose, const double p[3], const double q[3],
                             double radius) {
-  return in_c(rt::touches_capsule(tree->view, pose_of(*pose), vector_of(p), vector_of(q), radius));
+  return in_c(rt::touches_capsule(tree->view(), pose_of(*pose), vector_of(p), vector_of(q), radius));
 }
 
 int orchard_contains(const orchard_tree* tree, const orchard_pose* pose, const double point[3]) {
   const rt::Pose placed = pose_of(*pose);
-  if (!rt::can_ask(tree->view, placed, vector_of(point))) return -1;
-  return rt::contains(tree->view, placed, vector_of(point));
+  if (!rt::can_ask(tree->view(), placed, vector_of(point))) return -1;
+  return rt::contains(tree->view(), placed, vector_of(point));
 }
 
 int orchard_cast_ray(const orchard_tree* tree, const orchard_pose* pose, const double origin[3],
                      const double direction[3], double longest, double* along) {
   const rt::Pose placed = pose_of(*pose);
   const auto from = vector_of(origin), way = vector_of(direction);
-  const auto hit = tree->rays.empty() ? rt::cast_ray(tree->view, placed, from, way, longest)
+  const auto hit = tree->rays.empty() ? rt::cast_ray(tree->view(), placed, from, way, longest)
                                       : rt::cast_ray(tree->rays, placed, from, way, longest);
   if (hit && along != nullptr) *along = hit->along;
   if (!hit) return 0;
@@ -173,29 +164,28 @@ int orchard_cast_ray(const orchard_tree* tree, const orchard_pose* pose, const d
 }
 
 int orchard_index_rays(orchard_tree* tree) {
-  const auto work = [tree] {
-    tree->rays = rt::RayIndex(tree->view);
+  return made_or(0, [tree] {
+    tree->rays = rt::RayIndex(tree->view());
     return 1;
-  };
-  return rt::detail::guarded(work, [] { return 0; });
+  });
 }
 
 int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3], double limit,
                           double* distance, double point[3], uint32_t* triangle) {
-  return given(rt::nearest_point(tree->view, pose_of(*pose), vector_of(center), limit), distance, point, triangle);
+  return given(rt::nearest_point(tree->view(), pose_of(*pose), vector_of(center), limit), distance, point, triangle);
 }
 
 int orchard_signed_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3],
                                  double limit, double* distance, double point[3], double normal[3],
                                  uint32_t* triangle) {
-  const rt::SignedPoint found = rt::signed_nearest_point(tree->view, pose_of(*pose), vector_of(center), limit);
+  const rt::SignedPoint found = rt::signed_nearest_point(tree->view(), pose_of(*pose), vector_of(center), limit);
   if (normal != nullptr) std::copy_n(found.normal.begin(), 3, normal);
   return given(found.surface, distance, point, triangle);
 }
 
 int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, const double half[3],
                         const orchard_pose* box) {
-  return in_c(rt::touches_box(tree->view, pose_of(*pose), vector_of(half), pose_of(*box)).answer);
+  return in_c(rt::touches_box(tree->view(), pose_of(*pose), vector_of(half), pose_of(*box)).answer);
 }
 
 int orchard_hull_touches(const orchard_tree* tree, const orchard_pose* pose, const double* corners, size_t corner_count,
@@ -206,22 +196,22 @@ int orchard_hull_touches(const orchard_tree* tree, const orchard_pose* pose, con
   for (size_t i = 0; i < corner_count; ++i) points[i] = vector_of(corners + 3 * i);
   for (size_t i = 0; i < facet_count; ++i) std::copy_n(facets + 3 * i, 3, triangles[i].begin());
   const rt::ConvexShape shape{std::span(points).first(corner_count), std::span(triangles).first(facet_count)};
-  return in_c(rt::touches_convex(tree->view, pose_of(*pose), shape, pose_of(*hull)).answer);
+  return in_c(rt::touches_convex(tree->view(), pose_of(*pose), shape, pose_of(*hull)).answer);
 }
 
 double orchard_plane_distance(const orchard_tree* tree, const orchard_pose* pose, const double normal[3],
                               double offset) {
-  return rt::deepest_point(tree->view, pose_of(*pose), vector_of(normal), offset).distance;
+  return rt::deepest_point(tree->view(), pose_of(*pose), vector_of(normal), offset).distance;
 }
 
 orchard_tree* orchard_point_tree(const double point[3]) {
-  return made([&] { return std::optional(rt::point_tree(vector_of(point))); });
+  return made([&] { return rt::point_tree(vector_of(point)); });
 }
 orchard_tree* orchard_segment_tree(const double p[3], const double q[3]) {
-  return made([&] { return std::optional(rt::segment_tree(vector_of(p), vector_of(q))); });
+  return made([&] { return rt::segment_tree(vector_of(p), vector_of(q)); });
 }
 orchard_tree* orchard_box_tree(const double half[3]) {
-  return made([&] { return std::optional(rt::box_tree(vector_of(half))); });
+  return made([&] { return rt::box_tree(vector_of(half)); });
 }
 orchard_tree* orchard_hull_tree(const double* points, size_t count) {
   return made([&] {

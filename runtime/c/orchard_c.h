@@ -1,22 +1,24 @@
 #pragma once
-#include <algorithm>
-#include <bit>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
 
-#include "orchard/runtime/collide.h"
+#include "execution/guarded.h"
 #include "orchard/runtime/contacts.h"
-#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/orchard.h"
-#include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
 
-// What both C interfaces share.
+// What all C interfaces share.
 struct orchard_tree {
   orchard::runtime::MappedTree mapped;
   orchard::runtime::PackedSphereTree loaded;
-  orchard::runtime::TreeView view;
   orchard::runtime::PreparedTree prepared;
   orchard::runtime::RayIndex rays;  // empty unless asked for
+  const orchard::runtime::TreeView& view() const noexcept { return prepared.tree; }
 };
 
 struct orchard_workspace {
@@ -25,79 +27,46 @@ struct orchard_workspace {
 
 namespace orchard::runtime::detail {
 
-inline Workspace& workspace_of(orchard_workspace* workspace) noexcept { return workspace->workspace; }
-
-// They are alike in both languages, number by number.
-inline Pose pose_of(const orchard_pose& from) noexcept { return std::bit_cast<Pose>(from); }
-inline orchard_pose pose_in_c(const Pose& from) noexcept { return std::bit_cast<orchard_pose>(from); }
-
-inline std::chrono::nanoseconds time_of(std::uint64_t nanoseconds) noexcept {
-  const auto longest = static_cast<std::uint64_t>(std::chrono::nanoseconds::max().count());
-  return nanoseconds < longest ? std::chrono::nanoseconds(nanoseconds) : std::chrono::nanoseconds::max();
-}
-
-// Where answers in C have a contact: a verdict's and a touch's fields are alike.
-template <typename InC>
-void put_contact(const Contact& contact, InC& result) noexcept {
-  std::copy_n(contact.center.begin(), 3, result.contact_center);
-  std::copy_n(contact.normal.begin(), 3, result.contact_normal);
-  result.contact_radius = contact.radius;
-  result.triangle_a = contact.triangle_a;
-  result.triangle_b = contact.triangle_b;
-}
-
-inline orchard_manifold manifold_of(const Manifold& m) noexcept {
-  orchard_manifold result{};
-  result.answer = static_cast<orchard_answer>(m.answer);
-  result.count = m.count;
-  for (std::uint32_t i = 0; i < m.count; ++i) {
-    std::copy_n(m.points[i].place.begin(), 3, result.points[i]);
-    result.triangles[i][0] = m.points[i].triangle_a, result.triangles[i][1] = m.points[i].triangle_b;
-    result.depths[i] = m.points[i].depth;
-  }
-  std::copy_n(m.normal.begin(), 3, result.normal);
-  result.depth = m.depth;
-  result.error = m.error;
-  result.complete = m.complete;
+// A struct of one language as the one of the other. Both have the same members in the same order. The longer one may
+// have further members behind them, which are 0.
+template <typename To, typename From>
+To converted(const From& from) noexcept {
+  static_assert(std::is_standard_layout_v<To> && std::is_standard_layout_v<From>);
+  static_assert(std::is_trivially_copyable_v<To> && std::is_trivially_copyable_v<From>);
+  To result{};
+  std::memcpy(static_cast<void*>(&result), &from, sizeof result < sizeof from ? sizeof result : sizeof from);
   return result;
 }
 
-inline orchard_verdict verdict_of(const Verdict& v) noexcept {
-  orchard_verdict result{};
-  result.answer = static_cast<orchard_answer>(v.answer);
-  result.separation_bound = v.separation_bound;
-  result.lower_bound = v.lower_bound;
-  put_contact(v.contact, result);
-  result.level = v.level;
-  result.work = v.work;
-  return result;
-}
+static_assert(offsetof(orchard_pose, scale) == offsetof(Pose, scale));
+static_assert(offsetof(orchard_verdict, work) == offsetof(Verdict, work));
+static_assert(offsetof(orchard_verdict, finished) == sizeof(Verdict));
+static_assert(offsetof(orchard_distance, triangle_b) ==
+              offsetof(Distance, points) + offsetof(DistanceQuery::Points, triangle_b));
+static_assert(offsetof(orchard_manifold, complete) == offsetof(Manifold, complete));
+static_assert(sizeof(orchard_contact_point) == sizeof(ContactPoint));
+static_assert(offsetof(orchard_signed_distance, normal) == offsetof(SignedDistance, normal));
+
+inline Pose pose_of(const orchard_pose& from) noexcept { return converted<Pose>(from); }
 
 inline orchard_verdict verdict_of(const NarrowPhase& pair) noexcept {
-  orchard_verdict result = verdict_of(pair.verdict());
+  auto result = converted<orchard_verdict>(pair.verdict());
   result.finished = pair.finished();
   result.refused = pair.refused();
-  return result;
-}
-
-inline orchard_distance distance_of(const Distance& measured) noexcept {
-  orchard_distance result{};
-  result.lower = measured.lower;
-  result.upper = measured.upper;
-  std::copy_n(measured.points.on_a.begin(), 3, result.on_a);
-  std::copy_n(measured.points.on_b.begin(), 3, result.on_b);
-  result.triangle_a = measured.points.triangle_a;
-  result.triangle_b = measured.points.triangle_b;
   return result;
 }
 
 inline std::array<double, 3> vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
 
 inline Budget budget_of(const orchard_budget& from) noexcept {
-  Budget budget;
-  budget.work = from.tests;
-  budget.time = time_of(from.nanoseconds);
-  return budget;
+  constexpr std::chrono::nanoseconds longest = Budget{}.time;
+  const bool limited = from.nanoseconds < static_cast<std::uint64_t>(longest.count());
+  return {from.tests, limited ? std::chrono::nanoseconds(from.nanoseconds) : longest};
+}
+
+// Without an executor: one job after the other.
+inline Executor executor_of(const orchard_executor* from) noexcept {
+  return from == nullptr ? Executor{} : converted<Executor>(*from);
 }
 
 // 1, 0, or -1 for "maybe".

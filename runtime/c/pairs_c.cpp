@@ -2,10 +2,6 @@
 #include <new>
 
 #include "c/orchard_c.h"
-#include "execution/share_among.h"
-#include "orchard/runtime/collide.h"
-#include "orchard/runtime/contacts.h"
-#include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/time_of_impact.h"
 
 // The C interface: pairs of trees in a workspace, and many at once.
@@ -16,32 +12,18 @@ namespace {
 using namespace rt::detail;
 
 // Question i in the workspace of the job that it falls to: ask(workspace, pair, pose of a, pose of b, i).
-struct CBatch {
-  orchard_workspace* const* workspaces;
-  size_t workspace_count;
-  const orchard_executor* executor;
-  const orchard_tree* const* a;
-  const orchard_pose* poses_a;
-  const orchard_tree* const* b;
-  const orchard_pose* poses_b;
-
-  template <typename Ask>
-  void run(size_t count, Ask&& ask) const noexcept {
-    const rt::Executor on{executor->run, executor->context, executor->concurrency};
-    rt::share_among(on, workspace_count, count, [&](size_t job, size_t i) {
-      ask(workspaces[job]->workspace, rt::TreePair(a[i]->prepared, b[i]->prepared), pose_of(poses_a[i]),
-          pose_of(poses_b[i]), i);
-    });
-  }
-};
+template <typename Ask>
+void ask_all(const orchard_batch& of, const Ask& ask) noexcept {
+  rt::share_among(executor_of(of.executor), of.workspace_count, of.count, [&](size_t job, size_t i) {
+    ask(of.workspaces[job]->workspace, rt::TreePair(of.a[i]->prepared, of.b[i]->prepared), pose_of(of.poses_a[i]),
+        pose_of(of.poses_b[i]), i);
+  });
+}
 
 // A motion that a C function gives, as one that a C++ function gives.
 struct CTravel {
-  explicit CTravel(const orchard_travel& from) noexcept : travel_in_c(from) {
-    travel.start = pose_of(from.start);
-    travel.velocity = vector_of(from.velocity), travel.spin = vector_of(from.spin);
-    travel.center = vector_of(from.center);
-    travel.speed = from.speed, travel.turning = from.turning;
+  explicit CTravel(const orchard_travel& from) noexcept : travel_in_c(from), travel(converted<rt::Travel>(from)) {
+    static_assert(sizeof(orchard_travel) == sizeof(rt::Travel));
     if (from.pose_at == nullptr) return;
     travel.context = &travel_in_c;
     travel.pose_at = [](const void* context, double time) {
@@ -63,54 +45,30 @@ orchard_workspace* orchard_workspace_new(void) { return new (std::nothrow) orcha
 void orchard_workspace_free(orchard_workspace* workspace) { delete workspace; }
 
 int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                        const orchard_tree* b, const orchard_pose* pose_b, double margin) {
+                        const orchard_tree* b, const orchard_pose* pose_b, double margin, orchard_distance* points) {
   const rt::TreePair pair(a->prepared, b->prepared);
-  return in_c(rt::closer_than(workspace->workspace, pair, pose_of(*pose_a), pose_of(*pose_b), margin));
-}
-
-int orchard_closer_with_points(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                               const orchard_tree* b, const orchard_pose* pose_b, double margin,
-                               orchard_distance* distance) {
-  const rt::Closeness found = rt::closer_with_points(workspace->workspace, {a->prepared, b->prepared}, pose_of(*pose_a),
-                                                     pose_of(*pose_b), margin);
-  *distance = distance_of(found.distance);
+  const rt::Pose at_a = pose_of(*pose_a), at_b = pose_of(*pose_b);
+  if (points == nullptr) return in_c(rt::closer_than(workspace->workspace, pair, at_a, at_b, margin));
+  const rt::Closeness found = rt::closer_with_points(workspace->workspace, pair, at_a, at_b, margin);
+  *points = converted<orchard_distance>(found.distance);
   return in_c(found.answer);
 }
 
-orchard_manifold orchard_contacts_within(orchard_workspace* workspace, const orchard_tree* a,
-                                         const orchard_pose* pose_a, const orchard_tree* b, const orchard_pose* pose_b,
-                                         double margin) {
-  return manifold_of(rt::contacts(workspace->workspace, {a->prepared, b->prepared}, pose_of(*pose_a), pose_of(*pose_b),
-                                  {.margin = margin}));
-}
-
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                                  const orchard_tree* b, const orchard_pose* pose_b) {
-  return orchard_contacts_within(workspace, a, pose_a, b, pose_b, 0);
+                                  const orchard_tree* b, const orchard_pose* pose_b, double margin) {
+  return converted<orchard_manifold>(rt::contacts(workspace->workspace, {a->prepared, b->prepared}, pose_of(*pose_a),
+                                                  pose_of(*pose_b), {.margin = margin}));
 }
 
 orchard_signed_distance orchard_measure_signed(orchard_workspace* workspace, const orchard_tree* a,
                                                const orchard_pose* pose_a, const orchard_tree* b,
                                                const orchard_pose* pose_b, double tolerance) {
-  const rt::SignedDistance measured = rt::signed_distance(workspace->workspace, rt::TreePair(a->prepared, b->prepared),
-                                                          pose_of(*pose_a), pose_of(*pose_b), tolerance);
-  orchard_signed_distance result{};
-  result.lower = measured.lower;
-  result.upper = measured.upper;
-  std::copy_n(measured.on_a.begin(), 3, result.on_a);
-  std::copy_n(measured.on_b.begin(), 3, result.on_b);
-  std::copy_n(measured.normal.begin(), 3, result.normal);
-  return result;
+  return converted<orchard_signed_distance>(rt::signed_distance(workspace->workspace, {a->prepared, b->prepared},
+                                                                pose_of(*pose_a), pose_of(*pose_b), tolerance));
 }
 
 orchard_travel orchard_travel_between(const orchard_pose* from, const orchard_pose* to, const double center[3]) {
-  const rt::Travel travel = rt::travel_between(pose_of(*from), pose_of(*to), vector_of(center));
-  orchard_travel result{};
-  result.start = *from;
-  std::copy_n(travel.velocity.begin(), 3, result.velocity);
-  std::copy_n(travel.spin.begin(), 3, result.spin);
-  std::copy_n(travel.center.begin(), 3, result.center);
-  return result;
+  return converted<orchard_travel>(rt::travel_between(pose_of(*from), pose_of(*to), vector_of(center)));
 }
 
 orchard_impact orchard_time_of_impact(orchard_workspace* workspace, const orchard_tree* a,
@@ -118,19 +76,10 @@ orchard_impact orchard_time_of_impact(orchard_workspace* workspace, const orchar
                                       const orchard_travel* travel_b, double begin, double end, double tolerance,
                                       double margin, orchard_budget budget) {
   const CTravel of_a(*travel_a), of_b(*travel_b);
-  const rt::Impact impact = rt::time_of_impact(
-      workspace->workspace, rt::TreePair(a->prepared, b->prepared), of_a.travel, of_b.travel,
-      {.begin = begin, .end = end, .tolerance = tolerance, .margin = margin, .budget = budget_of(budget)});
-  orchard_impact result{};
-  result.answer = static_cast<orchard_answer>(impact.answer);
-  result.t0 = impact.t0, result.t1 = impact.t1;
-  result.distance = impact.distance;
-  std::copy_n(impact.on_a.begin(), 3, result.on_a);
-  std::copy_n(impact.on_b.begin(), 3, result.on_b);
-  result.triangle_a = impact.triangle_a, result.triangle_b = impact.triangle_b;
-  result.finished = impact.finished, result.refused = impact.refused;
-  result.work = impact.work;
-  return result;
+  static_assert(offsetof(orchard_impact, work) == offsetof(rt::Impact, work));
+  return converted<orchard_impact>(rt::time_of_impact(
+      workspace->workspace, {a->prepared, b->prepared}, of_a.travel, of_b.travel,
+      {.begin = begin, .end = end, .tolerance = tolerance, .margin = margin, .budget = budget_of(budget)}));
 }
 
 void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const double* origins,
@@ -146,7 +95,7 @@ void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const
     }
     const auto portion = std::span(rays).first(some);
     if (tree->rays.empty()) {
-      rt::cast_rays(tree->view, placed, portion, hits);
+      rt::cast_rays(tree->view(), placed, portion, hits);
     } else {
       rt::cast_rays(tree->rays, placed, portion, hits);
     }
@@ -157,35 +106,25 @@ void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const
   }
 }
 
-void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts) {
-  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
-  batch.run(count, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a,
-                       const rt::Pose& pose_b, size_t i) {
-    rt::collide(workspace, pair, pose_a, pose_b);
-    verdicts[i] = verdict_of(workspace.narrow);
-  });
+void orchard_collide_all(const orchard_batch* batch, orchard_verdict* verdicts) {
+  ask_all(*batch,
+          [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& a, const rt::Pose& b, size_t i) {
+            rt::collide(workspace, pair, a, b);
+            verdicts[i] = verdict_of(workspace.narrow);
+          });
 }
 
-void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances) {
-  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
-  batch.run(count, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a,
-                       const rt::Pose& pose_b, size_t i) {
-    distances[i] = distance_of(rt::distance(workspace, pair, pose_a, pose_b, {.relative = tolerance, .absolute = 0}));
-  });
+void orchard_measure_all(const orchard_batch* batch, double tolerance, orchard_distance* distances) {
+  ask_all(
+      *batch, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& a, const rt::Pose& b, size_t i) {
+        distances[i] =
+            converted<orchard_distance>(rt::distance(workspace, pair, a, b, {.relative = tolerance, .absolute = 0}));
+      });
 }
 
-void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t workspace_count,
-                             const orchard_executor* executor, const orchard_tree* const* a,
-                             const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
-                             size_t count, double margin, int* closer) {
-  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
-  batch.run(count,
-            [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a, const rt::Pose& pose_b,
-                size_t i) { closer[i] = in_c(rt::closer_than(workspace, pair, pose_a, pose_b, margin)); });
+void orchard_closer_than_all(const orchard_batch* batch, double margin, int* closer) {
+  ask_all(*batch, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& a, const rt::Pose& b,
+                      size_t i) { closer[i] = in_c(rt::closer_than(workspace, pair, a, b, margin)); });
 }
 
 }  // extern "C"

@@ -1,26 +1,25 @@
+#include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "c/orchard_c.h"
-#include "execution/guarded.h"
 #include "orchard/runtime/self_collision.h"
 
 namespace rt = orchard::runtime;
+namespace {
+
+using namespace rt::detail;
+static_assert(sizeof(orchard_touch) == sizeof(rt::SelfCollision::Touch));
+
+}  // namespace
 
 struct orchard_self_collision {
-  orchard_self_collision(const orchard_tree* const* trees, size_t count) : parts(prepared(trees, count)), self(parts) {
-    poses.resize(count);
-  }
-  static std::vector<rt::PreparedTree> prepared(const orchard_tree* const* trees, size_t count) {
-    std::vector<rt::PreparedTree> parts;
-    parts.reserve(count);
-    for (const orchard_tree* tree : std::span(trees, count)) parts.push_back(tree->prepared);
-    return parts;
-  }
+  explicit orchard_self_collision(std::vector<rt::PreparedTree> trees)
+      : parts(std::move(trees)), self(parts), poses(parts.size()) {}
   std::span<const rt::Pose> placed(const orchard_pose* from) noexcept {
-    for (size_t i = 0; i < poses.size(); ++i) poses[i] = rt::detail::pose_of(from[i]);
+    std::transform(from, from + poses.size(), poses.begin(), pose_of);
     return poses;
   }
 
@@ -29,24 +28,14 @@ struct orchard_self_collision {
   std::vector<rt::Pose> poses;  // of the present query
 };
 
-namespace {
-
-orchard_touch touch_of(const rt::SelfCollision::Touch& from) noexcept {
-  orchard_touch result{};
-  result.answer = static_cast<orchard_answer>(from.answer);
-  result.part_a = from.part_a;
-  result.part_b = from.part_b;
-  rt::detail::put_contact(from.contact, result);
-  return result;
-}
-
-}  // namespace
-
 extern "C" {
 
 orchard_self_collision* orchard_self_collision_new(const orchard_tree* const* parts, size_t count) {
-  return rt::detail::guarded([&] { return std::make_unique<orchard_self_collision>(parts, count).release(); },
-                             []() -> orchard_self_collision* { return nullptr; });
+  return made_or<orchard_self_collision*>(nullptr, [&] {
+    std::vector<rt::PreparedTree> trees;
+    for (const orchard_tree* tree : std::span(parts, count)) trees.push_back(tree->prepared);
+    return new orchard_self_collision(std::move(trees));
+  });
 }
 
 void orchard_self_collision_free(orchard_self_collision* self) { delete self; }
@@ -54,25 +43,25 @@ void orchard_self_collision_free(orchard_self_collision* self) { delete self; }
 int orchard_self_collision_allow(orchard_self_collision* self, size_t a, size_t b, int allowed) {
   const size_t parts = self->parts.size();
   if (a >= parts || b >= parts) return 0;
-  self->self.allowed.allow(a, b, allowed != 0);
+  self->self.allow(a, b, allowed != 0);
   return 1;
 }
 
 void orchard_self_collision_allow_touching(orchard_self_collision* self, orchard_workspace* workspace,
                                            const orchard_pose* poses) {
-  self->self.allow_touching(rt::detail::workspace_of(workspace), self->placed(poses));
+  self->self.allow_touching(workspace->workspace, self->placed(poses));
 }
 
 orchard_touch orchard_self_collision_first(orchard_self_collision* self, orchard_workspace* workspace,
                                            const orchard_pose* poses) {
-  return touch_of(self->self.first(rt::detail::workspace_of(workspace), self->placed(poses)));
+  return converted<orchard_touch>(self->self.first(workspace->workspace, self->placed(poses)));
 }
 
 size_t orchard_self_collision_all(orchard_self_collision* self, orchard_workspace* workspace, const orchard_pose* poses,
                                   orchard_touch* touches, size_t room) {
   size_t count = 0;
-  self->self.each(rt::detail::workspace_of(workspace), self->placed(poses), [&](const rt::SelfCollision::Touch& touch) {
-    if (count < room) touches[count] = touch_of(touch);
+  self->self.each(workspace->workspace, self->placed(poses), [&](const rt::SelfCollision::Touch& touch) {
+    if (count < room) touches[count] = converted<orchard_touch>(touch);
     ++count;
     return true;
   });

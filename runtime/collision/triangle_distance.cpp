@@ -1,6 +1,7 @@
 #include "collision/triangle_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,38 +18,51 @@ namespace {
 // of the length; below it, no place on the line is farther than 1e-7 of the length from the best one.
 constexpr double kParallelSineSquare = 1e-14;
 
-// Three lanes, and a fourth that repeats the last.
-struct FourDoubles {
+// Three lanes, and a fourth that repeats the last: as one vector, or as several narrower ones or numbers.
 #ifdef ORCHARD_VECTORS
+struct FourDoubles {
   using Numbers __attribute__((vector_size(32))) = double;
   using Mask __attribute__((vector_size(32))) = std::int64_t;
   ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return mask ? a : b;
   }
-#else
-  using Numbers = Plain<double, 4>;
-  using Mask = Numbers::Mask;
-  static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
-    return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
-  }
-#endif
-  ORCHARD_INLINE static Numbers all(double x) noexcept { return Numbers{x, x, x, x}; }
-  ORCHARD_INLINE static Numbers lanes(double x, double y, double z) noexcept { return Numbers{x, y, z, z}; }
+  ORCHARD_INLINE static double lane(const Numbers& of, std::size_t i) noexcept { return of[i]; }
 };
+using Part __attribute__((vector_size(16))) = double;
+#else
+using Part = double;
+#endif
+struct PartsOfFour {
+  using Numbers = Several<Part, 4 * sizeof(double) / sizeof(Part)>;
+  using Mask = decltype(Numbers{} < Numbers{});
+  ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
+    return Numbers::make([&](std::size_t i) ORCHARD_INLINE_LAMBDA { return mask[i] ? a[i] : b[i]; });
+  }
+  ORCHARD_INLINE static double lane(const Numbers& of, std::size_t i) noexcept {
+    std::array<double, 4> all;
+    store(of, all);
+    return all[i];
+  }
+};
+#ifndef ORCHARD_VECTORS
+using FourDoubles = PartsOfFour;
+#endif
 
+template <typename Kind>
 struct Near {
-  using Kind = FourDoubles;
-  using Numbers = Kind::Numbers;
-  using Mask = Kind::Mask;
+  using Numbers = typename Kind::Numbers;
+  using Mask = typename Kind::Mask;
   struct Three {
     Numbers x, y, z;
   };
 
-  ORCHARD_INLINE static Three all(const Vec3& v) noexcept {
-    return {Kind::all(v[0]), Kind::all(v[1]), Kind::all(v[2])};
+  ORCHARD_INLINE static Numbers all(double x) noexcept { return spread<Numbers>(x); }
+  ORCHARD_INLINE static Numbers lanes(double x, double y, double z) noexcept {
+    return load<Numbers>(std::array<double, 4>{x, y, z, z});
   }
+  ORCHARD_INLINE static Three all(const Vec3& v) noexcept { return {all(v[0]), all(v[1]), all(v[2])}; }
   ORCHARD_INLINE static Three lanes(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
-    return {Kind::lanes(a[0], b[0], c[0]), Kind::lanes(a[1], b[1], c[1]), Kind::lanes(a[2], b[2], c[2])};
+    return {lanes(a[0], b[0], c[0]), lanes(a[1], b[1], c[1]), lanes(a[2], b[2], c[2])};
   }
   ORCHARD_INLINE static Numbers dot(const Three& a, const Three& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -63,14 +77,14 @@ struct Near {
     return {from.x + by * way.x, from.y + by * way.y, from.z + by * way.z};
   }
   ORCHARD_INLINE static Numbers within_unit(const Numbers& x) noexcept {
-    const Numbers zero = Kind::all(0), one = Kind::all(1);
+    const Numbers zero = all(0.0), one = all(1);
     return Kind::choose(x < zero, zero, Kind::choose(one < x, one, x));
   }
   ORCHARD_INLINE static Numbers unit(const Numbers& part, const Numbers& whole) noexcept {
-    return Kind::choose(Kind::all(0) < whole, within_unit(part / whole), Kind::all(0));
+    return Kind::choose(all(0.0) < whole, within_unit(part / whole), all(0.0));
   }
 
-  Numbers square = Kind::all(std::numeric_limits<double>::infinity());
+  Numbers square = all(std::numeric_limits<double>::infinity());
   Three p{}, q{};
 
   ORCHARD_INLINE void offer(const Three& on_a, const Three& on_b) noexcept {
@@ -96,8 +110,8 @@ struct Near {
     const Three w = minus(a.from, b.from);
     const Numbers uv = dot(a.way, b.way), uw = dot(a.way, w), vw = dot(b.way, w);
     const Numbers across = a.square * b.square - uv * uv;
-    Numbers s = Kind::choose(Kind::all(kParallelSineSquare) * a.square * b.square < across,
-                             within_unit((uv * vw - uw * b.square) / across), Kind::all(0));
+    Numbers s = Kind::choose(all(kParallelSineSquare) * a.square * b.square < across,
+                             within_unit((uv * vw - uw * b.square) / across), all(0.0));
     const Numbers t = unit(uv * s + vw, b.square);
     s = unit(uv * t - uw, a.square);
     offer(along(a.from, a.way, s), along(b.from, b.way, t));
@@ -115,7 +129,7 @@ struct Near {
     const Three normal = all(n);
     const auto area = [&](std::size_t i)
                           ORCHARD_INLINE_LAMBDA { return dot(cross(all(edge[i]), minus(point, all(t[i]))), normal); };
-    const Numbers zero = Kind::all(0), first = area(1), second = area(2), third = area(0);  // opposite of the corners
+    const Numbers zero = all(0.0), first = area(1), second = area(2), third = area(0);  // opposite of the corners
     const Numbers sum = first + second + third;
     const auto inside = (zero <= first) & (zero <= second) & (zero <= third) & (zero < sum);
     const Three on = along(along(all(t[0]), all(edge[0]), second / sum), all(edge[2]), -(third / sum));
@@ -134,44 +148,56 @@ struct NearestPair {
 };
 
 // Of the lanes the first of the nearest.
-ORCHARD_INLINE NearestPair first_of(const Near& near) noexcept {
-  const auto& square = near.square;
-  std::size_t lane = square[1] < square[0] ? 1 : 0;
-  lane = square[2] < square[lane] ? 2 : lane;
-  return {
-      square[lane], {near.p.x[lane], near.p.y[lane], near.p.z[lane]}, {near.q.x[lane], near.q.y[lane], near.q.z[lane]}};
+template <typename Kind>
+ORCHARD_INLINE NearestPair first_of(const Near<Kind>& near) noexcept {
+  const auto square = [&](std::size_t i) ORCHARD_INLINE_LAMBDA { return Kind::lane(near.square, i); };
+  std::size_t lane = square(1) < square(0) ? 1 : 0;
+  lane = square(2) < square(lane) ? 2 : lane;
+  const auto point = [&](const auto& three) ORCHARD_INLINE_LAMBDA {
+    return Vec3{Kind::lane(three.x, lane), Kind::lane(three.y, lane), Kind::lane(three.z, lane)};
+  };
+  return {square(lane), point(near.p), point(near.q)};
 }
 
-ORCHARD_INLINE Near::Three lanes_of(const TrianglePoints& t) noexcept { return Near::lanes(t[0], t[1], t[2]); }
+template <typename Kind>
+ORCHARD_INLINE typename Near<Kind>::Three lanes_of(const TrianglePoints& t) noexcept {
+  return Near<Kind>::lanes(t[0], t[1], t[2]);
+}
 
+template <typename Kind>
 ORCHARD_INLINE NearestPair near_triangle(const TrianglePoints& a, const TrianglePoints& b) noexcept {
+  using N = Near<Kind>;
   const TrianglePoints ea = edges_of(a), eb = edges_of(b);
-  const Near::Edge of_b(lanes_of(b), lanes_of(eb));
-  Near best;
-  for (std::size_t i = 0; i < 3; ++i) best.edges({Near::all(a[i]), Near::all(ea[i])}, of_b);
-  best.face(lanes_of(a), b, eb, true);
+  const typename N::Edge of_b(lanes_of<Kind>(b), lanes_of<Kind>(eb));
+  N best;
+  for (std::size_t i = 0; i < 3; ++i) best.edges({N::all(a[i]), N::all(ea[i])}, of_b);
+  best.face(lanes_of<Kind>(a), b, eb, true);
   best.face(of_b.from, a, ea, false);
   return first_of(best);
 }
 
+template <typename Kind>
 ORCHARD_INLINE NearestPair near_point(const Vec3& point, const TrianglePoints& t) noexcept {
+  using N = Near<Kind>;
   const TrianglePoints edge = edges_of(t);
-  const Near::Three p = Near::all(point);
-  Near best;
-  best.offer(p, Near::foot({lanes_of(t), lanes_of(edge)}, p));
+  const typename N::Three p = N::all(point);
+  N best;
+  best.offer(p, N::foot({lanes_of<Kind>(t), lanes_of<Kind>(edge)}, p));
   best.face(p, t, edge, true);
   return first_of(best);
 }
 
+template <typename Kind>
 ORCHARD_INLINE NearestPair near_segment(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+  using N = Near<Kind>;
   const TrianglePoints edge = edges_of(t);
-  const Near::Edge of_t(lanes_of(t), lanes_of(edge)), segment(Near::all(p), Near::all(minus(q, p)));
-  Near best;
+  const typename N::Edge of_t(lanes_of<Kind>(t), lanes_of<Kind>(edge)), segment(N::all(p), N::all(minus(q, p)));
+  N best;
   best.edges(segment, of_t);
   // Parallel ones, too, from each corner.
-  best.offer(Near::foot(segment, of_t.from), of_t.from);
-  for (const Vec3& end : {p, q}) best.offer(Near::all(end), Near::foot(of_t, Near::all(end)));
-  best.face(Near::lanes(p, q, q), t, edge, true);
+  best.offer(N::foot(segment, of_t.from), of_t.from);
+  for (const Vec3& end : {p, q}) best.offer(N::all(end), N::foot(of_t, N::all(end)));
+  best.face(N::lanes(p, q, q), t, edge, true);
   return first_of(best);
 }
 
@@ -189,10 +215,11 @@ double longest_edge(const TrianglePoints& t) noexcept {
 }
 
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return found_points(PerMachine<near_triangle>::call(a, b));
+  return found_points(PerMachine<near_triangle<FourDoubles>, near_triangle<PartsOfFour>>::call(a, b));
 }
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return found_points(p == q ? PerMachine<near_point>::call(p, t) : PerMachine<near_segment>::call(p, q, t));
+  return found_points(p == q ? PerMachine<near_point<FourDoubles>, near_point<PartsOfFour>>::call(p, t)
+                             : PerMachine<near_segment<FourDoubles>, near_segment<PartsOfFour>>::call(p, q, t));
 }
 
 }  // namespace orchard::runtime::detail

@@ -18,4 +18,10 @@ auto guarded(const Work& work, const Otherwise& otherwise) noexcept -> decltype(
 #endif
 }
 
+// What `make` gives, or `otherwise` if there is no memory for it.
+template <typename Result, typename Make>
+Result made_or(const Result& otherwise, const Make& make) noexcept {
+  return guarded([&]() -> Result { return make(); }, [&] { return otherwise; });
+}
+
 }  // namespace orchard::runtime::detail

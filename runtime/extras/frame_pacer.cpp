@@ -13,20 +13,13 @@ constexpr double kShareOfLargest = 0.9;
 }  // namespace
 
 void FramePacer::Smoothed::add(double value) noexcept {
-  if (!any) {
-    mean = value;
-    deviation = value / 2;
-    largest = value;
-    any = true;
-    return;
-  }
   deviation += kDeviationGain * (std::fabs(value - mean) - deviation);
   mean += kMeanGain * (value - mean);
   largest = std::max(value, largest - kForget * (largest - mean));
 }
 
 FramePacer::Duration FramePacer::predicted_rest() const noexcept {
-  if (!rest_.any) return frame_ / 2;
+  if (frames_ == 0) return frame_ / 2;
   const double guess = std::max(rest_.mean + deviations_ * rest_.deviation, kShareOfLargest * rest_.largest);
   return Duration(static_cast<Duration::rep>(std::min(guess, static_cast<double>(frame_.count()))));
 }
@@ -42,12 +35,13 @@ FramePacer::Duration FramePacer::begin_detection(Time now) noexcept {
 
 void FramePacer::end_detection(Time now) noexcept {
   detection_end_ = now;
-  detection_ = now - detection_begin_;
-  excess_.add(static_cast<double>(std::max(Duration(0), detection_ - granted_).count()));
+  excess_.add(static_cast<double>(std::max(Duration(0), Duration(now - detection_begin_) - granted_).count()));
 }
 
 void FramePacer::end_frame(Time now) noexcept {
-  rest_.add(static_cast<double>(Duration(now - detection_end_).count()));
+  const auto rest = static_cast<double>(Duration(now - detection_end_).count());
+  if (frames_ == 0) rest_ = {rest, rest / 2, rest};
+  rest_.add(rest);
   slack_ = frame_ - Duration(now - begin_);
   ++frames_;
   if (slack_ < Duration(0)) ++late_;

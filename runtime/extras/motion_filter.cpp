@@ -88,15 +88,13 @@ Motion MotionFilter::motion(double radius, double time, double horizon) const no
   const Covariance& c = now.covariance;
   const double size = length(now.acceleration);
   const double change = walk_width_ * deviation(c.aa + options_.jerk_density * horizon);
-  Motion motion;
-  motion.position = now.position;
-  motion.velocity = now.velocity;
-  motion.radius = radius + width_ * deviation(c.xx);
-  motion.drift = width_ * deviation(c.vv);
-  motion.acceleration = size + change;
-  if (size > change) motion.half_space = -1.0 * now.acceleration;
-  motion.expiry = time + horizon;
-  return motion;
+  return {.position = now.position,
+          .velocity = now.velocity,
+          .radius = radius + width_ * deviation(c.xx),
+          .acceleration = size + change,
+          .drift = width_ * deviation(c.vv),
+          .half_space = size > change ? -now.acceleration : Vec3{},
+          .expiry = time + horizon};
 }
 
 }  // namespace orchard::runtime

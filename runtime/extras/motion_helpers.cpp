@@ -1,6 +1,7 @@
 #include "orchard/runtime/motion_helpers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,13 +12,7 @@ constexpr double kQuarterTurn = std::numbers::pi / 2;
 constexpr double kWorthwhile = 0.5;  // of the horizon: a half-space that ends earlier costs more updates than it saves
 
 Motion bounded(const Vec3& position, const Vec3& velocity, double radius, double acceleration, double expiry) noexcept {
-  Motion motion;
-  motion.position = position;
-  motion.velocity = velocity;
-  motion.radius = radius;
-  motion.acceleration = acceleration;
-  motion.expiry = expiry;
-  return motion;
+  return {.position = position, .velocity = velocity, .radius = radius, .acceleration = acceleration, .expiry = expiry};
 }
 
 // The acceleration stays on `direction`'s side for `lasting` seconds.
@@ -82,26 +77,15 @@ constexpr double kRoundings = 9;          // of a change: eight, and their produ
 const double kDiagonal = std::sqrt(3.0);  // of a cube of edge 1
 constexpr double kOutward = 1 + 0x1p-50;  // for the roundings here
 
-// c of the proof in the header: how much of M dt^2 a step may add to a position beyond dt v.
-double own_share(Integrator integrator) noexcept {
-  switch (integrator) {
-    case Integrator::explicit_euler:
-      return 0;
-    case Integrator::velocity_verlet:
-    case Integrator::position_verlet:
-    case Integrator::midpoint:
-    case Integrator::heun:
-    case Integrator::runge_kutta_4:
-      return 0.5;
-    default:
-      return 1;
-  }
-}
+// c of the proof in the header, by Integrator: how much of M dt^2 a step may add to a position beyond dt v.
+constexpr std::array<double, 10> kOwnShare = {0, 1, 1, 0.5, 0.5, 1, 1, 0.5, 0.5, 0.5};
 
 }  // namespace
 
 double drift_of(Integrator integrator, double dt, double max_acceleration, Sampling sampling) noexcept {
-  const double c = own_share(integrator), share = sampling == Sampling::between ? c + 1 : std::max(0.0, c - 0.5);
+  static_assert(kOwnShare.size() == static_cast<std::size_t>(Integrator::runge_kutta_4) + 1);
+  const double c = kOwnShare[static_cast<std::size_t>(integrator)],
+               share = sampling == Sampling::between ? c + 1 : std::max(0.0, c - 0.5);
   return share * max_acceleration * dt * kOutward;
 }
 

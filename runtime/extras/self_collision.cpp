@@ -4,7 +4,7 @@ namespace orchard::runtime {
 
 void SelfCollision::allow_touching(Workspace& workspace, std::span<const Pose> poses) noexcept {
   each(workspace, poses, [this](const Touch& touch) {
-    allowed.allow(touch.part_a, touch.part_b);
+    allow(touch.part_a, touch.part_b);
     return true;
   });
 }

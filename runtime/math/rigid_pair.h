@@ -1,6 +1,4 @@
 #pragma once
-#include <type_traits>
-
 #include "orchard/runtime/pose.h"
 #include "simd/vector_support.h"
 
@@ -11,24 +9,15 @@ namespace orchard::runtime::detail {
 #ifdef ORCHARD_VECTORS
 using Two __attribute__((vector_size(16))) = double;
 #else
-using Two = Plain<double, 2>;
+using Two = Several<double, 2>;
 #endif
-
-template <typename T>
-ORCHARD_INLINE T both(double value) noexcept {
-  if constexpr (std::is_same_v<T, double>) {
-    return value;
-  } else {
-    return T{value, value};
-  }
-}
 
 // 0 for a proper rotation: how far the first two rows are from unit vectors across each other, and the third one from
 // their cross product, as a sum of squares. Not a number, or infinite, if an entry is. T: a double, or several.
 template <typename T, typename At>
 ORCHARD_INLINE T rotation_defect(At&& r) noexcept {
   const T a0 = r(0), a1 = r(1), a2 = r(2), b0 = r(3), b1 = r(4), b2 = r(5);
-  const T one = both<T>(1);
+  const T one = spread<T>(1.0);
   const T a = a0 * a0 + a1 * a1 + a2 * a2 - one, b = b0 * b0 + b1 * b1 + b2 * b2 - one;
   const T across = a0 * b0 + a1 * b1 + a2 * b2;
   const T x = a1 * b2 - a2 * b1 - r(6), y = a2 * b0 - a0 * b2 - r(7), z = a0 * b1 - a1 * b0 - r(8);
@@ -56,8 +45,8 @@ struct PoseLanes {
   // As is_rigid() says of both, but for translations.
   ORCHARD_INLINE bool rotate() const noexcept {
     const Two defect = rotation_defect<Two>([this](std::size_t i) ORCHARD_INLINE_LAMBDA -> Two { return rotation[i]; });
-    const auto good = (defect <= both<Two>(kMaxRotationDefect)) & (both<Two>(1 / kScaleLimit) <= scale) &
-                      (scale <= both<Two>(kScaleLimit));
+    const auto good = (defect <= spread<Two>(kMaxRotationDefect)) & (spread<Two>(1 / kScaleLimit) <= scale) &
+                      (scale <= spread<Two>(kScaleLimit));
     return (good[0] & good[1]) != 0;
   }
   // Where each puts its point, component by component: transform()'s operations in its order.

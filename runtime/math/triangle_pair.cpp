@@ -99,10 +99,9 @@ bool coplanar_meet(const Vec3& p, const Vec3& q, const TrianglePoints& t, Vec3* 
 bool edge_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const TrianglePoints& t, Vec3* witness) noexcept {
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) return coplanar_meet(p, q, t, witness);
-  const SegmentOrientation around(p, q, t);
-  const int first = around(0, 1), second = around(1, 2);
+  const int first = orientation(p, q, t[0], t[1]), second = orientation(p, q, t[1], t[2]);
   if (first * second < 0) return false;
-  const int third = around(2, 0);
+  const int third = orientation(p, q, t[2], t[0]);
   if (first * third < 0 || second * third < 0) return false;
   if (witness) *witness = crossing_point(p, q, t);
   return true;

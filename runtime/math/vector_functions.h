@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "math/exact_sign.h"
 
@@ -28,6 +29,11 @@ inline Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
   const auto& r = pose.rotation;
   return {r[0] * v[0] + r[3] * v[1] + r[6] * v[2], r[1] * v[0] + r[4] * v[1] + r[7] * v[2],
           r[2] * v[0] + r[5] * v[1] + r[8] * v[2]};
+}
+
+// A float that is at least `value`, rounding of a few operations in double included.
+inline float stored_above(double value) noexcept {
+  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
 // As std::ilogb and std::ldexp, which the sizes that occur need no call for.

@@ -77,17 +77,15 @@ template <typename Work>
 ORCHARD_FOR_AVX512 void work_with_avx512(const Work& work) {
   work();
 }
+#endif
 template <typename Work>
 void per_machine(const Work& work) {
+#ifdef ORCHARD_MACHINES
   const Machine chosen = machine();
   if (chosen == Machine::avx512) return work_with_avx512(work);
-  return chosen == Machine::avx2 ? work_with_avx2(work) : work();
-}
-#else
-template <typename Work>
-void per_machine(const Work& work) {
+  if (chosen == Machine::avx2) return work_with_avx2(work);
+#endif
   work();
 }
-#endif
 
 }  // namespace orchard::runtime::detail

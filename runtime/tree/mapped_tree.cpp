@@ -1,6 +1,9 @@
 #include "orchard/runtime/tree_file.h"
 
+#include <span>
 #include <utility>
+
+#include "execution/guarded.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #define ORCHARD_CAN_MAP 1
@@ -11,69 +14,45 @@
 #endif
 
 namespace orchard::runtime {
+namespace {
 
-MappedTree::MappedTree(MappedTree&& other) noexcept { *this = std::move(other); }
-
-MappedTree& MappedTree::operator=(MappedTree&& other) noexcept {
-  if (this == &other) return *this;
-  close();
-  view_ = std::exchange(other.view_, {});
-  copy_ = std::exchange(other.copy_, {});  // moving vectors keeps their elements where they are
-  bytes_ = std::exchange(other.bytes_, nullptr);
-  size_ = std::exchange(other.size_, 0);
-  return *this;
-}
-
+// The bytes of a file, as long as `mapped` is there; cannot_map where files cannot be mapped.
+LoadStatus map_file([[maybe_unused]] const char* path, [[maybe_unused]] std::shared_ptr<const void>& mapped,
+                    [[maybe_unused]] std::span<const std::byte>& bytes) {
 #ifdef ORCHARD_CAN_MAP
-
-LoadStatus MappedTree::open(const char* path) noexcept {
-  close();
   const int file = ::open(path, O_RDONLY | O_CLOEXEC);
   if (file < 0) return LoadStatus::cannot_open;
   struct stat status {};
   const bool known = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
-  if (!known || status.st_size <= 0) {
-    ::close(file);
-    return known ? LoadStatus::truncated : LoadStatus::read_failed;
-  }
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* const bytes = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
+  const auto size = known ? static_cast<std::size_t>(status.st_size) : 0;
+  void* const begin = size > 0 ? ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0) : MAP_FAILED;
   ::close(file);
-  if (bytes == MAP_FAILED) return LoadStatus::read_failed;
-  bytes_ = bytes;
-  size_ = size;
-  LoadStatus result = runtime::view({static_cast<const std::byte*>(bytes), size}, view_);
-  if (result == LoadStatus::ok) return result;
-  close();
-  if (result == LoadStatus::cannot_map) {
-    result = load_file(path, copy_);
-    view_ = copy_;
-  }
-  return result;
-}
-
-void MappedTree::close() noexcept {
-  if (bytes_ != nullptr) ::munmap(bytes_, size_);
-  bytes_ = nullptr;
-  size_ = 0;
-  view_ = {};
-  copy_ = {};
-}
-
+  if (begin == MAP_FAILED) return known && size == 0 ? LoadStatus::truncated : LoadStatus::read_failed;
+  mapped = std::shared_ptr<const void>(begin, [size](const void* of) { ::munmap(const_cast<void*>(of), size); });
+  bytes = {static_cast<const std::byte*>(begin), size};
+  return LoadStatus::ok;
 #else
+  return LoadStatus::cannot_map;
+#endif
+}
+
+}  // namespace
 
 LoadStatus MappedTree::open(const char* path) noexcept {
   close();
-  const LoadStatus result = load_file(path, copy_);
-  if (result == LoadStatus::ok) view_ = copy_;
-  return result;
+  return detail::made_or(LoadStatus::out_of_memory, [&] {
+    std::shared_ptr<const void> memory;
+    std::span<const std::byte> bytes;
+    LoadStatus result = map_file(path, memory, bytes);
+    if (result == LoadStatus::ok) result = runtime::view(bytes, view_);
+    if (result == LoadStatus::cannot_map) {
+      const auto copy = std::make_shared<PackedSphereTree>();
+      result = load_file(path, *copy);
+      view_ = *copy, memory = copy;
+    }
+    if (result == LoadStatus::ok) memory_ = std::move(memory);
+    return result;
+  });
 }
-
-void MappedTree::close() noexcept {
-  view_ = {};
-  copy_ = {};
-}
-
-#endif
 
 }  // namespace orchard::runtime

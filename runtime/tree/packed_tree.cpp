@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "orchard/runtime/pose.h"
+
 namespace orchard::runtime {
 namespace {
 
@@ -25,74 +27,62 @@ const char* node_fault(const SiblingBlock& block, std::uint32_t lane) noexcept {
   return nullptr;
 }
 
-// Walks the blocks level by level. In breadth-first order the children of the nodes seen so far occupy exactly the
-// blocks up to next_block, so one counter proves that no block is shared, skipped or its own ancestor.
-class StructureCheck {
- public:
-  explicit StructureCheck(const TreeView& tree) noexcept : tree_(tree) {}
+// How many lanes hold a node: those before the first empty one. All behind it must be marked empty, too.
+template <typename Block>
+std::uint32_t used_lanes(const Block& block) noexcept {
+  const auto first = std::find(block.radius.begin(), block.radius.end(), -1.0f);
+  const bool rest_is_empty = std::all_of(first, block.radius.end(), [](float radius) { return radius == -1; });
+  return rest_is_empty ? static_cast<std::uint32_t>(first - block.radius.begin()) : kBlockWidth + 1;
+}
 
-  const char* fault() noexcept {
-    if (tree_.blocks.empty()) return "there is no root";
-    constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
-    if (tree_.blocks.size() > limit / kBlockWidth) return "there are too many blocks for 32-bit node ids";
-    if (const char* fault = block_fault(0, 1)) return fault;
-    std::size_t level_begin = 0;
-    std::uint32_t levels = 0;
-    while (level_begin < next_block_) {
-      const std::size_t level_end = next_block_;
-      for (std::size_t b = level_begin; b < level_end; ++b) {
-        if (const char* fault = children_fault(tree_.blocks[b])) return fault;
-      }
-      level_begin = level_end;
-      ++levels;
-    }
-    if (next_block_ != tree_.blocks.size()) return "a block has no parent";
-    if (levels != tree_.depth + 1u) return "the depth does not match the nodes";
-    if (nodes_ != tree_.node_count) return "the node count does not match the nodes";
-    return nullptr;
-  }
-
- private:
-  // `used` lanes hold nodes, the others must be marked empty.
-  const char* block_fault(std::size_t index, std::uint32_t used) noexcept {
-    const SiblingBlock& block = tree_.blocks[index];
+// Walks the blocks of a tree. In breadth-first order the children of the nodes seen so far occupy exactly the blocks up
+// to next_block, so one counter proves that no block is shared, skipped or its own ancestor. node_fault(block, lane,
+// next_block) checks a node and counts the blocks of its children.
+template <typename Block, typename NodeFault>
+const char* order_fault(std::span<const Block> blocks, std::uint32_t depth, const NodeFault& node_fault) noexcept {
+  if (blocks.size() > kNoTriangle / kBlockWidth) return "there are too many blocks for 32-bit node ids";
+  if (used_lanes(blocks[0]) != 1) return "the root is not the only node of its block";
+  std::size_t next_block = 1, level_end = 1;
+  std::uint32_t level = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (b == next_block) return "a block has no parent";
+    if (b == level_end) level_end = next_block, ++level;
+    const std::uint32_t used = used_lanes(blocks[b]);
+    if (used == 0 || used > kBlockWidth) return "a block is empty, or a lane beyond its last node is not marked empty";
     for (std::uint32_t lane = 0; lane < used; ++lane) {
-      if (const char* fault = node_fault(block, lane)) return fault;
+      if (const char* fault = node_fault(blocks[b], lane, next_block)) return fault;
     }
-    for (std::uint32_t lane = used; lane < kBlockWidth; ++lane) {
-      if (block.radius[lane] != -1) return "a lane beyond the last child is not marked empty";
-    }
-    nodes_ += used;
-    next_block_ = index + 1;
-    return nullptr;
+    if (next_block > blocks.size()) return "a node's children are beyond the end";
   }
+  return level == depth ? nullptr : "the depth does not match the nodes";
+}
 
-  const char* children_fault(const SiblingBlock& block) noexcept {
-    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      if (block.link[lane] & kLeafBit) {
-        const std::uint32_t list = block.link[lane] & ~kLeafBit;
-        if (block.link[lane] != kEmptyLeaf && list >= tree_.leaf_triangles.size()) {
-          return "a leaf lists triangles beyond the end";
+const char* sphere_tree_fault(const TreeView& tree) noexcept {
+  if (tree.blocks.empty()) return "there is no root";
+  std::uint64_t nodes = 0;
+  const auto fault = order_fault(
+      tree.blocks, tree.depth, [&](const SiblingBlock& block, std::uint32_t lane, std::size_t& next) -> const char* {
+        ++nodes;
+        if (const char* wrong = node_fault(block, lane)) return wrong;
+        if (block.link[lane] & kLeafBit) {
+          const bool listed = (block.link[lane] & ~kLeafBit) < tree.leaf_triangles.size();
+          return listed || block.link[lane] == kEmptyLeaf ? nullptr : "a leaf lists triangles beyond the end";
         }
-        continue;
-      }
-      if (tree_.branching == 0 || tree_.branching > kMaxBranching) return "the branching is out of range";
-      const auto [first, count] = children_of(tree_.branching, block.link[lane]);
-      if (count > tree_.branching) return "an inner node has more children than the branching";
-      if (first != next_block_) return "blocks are not in breadth-first order";
-      const std::uint32_t blocks = block_count(count);
-      if (blocks > tree_.blocks.size() - next_block_) return "a node's children are beyond the end";
-      for (std::uint32_t b = 0; b < blocks; ++b) {
-        if (const char* fault = block_fault(first + b, std::min(kBlockWidth, count - b * kBlockWidth))) return fault;
-      }
-    }
-    return nullptr;
-  }
-
-  const TreeView& tree_;
-  std::size_t next_block_ = 0;  // the first block that no node seen so far owns
-  std::uint64_t nodes_ = 0;
-};
+        if (tree.branching == 0 || tree.branching > kMaxBranching) return "the branching is out of range";
+        const auto [first, count] = children_of(tree.branching, block.link[lane]);
+        if (count > tree.branching) return "an inner node has more children than the branching";
+        if (first != next) return "blocks are not in breadth-first order";
+        next += block_count(count);
+        if (next > tree.blocks.size()) return "a node's children are beyond the end";
+        for (std::uint32_t left = count; left > 0; left -= std::min(left, kBlockWidth)) {
+          if (used_lanes(tree.blocks[next - block_count(left)]) != std::min(left, kBlockWidth)) {
+            return "the number of a node's children does not match their blocks";
+          }
+        }
+        return nullptr;
+      });
+  return fault != nullptr || nodes == tree.node_count ? fault : "the node count does not match the nodes";
+}
 
 const char* triangle_fault(const TreeView& tree) noexcept {
   for (const auto& vertex : tree.vertices) {
@@ -122,9 +112,7 @@ const char* obb_node_fault(const ObbNodeBlock& block, std::uint32_t lane) noexce
   for (const auto* sizes : {&block.radius, &block.height, &block.width, &block.length}) {
     if (!((*sizes)[lane] >= 0)) return "a ball slab has a negative size";
   }
-  const std::array<double, 3> n = {block.nx[lane], block.ny[lane], block.nz[lane]},
-                              m = {block.mx[lane], block.my[lane], block.mz[lane]};
-  const auto dot = [](const auto& p, const auto& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
+  const Vec3 n(block.nx[lane], block.ny[lane], block.nz[lane]), m(block.mx[lane], block.my[lane], block.mz[lane]);
   if (!(std::fabs(dot(n, n) - 1) <= kNormalTolerance && std::fabs(dot(m, m) - 1) <= kNormalTolerance)) {
     return "a ball slab's normal is not a unit vector";
   }
@@ -147,42 +135,27 @@ const char* triangle_block_fault(const TreeView& tree, const TriangleBlock& bloc
   return nullptr;
 }
 
-// Breadth-first order again: every node's child is the next block, of ball slabs or of triangles, that has no parent
-// yet.
 const char* triangle_tree_fault(const TreeView& tree) noexcept {
   if (tree.triangles.empty())
     return tree.obb_nodes.empty() && tree.triangle_blocks.empty() ? nullptr : "ball slabs of nothing";
   if (tree.obb_nodes.empty()) return "the triangles have no tree: build the file again";
-  if (tree.obb_nodes.size() > kNoTriangle / kBlockWidth || tree.triangle_blocks.size() >= kLeafBit) {
+  if (tree.triangle_blocks.size() >= kLeafBit || tree.triangle_tree_depth > kTriangleTreeDepthLimit) {
     return "there are too many ball slabs";
   }
-  std::size_t next_slabs = 1, next_triangles = 0, level_end = 1;
-  std::uint32_t level = 0;
-  for (std::size_t b = 0; b < tree.obb_nodes.size(); ++b) {
-    if (b == next_slabs) return "a block of ball slabs has no parent";
-    if (b == level_end) level_end = next_slabs, ++level;
-    const ObbNodeBlock& block = tree.obb_nodes[b];
-    bool ended = false;
-    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-      if (block.radius[lane] == -1) {
-        if (lane == 0) return "a block of ball slabs is empty";
-        ended = true;
-        continue;
-      }
-      if (ended || (b == 0 && lane > 0)) return "a ball slab stands behind an empty lane or beside the root";
-      if (const char* fault = obb_node_fault(block, lane)) return fault;
-      std::size_t& next = block.child[lane] & kLeafBit ? next_triangles : next_slabs;
-      if ((block.child[lane] & ~kLeafBit) != next++) return "ball slabs are not in breadth-first order";
-    }
-  }
-  if (next_slabs != tree.obb_nodes.size() || next_triangles != tree.triangle_blocks.size()) {
-    return "a ball slab's children are beyond the end";
-  }
-  if (level != tree.triangle_tree_depth || level > kTriangleTreeDepthLimit)
-    return "the depth does not match the ball slabs";
+  // The child of each node is the next block, of ball slabs or of triangles, that has no parent yet.
+  std::size_t next_triangles = 0;
+  const auto fault = order_fault(
+      tree.obb_nodes, tree.triangle_tree_depth,
+      [&](const ObbNodeBlock& block, std::uint32_t lane, std::size_t& next_slabs) {
+        if (const char* wrong = obb_node_fault(block, lane)) return wrong;
+        std::size_t& next = block.child[lane] & kLeafBit ? next_triangles : next_slabs;
+        return (block.child[lane] & ~kLeafBit) == next++ ? nullptr : "ball slabs are not in breadth-first order";
+      });
+  if (fault != nullptr) return fault;
+  if (next_triangles != tree.triangle_blocks.size()) return "a ball slab's children are beyond the end";
   std::size_t triangles = 0;
   for (const TriangleBlock& block : tree.triangle_blocks) {
-    if (const char* fault = triangle_block_fault(tree, block)) return fault;
+    if (const char* wrong = triangle_block_fault(tree, block)) return wrong;
     for (const std::uint32_t t : block.triangle) triangles += t != kNoTriangle;
   }
   return triangles == tree.triangles.size() ? nullptr : "the tree of triangles does not hold every triangle once";
@@ -215,7 +188,7 @@ const char* structure_fault(const TreeView& tree) noexcept {
   if (const char* fault = triangle_fault(tree)) return fault;
   if (const char* fault = triangle_tree_fault(tree)) return fault;
   if (const char* fault = support_fault(tree)) return fault;
-  return StructureCheck(tree).fault();
+  return sphere_tree_fault(tree);
 }
 
 std::span<const std::uint32_t> listed_triangles(const TreeView& tree, std::uint32_t link) noexcept {
@@ -238,19 +211,17 @@ double coordinate_extent(const TreeView& tree) noexcept {
   double extent = 0;
   const auto include = [&extent](double x, double y, double z, double radius) {
     // The factor covers the rounding of the five operations before it.
-    extent = std::max(extent, (std::sqrt(x * x + y * y + z * z) + radius) * (1 + 1e-15));
+    extent = std::max(extent, (length({x, y, z}) + radius) * (1 + 1e-15));
   };
-  for (const SiblingBlock& block : tree.blocks) {
-    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
+  const auto include_nodes = [&include](const auto& blocks) {
+    for (const auto& block : blocks) {
+      for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+        include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
+      }
     }
-  }
+  };
+  include_nodes(tree.blocks), include_nodes(tree.obb_nodes);
   for (const auto& vertex : tree.vertices) include(vertex[0], vertex[1], vertex[2], 0);
-  for (const ObbNodeBlock& block : tree.obb_nodes) {
-    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
-    }
-  }
   return extent;
 }
 

@@ -14,26 +14,20 @@ namespace orchard::runtime {
 using detail::cross;
 using detail::minus;
 using detail::orientation;
+using detail::stored_above;
 
 namespace {
 
 using Point = std::array<double, 3>;
 using HullTriangle = std::array<std::uint32_t, 3>;
 
-float stored_above(double value) {
-  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
+// `depth`: an upper bound on the signed distance of the root's centre.
+void set_depth(PackedSphereTree& tree, double depth) {
+  tree.blocks[0].depth[0] = stored_above(depth);
+  tree.blocks[0].error[0] = stored_above(tree.bounding_radius + std::max(0.0, depth));
 }
 
-double farthest(const PackedSphereTree& tree, const Point& from) {
-  double square = 0;
-  for (const auto& v : tree.vertices) {
-    const Point d = minus({double{v[0]}, double{v[1]}, double{v[2]}}, from);
-    square = std::max(square, dot(d, d));
-  }
-  return std::sqrt(square);
-}
-
-// One sphere around everything, a leaf. `depth`: of the sphere's centre, an upper bound on its signed distance.
+// One sphere around everything, a leaf.
 PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const HullTriangle> triangles, double depth) {
   PackedSphereTree tree;
   if (vertices.empty()) return tree;
@@ -44,26 +38,21 @@ PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const HullTr
   for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = low[i] + (high[i] - low[i]) / 2;
   for (const Point& v : vertices) {
     std::array<float, 3> stored{};
-    double square = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double exact = v[i] - tree.origin[i];
-      stored[i] = static_cast<float>(exact);
-      const double change = double{stored[i]} - exact;
-      square += change * change;
-    }
+    const Vec3 exact = minus(v, tree.origin);
+    for (std::size_t i = 0; i < 3; ++i) stored[i] = static_cast<float>(exact[i]);
     tree.vertices.push_back(stored);
-    tree.vertex_error = std::max(tree.vertex_error, std::sqrt(square) * (1 + 1e-12));
+    const Vec3 rounded(stored[0], stored[1], stored[2]);
+    tree.vertex_error = std::max(tree.vertex_error, length(rounded - exact) * (1 + 1e-12));
+    tree.bounding_radius = std::max(tree.bounding_radius, length(rounded));
   }
+  tree.bounding_radius += tree.vertex_error;
   tree.triangles.assign(triangles.begin(), triangles.end());
-  const double radius = farthest(tree, {0, 0, 0}) + tree.vertex_error;
-  tree.bounding_radius = radius;
   tree.branching = 1;
   tree.node_count = 1;
   SiblingBlock& root = tree.blocks.emplace_back();
   root.radius.fill(-1);
-  root.radius[0] = stored_above(radius);
-  root.depth[0] = stored_above(depth);
-  root.error[0] = stored_above(radius + std::max(0.0, depth));
+  root.radius[0] = stored_above(tree.bounding_radius);
+  set_depth(tree, depth);
   std::vector<std::uint32_t> all(triangles.size());
   for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
   root.link[0] = add_list(tree, all);
@@ -179,12 +168,7 @@ std::optional<PackedSphereTree> hull_tree(std::span<const Point> points) {
     const double size = std::sqrt(dot(n, n));
     if (size > 0) depth = std::max(depth, dot(n, minus(tree.origin, corners[t[0]])) / size);
   }
-  if (depth > -1e-9 * tree.bounding_radius)
-    depth = tree.bounding_radius;
-  else
-    depth = 0;
-  tree.blocks[0].depth[0] = stored_above(depth);
-  tree.blocks[0].error[0] = stored_above(tree.bounding_radius + depth);
+  if (depth > -1e-9 * tree.bounding_radius) set_depth(tree, tree.bounding_radius);
   return tree;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -21,28 +22,27 @@ constexpr std::array<unsigned char, 8> kMagic = {0x89, 'O', 'R', 'C', 'H', '\r',
 constexpr std::uint32_t kVersion = 4;
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kSections = 7;
-constexpr std::size_t kHeaderSize = 320;
-constexpr std::size_t kPreambleSize = 32;  // magic to file size: enough to tell how long the file must be
 
-// Where the fields are: docs/reference/formats.md.
-enum Field : std::size_t {
-  kVersionAt = 8,
-  kHeaderSizeAt = 12,
-  kChecksumAt = 16,
-  kFileSizeAt = 24,
-  kBranchingAt = 32,
-  kDepthAt = 36,
-  kNodeCountAt = 40,
-  kSectionCountAt = 44,
-  kOriginAt = 48,
-  kBoundingRadiusAt = 72,
-  kVertexErrorAt = 80,
-  kTriangleTreeDepthAt = 88,
-  kReservedAt = 92,
-  kTableAt = 96,
-  kTableStride = 24,
+// docs/reference/formats.md describes it.
+struct Header {
+  struct Preamble {  // enough to tell how long the file must be
+    std::array<unsigned char, 8> magic;
+    std::uint32_t version, header_size;
+    std::uint64_t checksum, file_size;
+  } preamble;
+  std::uint32_t branching, depth, node_count, section_count;
+  std::array<double, 3> origin;
+  double bounding_radius, vertex_error;
+  std::uint32_t triangle_tree_depth, reserved;
+  struct Section {
+    std::uint32_t number, element_size;
+    std::uint64_t offset, count;
+    std::uint64_t end() const noexcept { return offset + count * element_size; }
+  };
+  std::array<Section, kSections> sections;
+  std::array<std::byte, 56> unused;
 };
-constexpr std::size_t kTableEnd = kTableAt + kSections * kTableStride;
+static_assert(sizeof(Header) == 320 && offsetof(Header, origin) == 48 && offsetof(Header, sections) == 96);
 
 constexpr std::uint64_t aligned(std::uint64_t size) noexcept { return (size + kAlignment - 1) & ~(kAlignment - 1); }
 
@@ -56,17 +56,14 @@ T from_little_endian(T value) noexcept {
   return value;
 }
 
-template <typename T>
-T get(const std::byte* file, std::size_t offset) noexcept {
-  T value;
-  std::memcpy(&value, file + offset, sizeof value);
-  return from_little_endian(value);
-}
-
-template <typename T>
-void put(std::byte* file, std::size_t offset, T value) noexcept {
-  value = from_little_endian(value);  // its own inverse
-  std::memcpy(file + offset, &value, sizeof value);
+// Its own inverse.
+Header from_little_endian(Header h) noexcept {
+  const auto convert = [](auto&... numbers) { ((numbers = from_little_endian(numbers)), ...); };
+  convert(h.preamble.version, h.preamble.header_size, h.preamble.checksum, h.preamble.file_size, h.branching, h.depth,
+          h.node_count, h.section_count);
+  convert(h.origin[0], h.origin[1], h.origin[2], h.bounding_radius, h.vertex_error, h.triangle_tree_depth, h.reserved);
+  for (Header::Section& s : h.sections) convert(s.number, s.element_size, s.offset, s.count);
+  return h;
 }
 
 // Every element of every section is made of 32-bit words, so one copy serves them all.
@@ -74,7 +71,7 @@ void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) noexcep
   if (bytes == 0) return;
   std::memcpy(to, from, bytes);
   if constexpr (std::endian::native == std::endian::big) {
-    for (std::size_t i = 0; i < bytes; i += 4) put(to, i, get<std::uint32_t>(from, i));
+    for (std::size_t i = 0; i < bytes; i += 4) std::reverse(to + i, to + i + 4);
   }
 }
 
@@ -83,16 +80,14 @@ void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) noexcep
 std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
   std::uint64_t state = 0x6f72636861726421u;
   for (std::size_t i = 0; i < size; i += 8) {
-    if (i == kChecksumAt) continue;
-    state = (state ^ get<std::uint64_t>(file, i)) * 0x9e3779b97f4a7c15u;
+    if (i == offsetof(Header::Preamble, checksum)) continue;
+    std::uint64_t word;
+    std::memcpy(&word, file + i, sizeof word);
+    state = (state ^ from_little_endian(word)) * 0x9e3779b97f4a7c15u;
     state ^= state >> 32;
   }
   return state;
 }
-
-// In the order of the table; every element is made of 32-bit words.
-constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock),  12, 12, 4, sizeof(ObbNodeBlock),
-                                                                sizeof(TriangleBlock), 4};
 
 // Calls visit(section number from 0, array) for every section of a tree or view.
 template <typename Tree, typename Visit>
@@ -101,64 +96,67 @@ void each_section(Tree& tree, Visit&& visit) {
   visit(3, tree.leaf_triangles), visit(4, tree.obb_nodes), visit(5, tree.triangle_blocks), visit(6, tree.supports);
 }
 
-template <typename Tree>
-void get_header(const std::byte* file, Tree& tree) noexcept {
-  tree.branching = get<std::uint32_t>(file, kBranchingAt);
-  tree.depth = get<std::uint32_t>(file, kDepthAt);
-  tree.node_count = get<std::uint32_t>(file, kNodeCountAt);
-  tree.triangle_tree_depth = get<std::uint32_t>(file, kTriangleTreeDepthAt);
-  for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = get<double>(file, kOriginAt + 8 * i);
-  tree.bounding_radius = get<double>(file, kBoundingRadiusAt);
-  tree.vertex_error = get<double>(file, kVertexErrorAt);
+// Calls visit(number of the header, number of the tree) for all that both have.
+template <typename HeaderOrConst, typename Numbers, typename Visit>
+void each_number(HeaderOrConst& header, Numbers& tree, const Visit& visit) {
+  visit(header.branching, tree.branching), visit(header.depth, tree.depth);
+  visit(header.node_count, tree.node_count), visit(header.triangle_tree_depth, tree.triangle_tree_depth);
+  visit(header.origin, tree.origin);
+  visit(header.bounding_radius, tree.bounding_radius), visit(header.vertex_error, tree.vertex_error);
 }
 
-LoadStatus check_preamble(const std::byte* file, std::size_t size) noexcept {
-  if (size == 0) return LoadStatus::truncated;  // and `file` may be null
-  if (std::memcmp(file, kMagic.data(), std::min(size, kMagic.size())) != 0) return LoadStatus::bad_magic;
-  if (size < kPreambleSize) return LoadStatus::truncated;
-  const auto version = get<std::uint32_t>(file, kVersionAt);
-  if (version != kVersion) return version > kVersion ? LoadStatus::version_newer : LoadStatus::version_older;
-  return LoadStatus::ok;
+LoadStatus check_preamble(std::span<const std::byte> file, Header& header) noexcept {
+  if (file.empty()) return LoadStatus::truncated;
+  header = {};
+  std::memcpy(&header, file.data(), std::min(file.size(), sizeof header));
+  if (std::memcmp(&header, kMagic.data(), std::min(file.size(), kMagic.size())) != 0) return LoadStatus::bad_magic;
+  if (file.size() < sizeof(Header::Preamble)) return LoadStatus::truncated;
+  header = from_little_endian(header);
+  if (header.preamble.version == kVersion) return LoadStatus::ok;
+  return header.preamble.version > kVersion ? LoadStatus::version_newer : LoadStatus::version_older;
 }
 
-LoadStatus check_file(std::span<const std::byte> file) noexcept {
-  if (const LoadStatus status = check_preamble(file.data(), file.size()); status != LoadStatus::ok) return status;
-  const std::byte* const bytes = file.data();
-  const auto file_size = get<std::uint64_t>(bytes, kFileSizeAt);
-  if (file_size > file.size() || file.size() < kHeaderSize) return LoadStatus::truncated;
-  if (file_size < file.size() || file_size % kAlignment != 0) return LoadStatus::invalid_structure;
-  if (checksum(bytes, file.size()) != get<std::uint64_t>(bytes, kChecksumAt)) return LoadStatus::checksum_mismatch;
-  if (get<std::uint32_t>(bytes, kHeaderSizeAt) != kHeaderSize) return LoadStatus::invalid_structure;
-  if (get<std::uint32_t>(bytes, kSectionCountAt) != kSections) return LoadStatus::invalid_structure;
-  return LoadStatus::ok;
-}
-
-bool all_zero(std::span<const std::byte> file, std::uint64_t begin, std::uint64_t end) noexcept {
-  const auto bytes = file.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+bool all_zero(std::span<const std::byte> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
 // The sections must follow one another in order without gaps and end with the file, and what belongs to none is zero:
 // one form for one tree, and a sum of sizes that no crafted table can push beyond the file.
-LoadStatus check_table(std::span<const std::byte> file, std::array<std::uint64_t, kSections>& counts) noexcept {
-  std::uint64_t end = kHeaderSize;
-  for (std::size_t i = 0; i < kSections; ++i) {
-    const std::size_t at = kTableAt + i * kTableStride;
-    const std::uint32_t size = kElementSizes[i];
-    if (get<std::uint32_t>(file.data(), at) != i + 1 || get<std::uint32_t>(file.data(), at + 4) != size ||
-        get<std::uint64_t>(file.data(), at + 8) != end) {
-      return LoadStatus::invalid_structure;
-    }
-    counts[i] = get<std::uint64_t>(file.data(), at + 16);
-    if (counts[i] > (file.size() - end) / size) return LoadStatus::invalid_structure;
-    const std::uint64_t used = end + counts[i] * size;
-    end = aligned(used);
-    if (end > file.size() || !all_zero(file, used, end)) return LoadStatus::invalid_structure;
-  }
-  if (!all_zero(file, kReservedAt, kTableAt) || !all_zero(file, kTableEnd, kHeaderSize)) {
+bool is_table_valid(std::span<const std::byte> file, const Header& header) noexcept {
+  std::uint64_t end = sizeof header;
+  bool valid = header.section_count == kSections && header.reserved == 0 && all_zero(header.unused);
+  const TreeView none;
+  each_section(none, [&](std::size_t i, const auto& elements) {
+    const Header::Section& section = header.sections[i];
+    constexpr std::uint32_t size = sizeof elements[0];
+    valid = valid && section.number == i + 1 && section.element_size == size && section.offset == end &&
+            section.count <= (file.size() - end) / size && aligned(section.end()) <= file.size();
+    if (!valid) return;
+    end = aligned(section.end());
+    valid = all_zero(file.subspan(section.end(), end - section.end()));
+  });
+  return valid && end == file.size();
+}
+
+LoadStatus check_file(std::span<const std::byte> file, Header& header) noexcept {
+  if (const LoadStatus status = check_preamble(file, header); status != LoadStatus::ok) return status;
+  if (header.preamble.file_size > file.size() || file.size() < sizeof header) return LoadStatus::truncated;
+  if (header.preamble.file_size < file.size() || header.preamble.file_size % kAlignment != 0)
     return LoadStatus::invalid_structure;
-  }
-  return end == file.size() ? LoadStatus::ok : LoadStatus::invalid_structure;
+  if (checksum(file.data(), file.size()) != header.preamble.checksum) return LoadStatus::checksum_mismatch;
+  const bool valid = header.preamble.header_size == sizeof header && is_table_valid(file, header);
+  return valid ? LoadStatus::ok : LoadStatus::invalid_structure;
+}
+
+// Fills a tree by a header and by place(array, section), unless what results is none that queries can walk.
+template <typename Tree, typename Place>
+LoadStatus fill(const Header& header, Tree& out, const Place& place) {
+  Tree tree;
+  each_section(tree, [&](std::size_t i, auto& elements) { place(elements, header.sections[i]); });
+  each_number(header, tree, [](const auto& from, auto& to) { to = from; });
+  if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
+  out = std::move(tree);
+  return LoadStatus::ok;
 }
 
 struct Close {
@@ -178,11 +176,6 @@ LoadStatus read_up_to(std::FILE* stream, std::uint64_t size, std::vector<std::by
     if (got < wanted) return std::ferror(stream) ? LoadStatus::read_failed : LoadStatus::ok;
   }
   return LoadStatus::ok;
-}
-
-template <typename Work>
-LoadStatus unless_out_of_memory(const Work& work) noexcept {
-  return detail::guarded(work, [] { return LoadStatus::out_of_memory; });
 }
 
 }  // namespace
@@ -207,100 +200,71 @@ const char* message(LoadStatus status) noexcept {
 }
 
 std::vector<std::byte> serialize(const TreeView& tree) {
-  std::array<std::uint64_t, kSections> bytes{}, counts{};
-  std::array<const std::byte*, kSections> contents{};
-  std::uint64_t size = kHeaderSize;
+  Header header{};
+  header.preamble.magic = kMagic;
+  header.preamble.version = kVersion, header.preamble.header_size = sizeof header, header.section_count = kSections;
+  each_number(header, tree, [](auto& to, const auto& from) { to = from; });
+  header.preamble.file_size = sizeof header;
   each_section(tree, [&](std::size_t i, const auto& elements) {
-    static_assert(sizeof(elements[0]) % 4 == 0);
-    counts[i] = elements.size();
-    bytes[i] = elements.size() * sizeof(elements[0]);
-    contents[i] = reinterpret_cast<const std::byte*>(elements.data());
-    size = aligned(size + bytes[i]);
+    header.sections[i] = {static_cast<std::uint32_t>(i + 1), sizeof elements[0], header.preamble.file_size,
+                          elements.size()};
+    header.preamble.file_size = aligned(header.sections[i].end());
   });
-  std::vector<std::byte> file(size);
-
-  std::memcpy(file.data(), kMagic.data(), kMagic.size());
-  put(file.data(), kVersionAt, kVersion);
-  put(file.data(), kHeaderSizeAt, static_cast<std::uint32_t>(kHeaderSize));
-  put(file.data(), kFileSizeAt, size);
-  put(file.data(), kBranchingAt, tree.branching);
-  put(file.data(), kDepthAt, tree.depth);
-  put(file.data(), kNodeCountAt, tree.node_count);
-  put(file.data(), kSectionCountAt, static_cast<std::uint32_t>(kSections));
-  for (std::size_t i = 0; i < 3; ++i) put(file.data(), kOriginAt + 8 * i, tree.origin[i]);
-  put(file.data(), kBoundingRadiusAt, tree.bounding_radius);
-  put(file.data(), kVertexErrorAt, tree.vertex_error);
-  put(file.data(), kTriangleTreeDepthAt, tree.triangle_tree_depth);
-
-  std::uint64_t offset = kHeaderSize;
-  for (std::size_t i = 0; i < kSections; ++i) {
-    const std::size_t at = kTableAt + i * kTableStride;
-    put(file.data(), at, static_cast<std::uint32_t>(i + 1));
-    put(file.data(), at + 4, kElementSizes[i]);
-    put(file.data(), at + 8, offset);
-    put(file.data(), at + 16, counts[i]);
-    copy_words(file.data() + offset, contents[i], bytes[i]);
-    offset = aligned(offset + bytes[i]);
-  }
-  put(file.data(), kChecksumAt, checksum(file.data(), file.size()));
+  std::vector<std::byte> file(header.preamble.file_size);
+  each_section(tree, [&](std::size_t i, const auto& elements) {
+    static_assert(sizeof elements[0] % 4 == 0);
+    copy_words(&file[header.sections[i].offset], reinterpret_cast<const std::byte*>(elements.data()),
+               elements.size_bytes());
+  });
+  const auto put_header = [&] {
+    const Header stored = from_little_endian(header);
+    std::memcpy(file.data(), &stored, sizeof stored);
+  };
+  put_header();
+  header.preamble.checksum = checksum(file.data(), file.size());
+  put_header();
   return file;
 }
 
 LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept {
-  if (const LoadStatus status = check_file(file); status != LoadStatus::ok) return status;
-  std::array<std::uint64_t, kSections> counts{};
-  if (const LoadStatus status = check_table(file, counts); status != LoadStatus::ok) return status;
-  return unless_out_of_memory([&] {
-    PackedSphereTree tree;
-    std::uint64_t offset = kHeaderSize;
-    each_section(tree, [&](std::size_t i, auto& elements) {
-      elements.resize(counts[i]);
-      const std::uint64_t bytes = counts[i] * kElementSizes[i];
-      copy_words(reinterpret_cast<std::byte*>(elements.data()), file.data() + offset, bytes);
-      offset = aligned(offset + bytes);
+  Header header;
+  if (const LoadStatus status = check_file(file, header); status != LoadStatus::ok) return status;
+  return detail::made_or(LoadStatus::out_of_memory, [&] {
+    return fill(header, out, [file](auto& elements, const Header::Section& section) {
+      elements.resize(static_cast<std::size_t>(section.count));
+      copy_words(reinterpret_cast<std::byte*>(elements.data()), file.data() + section.offset,
+                 section.end() - section.offset);
     });
-    get_header(file.data(), tree);
-    if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
-    out = std::move(tree);
-    return LoadStatus::ok;
   });
 }
 
 LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept {
-  if (const LoadStatus status = check_file(file); status != LoadStatus::ok) return status;
-  std::array<std::uint64_t, kSections> counts{};
-  if (const LoadStatus status = check_table(file, counts); status != LoadStatus::ok) return status;
+  Header header;
+  if (const LoadStatus status = check_file(file, header); status != LoadStatus::ok) return status;
   if (std::endian::native != std::endian::little ||
       reinterpret_cast<std::uintptr_t>(file.data()) % kViewAlignment != 0) {
     return LoadStatus::cannot_map;
   }
-  TreeView tree;
-  std::uint64_t offset = kHeaderSize;
-  each_section(tree, [&](std::size_t i, auto& elements) {
+  return fill(header, out, [file](auto& elements, const Header::Section& section) {
     using Element = typename std::remove_reference_t<decltype(elements)>::element_type;
     // The bytes hold exactly such objects: implicit-lifetime types of 32-bit words, written by serialize().
-    elements = {reinterpret_cast<Element*>(file.data() + offset), static_cast<std::size_t>(counts[i])};
-    offset = aligned(offset + counts[i] * kElementSizes[i]);
+    elements = {reinterpret_cast<Element*>(file.data() + section.offset), static_cast<std::size_t>(section.count)};
   });
-  get_header(file.data(), tree);
-  if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
-  out = tree;
-  return LoadStatus::ok;
 }
 
 LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept {
   const std::unique_ptr<std::FILE, Close> stream(std::fopen(path, "rb"));
   if (!stream) return LoadStatus::cannot_open;
-  return unless_out_of_memory([&] {
+  return detail::made_or(LoadStatus::out_of_memory, [&] {
     std::vector<std::byte> bytes;
-    if (const LoadStatus status = read_up_to(stream.get(), kPreambleSize, bytes); status != LoadStatus::ok)
-      return status;
-    if (const LoadStatus status = check_preamble(bytes.data(), bytes.size()); status != LoadStatus::ok) return status;
+    Header header;
+    LoadStatus status = read_up_to(stream.get(), sizeof(Header::Preamble), bytes);
+    if (status == LoadStatus::ok) status = check_preamble(bytes, header);
     // One byte more than promised, so that a longer file is noticed.
-    const auto promised = get<std::uint64_t>(bytes.data(), kFileSizeAt);
-    const std::uint64_t wanted = promised < UINT64_MAX ? promised + 1 : promised;
-    if (const LoadStatus status = read_up_to(stream.get(), wanted, bytes); status != LoadStatus::ok) return status;
-    return load(bytes, out);
+    if (status == LoadStatus::ok) {
+      status = read_up_to(stream.get(), std::max(header.preamble.file_size, header.preamble.file_size + 1), bytes);
+    }
+    return status == LoadStatus::ok ? load(bytes, out) : status;
   });
 }
 

@@ -8,23 +8,17 @@
 
 #include "orchard/runtime/packed_tree.h"
 #include "tree/box_fitter.h"
-#include "tree/places_along.h"
 
 // The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
 // triangles. Where all leaves fit in one block (a box, a wall, a simple hull), triangles are few and large beside what
-// comes near them, and leaves hold what is flat together instead: see split_few().
+// comes near them, and leaves hold what is flat together instead: see divide().
 namespace orchard::runtime {
 namespace {
 
-using detail::as_doubles, detail::cross, detail::minus;
+using detail::as_doubles, detail::cross, detail::minus, detail::stored_above;
 using detail::ObbNode, detail::BoxFitter, detail::Extent, detail::Part, detail::Range, detail::Triangle;
-using detail::PlaceAlong, detail::sort_along;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-float above(double value) {  // at least `value`, rounding of a few operations in double included
-  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
-}
 
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
@@ -56,38 +50,64 @@ class Builder {
     tree_.triangle_blocks.clear();
     tree_.triangle_tree_depth = 0;
     if (order_.empty()) return;
-    std::vector<Part> level = {fitter_.measured({0, order_.size()})}, next;
+    std::vector<Pending> level = {{fitter_.measured({0, order_.size()}), 0, 0}}, next;
     add_block();
-    place(0, 0, level[0]);
-    std::vector<std::pair<std::size_t, std::uint32_t>> places = {{0, 0}}, next_places;
+    place(level[0]);
     for (; !level.empty(); ++tree_.triangle_tree_depth) {
-      next.clear(), next_places.clear();
-      for (std::size_t n = 0; n < level.size(); ++n) expand(level[n], places[n], next, next_places);
-      level.swap(next), places.swap(next_places);
+      next.clear();
+      for (const Pending& node : level) expand(node, next);
+      level.swap(next);
     }
     --tree_.triangle_tree_depth;
   }
 
  private:
+  // A node whose children are not there yet.
+  struct Pending {
+    Part part;
+    std::size_t block;
+    std::uint32_t lane;
+  };
+  // Where a triangle of a part is along an axis. Equal ones go by their triangles' numbers.
+  struct PlaceAlong {
+    double at;
+    std::uint32_t number, from;
+    bool operator<(const PlaceAlong& other) const {
+      return at < other.at || (!(other.at < at) && number < other.number);
+    }
+  };
+  // The cheapest first, and of equal ones the more even one.
+  struct Cut {
+    double cost = kInfinity;
+    std::size_t unevenness = 0, frame = 0, axis = 0, at = 0;
+    bool operator<(const Cut& other) const {
+      return std::tie(cost, unevenness, frame, axis, at) <
+             std::tie(other.cost, other.unevenness, other.frame, other.axis, other.at);
+    }
+  };
+  // A part, and what a cut of it gains; minus infinity: it stays whole.
+  struct Piece : Part {
+    double worth = -kInfinity;
+    Cut cut{};  // of few triangles
+  };
+
   void add_block() { tree_.obb_nodes.emplace_back().radius.fill(-1); }
 
-  void expand(const Part& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Part>& next,
-              std::vector<std::pair<std::size_t, std::uint32_t>>& next_places) {
-    const bool divided = node.size() > kBlockWidth || (is_few() && tree_.triangle_tree_depth == 0);
-    const std::vector<Part> parts = !divided ? std::vector<Part>() : is_few() ? split_few(node) : split(node);
-    std::uint32_t& child = tree_.obb_nodes[at.first].child[at.second];
-    if (parts.size() <= 1) {
+  void expand(const Pending& node, std::vector<Pending>& next) {
+    const bool divided = node.part.size() > kBlockWidth || (is_few() && tree_.triangle_tree_depth == 0);
+    const std::vector<Piece> pieces = divided ? divide(node.part) : std::vector<Piece>();
+    std::uint32_t& child = tree_.obb_nodes[node.block].child[node.lane];
+    if (pieces.size() <= 1) {
       child = kLeafBit | static_cast<std::uint32_t>(tree_.triangle_blocks.size());
-      add_triangles(node);
+      add_triangles(node.part);
       return;
     }
     const std::size_t block = tree_.obb_nodes.size();
     child = static_cast<std::uint32_t>(block);
     add_block();
-    for (std::uint32_t lane = 0; lane < parts.size(); ++lane) {
-      place(block, lane, parts[lane]);
-      next.push_back(parts[lane]);
-      next_places.emplace_back(block, lane);
+    for (std::uint32_t lane = 0; lane < pieces.size(); ++lane) {
+      next.push_back({pieces[lane], block, lane});
+      place(next.back());
     }
   }
 
@@ -103,41 +123,35 @@ class Builder {
     }
   }
 
-  // Halves the widest part until there are eight; what fits a leaf stays whole.
-  std::vector<Part> split(const Part& node) {
-    std::vector<Part> parts = {node};
-    std::vector<double> widths = {1};
-    while (parts.size() < kBlockWidth) {
-      const auto widest = static_cast<std::size_t>(std::max_element(widths.begin(), widths.end()) - widths.begin());
-      if (widths[widest] < 0) break;
-      const Part whole = parts[widest];
-      const std::size_t middle = halve(whole);
-      parts[widest] = fitter_.measured({whole.begin, middle});
-      const auto behind = static_cast<std::ptrdiff_t>(widest) + 1;
-      parts.insert(parts.begin() + behind, fitter_.measured({middle, whole.end}));
-      widths[widest] = width_of(parts[widest]);
-      widths.insert(widths.begin() + behind, width_of(parts[widest + 1]));
+  // Cuts what is most worth it until there are eight pieces or none is. Of many triangles this is the widest piece, and
+  // what fits a leaf stays whole. Of few it is what gains most, and leaves need not be full, for all of them fit in the
+  // block.
+  std::vector<Piece> divide(const Part& node) {
+    std::vector<Piece> pieces = {piece_of(node)};
+    while (pieces.size() < kBlockWidth) {
+      const auto best = std::max_element(pieces.begin(), pieces.end(),
+                                         [](const Piece& p, const Piece& q) { return p.worth < q.worth; });
+      if (best->worth == -kInfinity) break;
+      const std::size_t end = best->end, middle = is_few() ? cut_few(*best) : halve(*best);
+      *best = piece_of(fitter_.measured({best->begin, middle}));
+      pieces.insert(best + 1, piece_of(fitter_.measured({middle, end})));
     }
-    return parts;
+    return pieces;
   }
 
-  static double width_of(const Part& part) { return part.size() <= kBlockWidth ? -1 : part.radius; }
+  Piece piece_of(const Part& part) {
+    Piece piece{part};
+    if (is_few()) {
+      find_cut_of_few(piece);
+    } else if (part.size() > kBlockWidth) {
+      piece.worth = part.radius;
+    }
+    return piece;
+  }
 
   static std::size_t multiple_of_width(std::size_t count) {
     return (count + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
   }
-
-  // The cheapest first, and of equal ones the more even one.
-  struct Cut {
-    double cost = kInfinity;
-    std::size_t unevenness = 0, frame = 0, axis = 0, at = 0;
-    double gain = 0;     // over no cut; of few triangles
-    bool worth = false;  // a leaf of its own; of few triangles
-    bool operator<(const Cut& other) const {
-      return std::tie(cost, unevenness, frame, axis, at) <
-             std::tie(other.cost, other.unevenness, other.frame, other.axis, other.at);
-    }
-  };
 
   // Across a principal axis, where the boxes of the two parts, times their triangles, are smallest (MacDonald and Booth
   // 1990), the more even parts of equal ones; far down in half, which limits the depth. At a multiple of eight
@@ -181,7 +195,7 @@ class Builder {
     }
   }
 
-  // Where the centroids are along an axis, in their order; equal ones go by their triangles' numbers.
+  // Where the centroids are along an axis, in their order.
   void find_places(const Part& part, const Vec3& along, std::size_t axis) {
     std::vector<PlaceAlong>& places = places_[axis];
     places.resize(part.size());
@@ -189,7 +203,7 @@ class Builder {
       const std::uint32_t number = order_[part.begin + i].number;
       places[i] = {dot(along, centroids_[number]), number, static_cast<std::uint32_t>(i)};
     }
-    sort_along(places, sorted_);
+    std::sort(places.begin(), places.end());
   }
   void put_in_order(const std::vector<PlaceAlong>& places, const Range& part) {
     before_.assign(order_.begin() + static_cast<std::ptrdiff_t>(part.begin),
@@ -237,45 +251,26 @@ class Builder {
     });
   }
 
-  Cut cut_of_few(const Part& part) {
-    Cut best;
+  void find_cut_of_few(Piece& piece) {
     double area = kInfinity;
     for (std::size_t f = 0; f < frames_.size(); ++f) {
-      area = std::min(area, fitter_.extent_of(part, frames_[f]).area());
-      find_cut(part, frames_[f], f, part.size() / 2, 1, best);
+      area = std::min(area, fitter_.extent_of(piece, frames_[f]).area());
+      find_cut(piece, frames_[f], f, piece.size() / 2, 1, piece.cut);
     }
-    const double whole = area * static_cast<double>(part.size());
-    best.gain = whole - best.cost;
-    best.worth = part.size() > kBlockWidth || best.cost < kWorthCutting * whole;
-    return best;
+    const double whole = area * static_cast<double>(piece.size());
+    if (piece.size() > kBlockWidth || piece.cut.cost < kWorthCutting * whole) piece.worth = whole - piece.cut.cost;
   }
 
-  // Cuts what gains most by it, until there are eight parts or no cut is worth it: leaves need not be full, for all of
-  // them fit in the block.
-  std::vector<Part> split_few(const Part& node) {
-    std::vector<Part> parts = {node};
-    std::vector<Cut> cuts = {cut_of_few(node)};
-    while (parts.size() < kBlockWidth) {
-      std::size_t best = parts.size();
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (cuts[i].worth && (best == parts.size() || cuts[i].gain > cuts[best].gain)) best = i;
-      }
-      if (best == parts.size()) break;
-      const Part whole = parts[best];
-      find_places(whole, frames_[cuts[best].frame][cuts[best].axis], 0);
-      put_in_order(places_[0], whole);
-      const auto behind = static_cast<std::ptrdiff_t>(best) + 1;
-      parts[best] = fitter_.measured({whole.begin, whole.begin + cuts[best].at});
-      parts.insert(parts.begin() + behind, fitter_.measured({whole.begin + cuts[best].at, whole.end}));
-      cuts[best] = cut_of_few(parts[best]);
-      cuts.insert(cuts.begin() + behind, cut_of_few(parts[best + 1]));
-    }
-    return parts;
+  std::size_t cut_few(const Piece& piece) {
+    find_places(piece, frames_[piece.cut.frame][piece.cut.axis], 0);
+    put_in_order(places_[0], piece);
+    return piece.begin + piece.cut.at;
   }
 
-  void place(std::size_t block_index, std::uint32_t lane, const Part& part) {
-    const ObbNode slab = fitter_.obb_node_of(part);
-    ObbNodeBlock& block = tree_.obb_nodes[block_index];
+  void place(const Pending& node) {
+    const ObbNode slab = fitter_.obb_node_of(node.part);
+    ObbNodeBlock& block = tree_.obb_nodes[node.block];
+    const std::uint32_t lane = node.lane;
     block.x[lane] = static_cast<float>(slab.center[0]);
     block.y[lane] = static_cast<float>(slab.center[1]);
     block.z[lane] = static_cast<float>(slab.center[2]);
@@ -285,11 +280,11 @@ class Builder {
     block.mx[lane] = static_cast<float>(slab.second[0]);
     block.my[lane] = static_cast<float>(slab.second[1]);
     block.mz[lane] = static_cast<float>(slab.second[2]);
-    block.radius[lane] = above(slab.radius);
+    block.radius[lane] = stored_above(slab.radius);
     // What cancels in a height is of the size of the distances from the centre.
-    block.height[lane] = above(slab.height + 1e-15 * slab.radius);
-    block.width[lane] = above(slab.width + 1e-15 * slab.radius);
-    block.length[lane] = above(slab.length + 1e-15 * slab.radius);
+    block.height[lane] = stored_above(slab.height + 1e-15 * slab.radius);
+    block.width[lane] = stored_above(slab.width + 1e-15 * slab.radius);
+    block.length[lane] = stored_above(slab.length + 1e-15 * slab.radius);
   }
 
   PackedSphereTree& tree_;
@@ -301,7 +296,6 @@ class Builder {
   std::vector<Extent> extents_;   // of its triangles
   std::vector<double> behind_;    // what a cut costs behind it
   std::array<std::vector<PlaceAlong>, 3> places_;
-  std::vector<PlaceAlong> sorted_;
   std::vector<std::array<Vec3, 3>> frames_;  // of few triangles: find_frames()
 };
 
@@ -322,8 +316,8 @@ void index_triangles(PackedSphereTree& tree) {
   double largest = 0;
   for (std::size_t v = 0; v < tree.vertices.size(); ++v) {
     if (!used[v]) continue;
-    const Vec3 p = {double{tree.vertices[v][0]}, double{tree.vertices[v][1]}, double{tree.vertices[v][2]}};
-    largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    const Vec3 p = as_doubles(tree.vertices[v]);
+    largest = std::max(largest, detail::max_abs(p));
     for (std::size_t i = 0; i < kSupportCount; ++i) most[i] = std::max(most[i], dot(directions[i], p));
   }
   for (const double reach : most) {

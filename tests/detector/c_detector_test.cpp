@@ -43,8 +43,7 @@ void run_backwards(void*, size_t count, void (*job)(void*, size_t), void* data) 
 
 TEST(CDetector, TellsWhatBeginsAndEnds) {
   orchard_detector_options options = orchard_default_detector();
-  options.run = run_backwards;
-  options.concurrency = 4;
+  options.executor = {run_backwards, nullptr, 4};
   World w(options);
   const auto bytes =
       orchard::runtime::serialize(orchard::runtime::test::build_tree(orchard::runtime::test::torus(12, 6, 0.75, 0.25)));
@@ -64,7 +63,7 @@ TEST(CDetector, TellsWhatBeginsAndEnds) {
   w.put(d, -99.5);
   orchard_frame frame = orchard_detector_step(w.detector, 0.01, kNoLimit);
   ASSERT_EQ(frame.events, 2u);
-  EXPECT_EQ(frame.certain, frame.pairs);
+  EXPECT_EQ(frame.counts.certain, frame.counts.pairs);
   const orchard_pair_event event = orchard_detector_event(w.detector, 0);
   EXPECT_EQ(event.change, ORCHARD_BEGIN);
   EXPECT_EQ(event.a.index, a.index);
@@ -79,9 +78,9 @@ TEST(CDetector, TellsWhatBeginsAndEnds) {
   EXPECT_GT(manifold.depth, 0);
   EXPECT_EQ(orchard_detector_event(w.detector, 0).a.index, a.index);  // events stay
   EXPECT_EQ(orchard_detector_event(w.detector, 1).a.index, d.index);
-  double pairs[4], work[4];
-  EXPECT_EQ(orchard_detector_predict_load(w.detector, 4, pairs, work), 4u);
-  EXPECT_GT(work[0], 0);
+  orchard_step_load loads[4];
+  EXPECT_EQ(orchard_detector_predict_load(w.detector, loads, 4), 4u);
+  EXPECT_GT(loads[0].work, 0);
   EXPECT_EQ(orchard_detector_remove(w.detector, a), 1);
   EXPECT_EQ(orchard_detector_remove(w.detector, a), 0);
   frame = orchard_detector_step(w.detector, 0.02, kNoLimit);
@@ -137,7 +136,7 @@ TEST(CDetector, HasTheOtherCallsToo) {
   EXPECT_EQ(orchard_detector_sleep(w.detector, b), 1);
   EXPECT_EQ(orchard_detector_wake(w.detector, b), 1);
   EXPECT_EQ(orchard_detector_sleep(w.detector, still), 0);
-  EXPECT_EQ(orchard_detector_step(w.detector, NAN, kNoLimit).time_refused, 1);
+  EXPECT_TRUE(orchard_detector_step(w.detector, NAN, kNoLimit).time_refused);
   const orchard_frame last = orchard_detector_step(w.detector, 0.05, {1000, 1'000'000'000});
   ASSERT_EQ(last.refused, 1u);
   EXPECT_EQ(orchard_detector_refused(w.detector, 0), a.index);
@@ -171,11 +170,11 @@ TEST(CDetector, KeepsStatesWhereThereIsNoSource) {
   EXPECT_EQ(orchard_detector_step(detector, 0.11, kNoLimit).events, 2u);  // stays, and ends
   EXPECT_EQ(orchard_detector_state(detector, a).velocity[1], 100);
   EXPECT_NEAR(orchard_detector_state(detector, b).pose.translation[0], -1, 1e-12);
-  EXPECT_EQ(orchard_default_state().turns_bounded, 0);
-  state.turns_bounded = 1;
+  EXPECT_FALSE(orchard_default_state().turns_bounded);
+  state.turns_bounded = true;
   state.angular_speed = 2;
   EXPECT_EQ(orchard_detector_set_state(detector, a, &state), 1);
-  EXPECT_EQ(orchard_detector_state(detector, a).turns_bounded, 1);
+  EXPECT_TRUE(orchard_detector_state(detector, a).turns_bounded);
   EXPECT_EQ(orchard_detector_state(detector, a).angular_speed, 2);
   state.angular_speed = -2;
   EXPECT_EQ(orchard_detector_set_state(detector, a, &state), 0);

@@ -130,7 +130,7 @@ TEST(FlexibleTree, HoldsEveryTriangleOnAPath) {
   }
 }
 
-TEST(FlexibleTree, ComesBackToRestAndTouchesOnlyWhatMoved) {
+TEST(FlexibleTree, ComesBackToRestAndChangesOnlyWhatMoved) {
   const PackedSphereTree rest = test::build_tree(test::torus(40, 20, 1, 0.3));
   FlexibleTree flexible(rest, 0.2);
   const auto radii = [&] {
@@ -150,8 +150,11 @@ TEST(FlexibleTree, ComesBackToRestAndTouchesOnlyWhatMoved) {
   ASSERT_TRUE(flexible.move({&vertex, 1}, {&moved, 1}));
   EXPECT_EQ(test::allocations, allocated);
   EXPECT_GT(flexible.looseness(), 0);
-  EXPECT_LT(flexible.nodes_touched(), flexible.nodes() / 20);
-  EXPECT_NE(radii(), before);
+  const std::vector<float> after = radii();
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) changed += before[i] != after[i];
+  EXPECT_GT(changed, 0u);
+  EXPECT_LT(changed, before.size() / 20);
   ASSERT_TRUE(flexible.move({&vertex, 1}, {&place, 1}));
   EXPECT_EQ(radii(), before);
   EXPECT_NEAR(flexible.looseness(), 0, 1e-12);

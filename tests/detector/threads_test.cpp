@@ -86,23 +86,21 @@ TEST(Threads, ShareTreesInBatches) {
   const PackedSphereTree tree = test::build_tree(test::torus(10, 6, 1, 0.4));
   const PreparedTree prepared(tree);
   const TreePair pair(prepared, prepared);
-  std::vector<std::array<double, 9>> ra, rb;
-  std::vector<std::array<double, 3>> ta, tb;
+  std::vector<Pose> a, b;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     test::Draw draw(seed);
-    const Pose a = draw.pose(0), b = draw.pose(draw.uniform(0, 2.8));
-    ra.push_back(a.rotation), rb.push_back(b.rotation);
-    ta.push_back(a.translation), tb.push_back(b.translation);
+    a.push_back(draw.pose(0)), b.push_back(draw.pose(draw.uniform(0, 2.8)));
   }
-  const PoseArrays a{ra, ta, {}}, b{rb, tb, {}};
   std::vector<Answer> serial;
   for (const std::size_t threads : {1u, 3u}) {
     test::ThreadPool pool(threads);
     std::vector<Workspace> workspaces(threads);
-    std::vector<Verdict> verdicts(ra.size());
-    std::vector<Distance> distances(ra.size());
-    collide(workspaces, pool.executor(), std::span(&pair, 1), a, b, verdicts);
-    distance(workspaces, pool.executor(), std::span(&pair, 1), a, b, distances);
+    std::vector<Verdict> verdicts(a.size());
+    std::vector<Distance> distances(a.size());
+    share_among(pool.executor(), threads, a.size(), [&](std::size_t job, std::size_t i) {
+      verdicts[i] = collide(workspaces[job], pair, a[i], b[i]);
+      distances[i] = distance(workspaces[job], pair, a[i], b[i]);
+    });
     std::vector<Answer> answers;
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
       answers.push_back(verdicts[i].answer);

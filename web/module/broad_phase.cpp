@@ -96,8 +96,8 @@ int web_broad_set_filter(orchard_broad_phase* world, std::uint32_t index, std::u
 // work, time_refused, out_of_memory.
 ORCHARD_EXPORT(broad_advance)
 void web_broad_advance(orchard_broad_phase* world, double time, double work, double microseconds, double* out) {
-  const orchard_work_budget budget{limit_of(work), limit_of(microseconds * 1000), 0};
-  const orchard_advance advance = orchard_broad_phase_advance(world, time, &budget);
+  const orchard_budget budget = budget_of(work, microseconds);
+  const orchard_advance advance = orchard_broad_phase_advance(world, time, &budget, 0);
   *out++ = advance.time;
   *out++ = static_cast<double>(reinterpret_cast<std::uintptr_t>(advance.pairs));
   *out++ = static_cast<double>(advance.pair_count);

@@ -19,7 +19,7 @@ void put_state(double* to, const orchard_body_state& state) {
   *to++ = state.drift;
   to = put(to, state.half_space, 3);
   *to++ = state.expiry;
-  *to++ = state.turns_bounded != 0 ? state.angular_speed : std::nan("");
+  *to++ = state.turns_bounded ? state.angular_speed : std::nan("");
 }
 
 orchard_body_state state_of(const double* row) {
@@ -31,7 +31,7 @@ orchard_body_state state_of(const double* row) {
   std::copy_n(row + 18, 3, state.half_space);
   state.expiry = row[21];
   state.turns_bounded = !std::isnan(row[22]);
-  state.angular_speed = state.turns_bounded != 0 ? row[22] : 0;
+  state.angular_speed = state.turns_bounded ? row[22] : 0;
   return state;
 }
 
@@ -73,11 +73,12 @@ orchard_query_filter query_filter_of(const double* row) {
 void put_frame(double* out, const orchard_frame& frame) {
   for (const double number :
        {frame.time, frame.next_time, static_cast<double>(frame.steps), static_cast<double>(frame.events),
-        static_cast<double>(frame.pairs), static_cast<double>(frame.certain), static_cast<double>(frame.work),
-        static_cast<double>(frame.motions_asked), frame.worst_bound, static_cast<double>(frame.incomplete_from),
-        static_cast<double>(frame.left_over), static_cast<double>(frame.refused), static_cast<double>(frame.broken),
-        static_cast<double>(frame.time_refused), static_cast<double>(frame.out_of_memory),
-        static_cast<double>(frame.steps_left), static_cast<double>(frame.skipped)})
+        static_cast<double>(frame.counts.pairs), static_cast<double>(frame.counts.certain),
+        static_cast<double>(frame.counts.work), static_cast<double>(frame.counts.motions_asked),
+        frame.counts.worst_bound, static_cast<double>(frame.incomplete_from), static_cast<double>(frame.left_over),
+        static_cast<double>(frame.refused), static_cast<double>(frame.broken), static_cast<double>(frame.time_refused),
+        static_cast<double>(frame.out_of_memory), static_cast<double>(frame.steps_left),
+        static_cast<double>(frame.skipped)})
     *out++ = number;
 }
 

@@ -68,10 +68,10 @@ inline double* put(double* to, const orchard_manifold& m) {
   *to++ = m.error;
   *to++ = m.complete;
   for (std::uint32_t i = 0; i < m.count; ++i) {
-    to = put(to, m.points[i], 3);
-    *to++ = m.triangles[i][0];
-    *to++ = m.triangles[i][1];
-    *to++ = m.depths[i];
+    to = put(to, m.points[i].place, 3);
+    *to++ = m.points[i].triangle_a;
+    *to++ = m.points[i].triangle_b;
+    *to++ = m.points[i].depth;
   }
   return to;
 }

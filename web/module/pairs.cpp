@@ -40,11 +40,11 @@ void web_pair_distance(orchard_pair* pair, const double* poses, double tolerance
 
 ORCHARD_EXPORT(closer_than)
 int web_closer_than(const orchard_tree* a, const orchard_tree* b, const double* poses, double margin) {
-  return orchard_closer_than(workspace(), a, &pose_at(poses, 0), b, &pose_at(poses, 1), margin);
+  return orchard_closer_than(workspace(), a, &pose_at(poses, 0), b, &pose_at(poses, 1), margin, nullptr);
 }
 ORCHARD_EXPORT(contacts)
 void web_contacts(const orchard_tree* a, const orchard_tree* b, const double* poses, double margin, double* out) {
-  say(out, orchard_contacts_within(workspace(), a, &pose_at(poses, 0), b, &pose_at(poses, 1), margin));
+  say(out, orchard_contacts(workspace(), a, &pose_at(poses, 0), b, &pose_at(poses, 1), margin));
 }
 // Lower, upper, a point on each, the direction in which b leaves a.
 ORCHARD_EXPORT(signed_distance)
@@ -110,7 +110,8 @@ void web_collide_all(const orchard_tree* const* a, const double* poses_a, const 
                      const double* poses_b, std::size_t count, double* out) {
   orchard_workspace* const only = workspace();
   in_pieces<orchard_verdict>(count, out, [&](std::size_t i, std::size_t size, orchard_verdict* verdicts) {
-    orchard_collide_all(&only, 1, nullptr, a + i, &pose_at(poses_a, i), b + i, &pose_at(poses_b, i), size, verdicts);
+    const orchard_batch batch{a + i, &pose_at(poses_a, i), b + i, &pose_at(poses_b, i), size, &only, 1, nullptr};
+    orchard_collide_all(&batch, verdicts);
   });
 }
 ORCHARD_EXPORT(distance_all)
@@ -118,8 +119,8 @@ void web_distance_all(const orchard_tree* const* a, const double* poses_a, const
                       const double* poses_b, std::size_t count, double tolerance, double* out) {
   orchard_workspace* const only = workspace();
   in_pieces<orchard_distance>(count, out, [&](std::size_t i, std::size_t size, orchard_distance* distances) {
-    orchard_measure_all(&only, 1, nullptr, a + i, &pose_at(poses_a, i), b + i, &pose_at(poses_b, i), size, tolerance,
-                        distances);
+    const orchard_batch batch{a + i, &pose_at(poses_a, i), b + i, &pose_at(poses_b, i), size, &only, 1, nullptr};
+    orchard_measure_all(&batch, tolerance, distances);
   });
 }
 ORCHARD_EXPORT(closer_than_all)
@@ -127,5 +128,6 @@ void web_closer_than_all(const orchard_tree* const* a, const double* poses_a, co
                          const double* poses_b, std::size_t count, double margin, std::int32_t* out) {
   orchard_workspace* const only = workspace();
   static_assert(sizeof(int) == sizeof(std::int32_t));
-  orchard_closer_than_all(&only, 1, nullptr, a, &pose_at(poses_a), b, &pose_at(poses_b), count, margin, out);
+  const orchard_batch batch{a, &pose_at(poses_a), b, &pose_at(poses_b), count, &only, 1, nullptr};
+  orchard_closer_than_all(&batch, margin, out);
 }

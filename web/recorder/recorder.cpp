@@ -119,7 +119,7 @@ class Recorder {
     Row answers;
     orchard_verdict verdict = orchard_start(pair(q), &q.poses[0], &q.poses[1]);
     answers.add(verdict);
-    while (verdict.finished == 0) {
+    while (!verdict.finished) {
       verdict = orchard_refine(pair(q), kNoLimit);
       answers.add(verdict);
     }
@@ -176,20 +176,20 @@ class Recorder {
   void closer_than() {
     const Question q = question();
     const double margin = draws_.uniform(0, 1);
-    const int closer = orchard_closer_than(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], margin);
+    const int closer =
+        orchard_closer_than(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], margin, nullptr);
     Row answers;
     recording_.add(Kind::closer_than, arguments(q).add_all(margin), answers.add_all(closer));
   }
   void contacts() {
     const Question q = question();
-    const orchard_manifold m =
-        orchard_contacts_within(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], 0.05);
+    const orchard_manifold m = orchard_contacts(workspace_, trees_[q.a], &q.poses[0], trees_[q.b], &q.poses[1], 0.05);
     Row answers;
     answers.add_all(m.answer, m.count).add(m.normal, 3);
     answers.add_all(m.depth, m.error, m.complete);
     for (std::size_t i = 0; i < m.count; ++i) {
-      const double a = m.triangles[i][0], b = m.triangles[i][1];
-      answers.add(m.points[i], 3).add_all(a, b, m.depths[i]);
+      const orchard_contact_point& point = m.points[i];
+      answers.add(point.place, 3).add_all(point.triangle_a, point.triangle_b, point.depth);
     }
     recording_.add(Kind::contacts, arguments(q).add_all(0.05), answers);
   }

@@ -47,7 +47,7 @@ void record_broad_phase(Recording& recording, Draws& draws) {
   for (std::size_t step = 0; step < kSteps; ++step) {
     const double now = static_cast<double>(step) * kTimeStep;
     for (;;) {
-      const orchard_advance report = orchard_broad_phase_advance(world, now, nullptr);
+      const orchard_advance report = orchard_broad_phase_advance(world, now, nullptr, 0);
       answers.add_all(report.time, report.pair_count);
       for (std::size_t i = 0; i < 2 * report.pair_count; ++i) answers.add_all(report.pairs[i]);
       if (report.pair_count == 0) break;
@@ -82,7 +82,7 @@ void record_detector(Recording& recording, Draws& draws, const std::vector<orcha
   for (std::size_t step = 1; step <= kSteps; ++step) {
     const orchard_frame frame =
         orchard_detector_step(world, static_cast<double>(step) * kTimeStep, {ORCHARD_NO_LIMIT, ORCHARD_NO_LIMIT});
-    answers.add_all(frame.time, frame.pairs, frame.certain, frame.work, frame.events);
+    answers.add_all(frame.time, frame.counts.pairs, frame.counts.certain, frame.counts.work, frame.events);
     for (std::size_t i = 0; i < frame.events; ++i) {
       const orchard_pair_event event = orchard_detector_event(world, i);
       answers.add_all(event.change, event.a.index, event.b.index, event.time);

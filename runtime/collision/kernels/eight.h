@@ -86,7 +86,6 @@ struct OneByOne {
 // Of all eight.
 template <typename Kind>
 ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
-  if constexpr (requires { Kind::min(v); }) return Kind::min(v);
   std::array<float, kBlockWidth> lanes;
   store(v, lanes);
   for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {

@@ -154,17 +154,17 @@ TEST(CInterface, HasContactsClearanceAndTimesOfImpact) {
   const Tree cube(box({-1, -1, -1}, {1, 1, 1}));
   const Work work;
   const orchard_pose still = orchard_identity(), near = at(1.99, 0.2, 0.1), far = at(6, 0, 0);
-  const orchard_manifold m = orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &near);
+  const orchard_manifold m = orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &near, 0);
   EXPECT_EQ(m.answer, ORCHARD_YES);
   EXPECT_EQ(m.count, 4u);
   EXPECT_EQ(m.complete, 1);
   EXPECT_NEAR(m.normal[0], 1, 1e-9);
   EXPECT_NEAR(m.depth, 0.01, 1e-9);
-  EXPECT_LT(m.triangles[0][0], 12u);
-  EXPECT_EQ(orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &far).answer, ORCHARD_NO);
-  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 3.9), 0);
-  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 4.1), 1);
-  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, std::nan("")), -1);
+  EXPECT_LT(m.points[0].triangle_a, 12u);
+  EXPECT_EQ(orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &far, 0).answer, ORCHARD_NO);
+  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 3.9, nullptr), 0);
+  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 4.1, nullptr), 1);
+  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, std::nan(""), nullptr), -1);
 
   orchard_travel rest{}, moving{};
   rest.start = still, moving.start = far;
@@ -214,8 +214,8 @@ TEST(CInterface, HasShapesAndTheirTrees) {
                                  orchard_hull_tree(corners[0], 4)};
   for (orchard_tree* tree : trees) {
     ASSERT_NE(tree, nullptr);
-    EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, tree, &away, 2.1), 1);
-    EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, tree, &away, 1.4), 0);
+    EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, tree, &away, 2.1, nullptr), 1);
+    EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, tree, &away, 1.4, nullptr), 0);
     orchard_tree_close(tree);
   }
   EXPECT_EQ(orchard_hull_tree(corners[0], 3), nullptr);
@@ -260,7 +260,8 @@ TEST(CInterface, AsksManyThingsAtOnce) {
                                        while (count-- > 0) job(data, count);
                                      },
                                      nullptr, 2};
-  orchard_collide_all(workspaces, 2, &backward, trees.data(), a.data(), trees.data(), b.data(), 100, verdicts.data());
+  const orchard_batch batch = {trees.data(), a.data(), trees.data(), b.data(), 100, workspaces, 2, &backward};
+  orchard_collide_all(&batch, verdicts.data());
   orchard_pair* const pair = orchard_pair_new(cube.tree, cube.tree);
   for (std::size_t i = 0; i < 100; ++i) {
     EXPECT_EQ(verdicts[i].answer, orchard_collide(pair, &a[i], &b[i], kNoBudget).answer) << i;
@@ -288,16 +289,19 @@ TEST(CInterface, MeasuresManyPairsAsItMeasuresEach) {
                                      nullptr, 3};
   std::vector<orchard_distance> distances(60);
   std::vector<int> closer(60);
-  orchard_measure_all(workspaces, 3, &backward, first.data(), a.data(), second.data(), b.data(), 60, 0.01,
-                      distances.data());
-  orchard_closer_than_all(workspaces, 3, &backward, first.data(), a.data(), second.data(), b.data(), 60, 1,
-                          closer.data());
+  orchard_batch batch = {first.data(), a.data(), second.data(), b.data(), 60, workspaces, 3, &backward};
+  orchard_measure_all(&batch, 0.01, distances.data());
+  orchard_closer_than_all(&batch, 1, closer.data());
+  std::vector<int> serially(60);
+  batch.workspace_count = 1, batch.executor = nullptr;
+  orchard_closer_than_all(&batch, 1, serially.data());
+  EXPECT_EQ(serially, closer);
   orchard_pair* const pair = orchard_pair_new(cube.tree, ball.tree);
   for (std::size_t i = 0; i < 60; ++i) {
     const orchard_distance alone = orchard_measure(pair, &a[i], &b[i], 0.01);
     EXPECT_EQ(distances[i].lower, alone.lower) << i;
     EXPECT_EQ(distances[i].upper, alone.upper) << i;
-    EXPECT_EQ(closer[i], orchard_closer_than(workspaces[0], cube.tree, &a[i], ball.tree, &b[i], 1)) << i;
+    EXPECT_EQ(closer[i], orchard_closer_than(workspaces[0], cube.tree, &a[i], ball.tree, &b[i], 1, nullptr)) << i;
     if (i != 7) {
       EXPECT_EQ(closer[i] == 1, orchard_measure(pair, &a[i], &b[i], 0).lower <= 1) << i;
     }
@@ -335,21 +339,21 @@ TEST(CInterface, HasContactsBeforeBodiesTouchAndSignedDistancesOfPoints) {
   orchard_pose apart = still;
   apart.translation[0] = 1.25;
   orchard_distance near{};
-  EXPECT_EQ(orchard_closer_with_points(workspace, cube.tree, &still, cube.tree, &apart, 0.5, &near), 1);
+  EXPECT_EQ(orchard_closer_than(workspace, cube.tree, &still, cube.tree, &apart, 0.5, &near), 1);
   EXPECT_NEAR(near.on_b[0] - near.on_a[0], 0.25, 1e-9);
-  EXPECT_EQ(orchard_closer_with_points(workspace, cube.tree, &still, cube.tree, &apart, 0.2, &near), 0);
-  EXPECT_EQ(orchard_contacts(workspace, cube.tree, &still, cube.tree, &apart).count, 0u);
-  orchard_manifold m = orchard_contacts_within(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
+  EXPECT_EQ(orchard_closer_than(workspace, cube.tree, &still, cube.tree, &apart, 0.2, &near), 0);
+  EXPECT_EQ(orchard_contacts(workspace, cube.tree, &still, cube.tree, &apart, 0).count, 0u);
+  orchard_manifold m = orchard_contacts(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
   EXPECT_EQ(m.answer, ORCHARD_NO);
   ASSERT_EQ(m.count, 1u);
   EXPECT_NEAR(m.depth, -0.25, 1e-9);
-  EXPECT_EQ(m.depths[0], m.depth);
+  EXPECT_EQ(m.points[0].depth, m.depth);
   EXPECT_NEAR(m.normal[0], 1, 1e-9);
   apart.translation[0] = 0.75;
-  m = orchard_contacts_within(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
+  m = orchard_contacts(workspace, cube.tree, &still, cube.tree, &apart, 0.5);
   EXPECT_EQ(m.answer, ORCHARD_YES);
   ASSERT_GT(m.count, 0u);
-  for (std::uint32_t i = 0; i < m.count; ++i) EXPECT_LE(m.depths[i], m.depth);
+  for (std::uint32_t i = 0; i < m.count; ++i) EXPECT_LE(m.points[i].depth, m.depth);
   orchard_workspace_free(workspace);
   const double inside[3] = {0.5, 0.5, 0.9};
   double distance = 0, point[3], normal[3];

@@ -245,19 +245,16 @@ struct Pool {
 TEST(Batch, GivesTheSameAnswersOnEveryNumberOfThreads) {
   const auto all = bodies();
   const auto trees = prepared(all);
-  std::vector<std::array<double, 9>> ra, rb;
-  std::vector<std::array<double, 3>> ta, tb;
+  std::vector<Pose> a, b;
   std::vector<TreePair> pairs;
   std::vector<Verdict> alone;
   Workspace single;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const PairCase c = random_case(all, seed);
     pairs.emplace_back(trees[c.a], trees[c.b]);
-    ra.push_back(c.at_a.rotation), rb.push_back(c.at_b.rotation);
-    ta.push_back(c.at_a.translation), tb.push_back(c.at_b.translation);
+    a.push_back(c.at_a), b.push_back(c.at_b);
     alone.push_back(collide(single, pairs.back(), c.at_a, c.at_b));
   }
-  const PoseArrays a{ra, ta, {}}, b{rb, tb, {}};
   std::vector<Distance> first;
   for (const std::size_t threads : {1u, 2u, 5u}) {
     std::vector<Workspace> workspaces(threads);
@@ -265,9 +262,11 @@ TEST(Batch, GivesTheSameAnswersOnEveryNumberOfThreads) {
     std::vector<Verdict> verdicts(pairs.size());
     std::vector<Distance> distances(pairs.size());
     std::vector<Answer> near(pairs.size());
-    collide(workspaces, executor, pairs, a, b, verdicts);
-    distance(workspaces, executor, pairs, a, b, distances);
-    closer_than(workspaces, executor, pairs, a, b, 0.1, near);
+    share_among(executor, threads, pairs.size(), [&](std::size_t job, std::size_t i) {
+      verdicts[i] = collide(workspaces[job], pairs[i], a[i], b[i]);
+      distances[i] = distance(workspaces[job], pairs[i], a[i], b[i]);
+      near[i] = closer_than(workspaces[job], pairs[i], a[i], b[i], 0.1);
+    });
     if (first.empty()) first = distances;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       ASSERT_TRUE(same_verdict(verdicts[i], alone[i])) << i;
@@ -287,8 +286,8 @@ TEST(SelfCollision, LeavesOutWhatIsAllowedToTouch) {
   for (int i = 0; i < 4; ++i) rest[static_cast<std::size_t>(i)].translation = {1.95 * i, 0, 0};  // neighbours overlap
   EXPECT_EQ(arm.first(workspace, rest).answer, Answer::yes);
   arm.allow_touching(workspace, rest);
-  EXPECT_TRUE(arm.allowed.allowed(1, 2));
-  EXPECT_FALSE(arm.allowed.allowed(0, 2));
+  EXPECT_TRUE(arm.allows(1, 2));
+  EXPECT_FALSE(arm.allows(0, 2));
   EXPECT_EQ(arm.first(workspace, rest).answer, Answer::no);
   std::vector<Pose> curled = rest;
   curled[3].translation = {0.5, 0.05, 0};
@@ -302,7 +301,7 @@ TEST(SelfCollision, LeavesOutWhatIsAllowedToTouch) {
     return ++all, true;
   });
   EXPECT_EQ(all, 2);
-  arm.allowed.allow_all_of(3);
+  for (std::size_t part = 0; part < parts.size(); ++part) arm.allow(3, part);
   EXPECT_EQ(arm.first(workspace, curled).answer, Answer::no);
 }
 

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
-#include <utility>
 #include <vector>
 
 #include "collision/kernels/node_box.h"  // private
 #include "orchard/runtime/packed_tree.h"
 #include "support.h"
-#include "tree/places_along.h"
 
 namespace orchard::runtime {
 namespace {
@@ -39,40 +36,6 @@ TEST(TriangleTree, IsHalvedByNumberWhereCheapCutsWouldMakeItTooDeep) {
   EXPECT_GT(tree.triangle_tree_depth, 32u);  // or this is not the input that it is meant to be
   EXPECT_LE(tree.triangle_tree_depth, kTriangleTreeDepthLimit);
   EXPECT_EQ(structure_fault(tree), nullptr);
-}
-
-// Places that are spread evenly, in clusters, mostly equal, across all sizes of numbers, or all the same.
-std::vector<detail::PlaceAlong> places(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<detail::PlaceAlong> result(random() % (seed % 3 == 0 ? 100 : 5000));
-  for (std::uint32_t i = 0; i < result.size(); ++i) {
-    double at = unit(random);
-    if (seed % 6 == 1) at = std::floor(3 * at) + 1e-13 * unit(random);
-    if (seed % 6 == 2) at = std::floor(4 * at);
-    if (seed % 6 == 3) at = std::ldexp(at, static_cast<int>(random() % 2100) - 1070);
-    if (seed % 6 == 4) at = 0.5;
-    if (seed % 6 == 5) at = 1e-320 * at;
-    result[i] = {at, i, i};
-  }
-  for (std::uint32_t i = 0; i < result.size(); ++i)
-    std::swap(result[i].number, result[random() % result.size()].number);
-  return result;
-}
-
-TEST(SortAlong, OrdersByPlaceAndThenByNumber) {
-  std::vector<detail::PlaceAlong> room;
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    std::vector<detail::PlaceAlong> sorted = places(seed), expected = sorted;
-    detail::sort_along(sorted, room);
-    std::sort(expected.begin(), expected.end(),
-              [](const auto& a, const auto& b) { return std::pair(a.at, a.number) < std::pair(b.at, b.number); });
-    ASSERT_EQ(sorted.size(), expected.size());
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      EXPECT_EQ(sorted[i].number, expected[i].number) << "seed " << seed;
-      EXPECT_EQ(sorted[i].from, expected[i].from) << "seed " << seed;
-    }
-  }
 }
 
 void add_triangles_below(const PackedSphereTree& tree, std::uint32_t child, std::vector<std::uint32_t>& triangles) {

@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/execution.h"
@@ -18,6 +17,8 @@
 //   Workspace workspace;                             // once per thread
 //   TreePair pair(body, ground);                     // as many as there are
 //   Verdict v = collide(workspace, pair, pose_a, pose_b);
+//
+// For many pairs at once, see share_among() in execution.h.
 //
 // No function here throws. None allocates memory once a workspace has been used for trees as deep as those of a pair.
 namespace orchard::runtime {
@@ -125,32 +126,5 @@ struct Closeness {
 // rounding. This costs an additional distance query.
 Closeness closer_with_points(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                              double margin) noexcept;
-
-// Poses as arrays of their members, as simulations store them: pose i consists of element i of each array. An empty
-// `scale` means 1.
-struct PoseArrays {
-  std::span<const std::array<double, 9>> rotation;
-  std::span<const std::array<double, 3>> translation;
-  std::span<const double> scale;
-
-  std::size_t size() const noexcept { return translation.size(); }
-  Pose operator[](std::size_t i) const noexcept { return {rotation[i], translation[i], scale.empty() ? 1 : scale[i]}; }
-};
-
-// Answers many questions in one call, on as many threads as the executor has: pair i with pose i of a and of b. If
-// there is one pair of trees, it is queried at all poses. Every answer is that of the single call: it depends neither
-// on the executor nor on the other questions.
-// There must be at least one workspace. As many jobs run as there are workspaces, so pass executor.concurrency of them.
-// Spans of results are as long as those of questions. Nothing throws or allocates. These rules also hold for the two
-// functions below.
-void collide(std::span<Workspace> workspaces, const Executor& executor, std::span<const TreePair> pairs,
-             const PoseArrays& a, const PoseArrays& b, std::span<Verdict> verdicts, const Budget& each = {}) noexcept;
-// Computes many distances.
-void distance(std::span<Workspace> workspaces, const Executor& executor, std::span<const TreePair> pairs,
-              const PoseArrays& a, const PoseArrays& b, std::span<Distance> distances,
-              const DistanceQuery::Tolerance& tolerance = {}) noexcept;
-// Answers closer_than() for many pairs with one margin.
-void closer_than(std::span<Workspace> workspaces, const Executor& executor, std::span<const TreePair> pairs,
-                 const PoseArrays& a, const PoseArrays& b, double margin, std::span<Answer> answers) noexcept;
 
 }  // namespace orchard::runtime

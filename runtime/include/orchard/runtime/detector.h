@@ -186,6 +186,15 @@ struct PairEvent {
   double impact_to = std::numeric_limits<double>::quiet_NaN();
 };
 
+// What the steps of a call did.
+struct FrameCounts {
+  std::uint64_t pairs = 0;          // The number of pairs of bodies whose spheres overlapped, summed over the steps.
+  std::uint64_t certain = 0;        // The number of these pairs that have a certain answer.
+  std::uint64_t work = 0;           // In units of Budget::work.
+  std::uint64_t motions_asked = 0;  // Motions asked for; each costs kMotionWork.
+  double worst_bound = 0;           // The largest separation bound of the pairs without a certain answer.
+};
+
 // What a call of step() did not do.
 struct Unfinished {
   // The steps up to the given time that were not answered because DetectorOptions::max_events ended the call. Another
@@ -197,17 +206,12 @@ struct Unfinished {
 };
 
 // The result of step(). The spans are valid until the next call of a member that is not const.
-struct Frame {
+struct Frame : FrameCounts {
   double time = 0;                    // The time of the last step that was answered.
   double next_time = 0;               // Nothing can begin or end before this time; earlier calls are unnecessary.
   std::uint32_t steps = 0;            // The steps answered in this call.
   std::span<const PairEvent> events;  // Ordered by time, then by pair.
-  std::uint64_t pairs = 0;            // The number of pairs of bodies whose spheres overlapped, summed over the steps.
-  std::uint64_t certain = 0;          // The number of these pairs that have a certain answer.
   StepCut cut{};                      // Where the last step ended, for a budget in time without an executor.
-  double worst_bound = 0;             // The largest separation bound of the pairs without a certain answer.
-  std::uint64_t work = 0;             // In units of Budget::work.
-  std::uint64_t motions_asked = 0;    // Motions asked for; each costs kMotionWork.
   Unfinished unfinished{};
   // Bodies with invalid states or poses that are not rigid. Such a body is in no pair at that step or, while its last
   // bounds still hold, in possible pairs.

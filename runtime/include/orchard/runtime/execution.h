@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -48,6 +49,27 @@ void run_jobs(const Executor& executor, std::size_t count, Work& work) {
   }
   executor.run(
       executor.context, count, [](void* data, std::size_t index) { (*static_cast<Work*>(data))(index); }, &work);
+}
+
+// Calls ask(job, i) once for each i < count, on as many threads as the executor has, and returns when all calls have
+// returned. At most `jobs` jobs run at once; job j, below `jobs`, makes its calls one after the other, so that it may
+// use the j-th of some workspaces. `ask` must not throw. Allocates nothing.
+//   share_among(pool, workspaces.size(), pairs.size(), [&](std::size_t job, std::size_t i) {
+//     verdicts[i] = collide(workspaces[job], pairs[i], a[i], b[i]);
+//   });
+template <typename Ask>
+void share_among(const Executor& executor, std::size_t jobs, std::size_t count, const Ask& ask) noexcept {
+  constexpr std::size_t portion = 16;  // questions that a job takes at a time
+  std::atomic<std::size_t> next{0};
+  auto work = [&](std::size_t job) {
+    for (;;) {
+      const std::size_t begin = next.fetch_add(portion, std::memory_order_relaxed);
+      if (begin >= count) return;
+      for (std::size_t i = begin; i < count && i < begin + portion; ++i) ask(job, i);
+    }
+  };
+  const std::size_t portions = (count + portion - 1) / portion;
+  run_jobs(executor, jobs < portions ? jobs : portions, work);
 }
 
 }  // namespace orchard::runtime

@@ -39,10 +39,8 @@ class FramePacer {
   void end_detection(Time now = Clock::now()) noexcept;
   void end_frame(Time now = Clock::now()) noexcept;
 
-  Duration frame() const noexcept { return frame_; }
-  Duration granted() const noexcept { return granted_; }      // The time granted to the last detection.
-  Duration detection() const noexcept { return detection_; }  // The time that it took.
-  Duration slack() const noexcept { return slack_; }  // The time left of the last frame; below 0 if it was late.
+  Duration granted() const noexcept { return granted_; }  // The time granted to the last detection.
+  Duration slack() const noexcept { return slack_; }      // The time left of the last frame; below 0 if it was late.
   std::uint64_t frames() const noexcept { return frames_; }
   std::uint64_t late() const noexcept { return late_; }  // The number of late frames.
   Duration predicted_rest() const noexcept;              // The predicted time of the frame after detection.
@@ -50,14 +48,13 @@ class FramePacer {
  private:
   struct Smoothed {
     double mean = 0, deviation = 0, largest = 0;
-    bool any = false;
     void add(double value) noexcept;
   };
 
   Duration frame_;
   double deviations_;
   Time begin_{}, detection_begin_{}, detection_end_{};
-  Duration granted_{0}, detection_{0}, slack_{0};
+  Duration granted_{0}, slack_{0};
   Smoothed rest_, excess_;
   std::uint64_t frames_ = 0, late_ = 0;
 };

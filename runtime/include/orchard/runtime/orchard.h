@@ -10,6 +10,7 @@
 #ifndef ORCHARD_RUNTIME_ORCHARD_H
 #define ORCHARD_RUNTIME_ORCHARD_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -33,11 +34,12 @@ typedef struct orchard_pose {
   double scale;
 } orchard_pose;
 
-typedef enum orchard_answer {
+enum {
   ORCHARD_NO = 0,    /* The surfaces do not touch; this is certain. */
   ORCHARD_MAYBE = 1, /* Nothing excludes a contact so far. */
   ORCHARD_YES = 2    /* A triangle of one body meets a triangle of the other. */
-} orchard_answer;
+};
+typedef uint8_t orchard_answer; /* One of these. */
 
 #define ORCHARD_NO_TRIANGLE 0xffffffffu
 #define ORCHARD_NO_LIMIT UINT64_MAX
@@ -54,9 +56,9 @@ typedef struct orchard_verdict {
   double contact_center[3], contact_radius, contact_normal[3];
   uint32_t triangle_a, triangle_b; /* ORCHARD_NO_TRIANGLE unless the answer is yes. */
   uint32_t level;
-  int finished;  /* Refining changes nothing any more. */
-  int refused;   /* The poses are not rigid, or too far apart or too different in scale to be answered. */
   uint64_t work; /* Tests since the start; as a budget, this number repeats a run that time cut short. */
+  bool finished; /* Refining changes nothing any more. */
+  bool refused;  /* The poses are not rigid, or too far apart or too different in scale to be answered. */
 } orchard_verdict;
 
 typedef struct orchard_distance {
@@ -64,6 +66,14 @@ typedef struct orchard_distance {
   double on_a[3], on_b[3];
   uint32_t triangle_a, triangle_b;
 } orchard_distance;
+
+/* An executor: `run` calls job(data, i) for each i < count, in any order, on any threads, and returns when all calls
+ * have returned. */
+typedef struct orchard_executor {
+  void (*run)(void* context, size_t count, void (*job)(void* data, size_t index), void* data); /* Null: serial. */
+  void* context;
+  size_t concurrency;
+} orchard_executor;
 
 /* Returns ORCHARD_VERSION_STRING of the linked library; a shared library may be newer than the headers. The string
  * lives as long as the program. */
@@ -158,33 +168,29 @@ orchard_tree* orchard_hull_tree(const double* points, size_t count);
 orchard_workspace* orchard_workspace_new(void);
 void orchard_workspace_free(orchard_workspace* workspace); /* The workspace may be null. */
 
-/* Returns whether the surfaces are within `margin` of each other: 1 yes, 0 no, -1 not known. */
+/* Returns whether the surfaces are within `margin` of each other: 1 yes, 0 no, -1 not known. Unless `points` is null,
+ * it receives for 1 a point of each surface, at most `margin` apart, which costs a distance query. */
 int orchard_closer_than(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                        const orchard_tree* b, const orchard_pose* pose_b, double margin);
+                        const orchard_tree* b, const orchard_pose* pose_b, double margin, orchard_distance* points);
 
-/* Does the same and, for 1, also stores a point of each surface, at most `margin` apart. */
-int orchard_closer_with_points(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                               const orchard_tree* b, const orchard_pose* pose_b, double margin,
-                               orchard_distance* distance);
-
+typedef struct orchard_contact_point {
+  double place[3];
+  uint32_t triangle_a, triangle_b;
+  double depth; /* How far b moves along the normal until these two triangles are apart. */
+} orchard_contact_point;
 typedef struct orchard_manifold {
   orchard_answer answer;
   uint32_t count; /* The number of points. */
-  double points[4][3];
-  uint32_t triangles[4][2]; /* The triangles of a and b, for each point. */
-  double normal[3];         /* The unit vector from a to b. */
-  double depth;             /* After moving b by this along the normal, it does not touch a any more. */
-  double error;             /* For maybe: the radius of a ball around the only point, which is a guess. */
-  int complete;
-  double depths[4]; /* For each point: how far b moves along the normal until its two triangles are apart. */
+  orchard_contact_point points[4];
+  double normal[3]; /* The unit vector from a to b. */
+  double depth;     /* After moving b by this along the normal, it does not touch a any more. */
+  double error;     /* For maybe: the radius of a ball around the only point, which is a guess. */
+  bool complete;
 } orchard_manifold;
+/* Returns where two bodies touch. Surfaces that do not touch and are at most `margin` apart, if it is above 0, have a
+ * point, too: the answer is then "no", and the depth is minus the distance. */
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
-                                  const orchard_tree* b, const orchard_pose* pose_b);
-/* Does the same, and returns a point also for surfaces that do not touch and are at most `margin` apart: the answer is
- * then "no", and the depth is minus the distance. */
-orchard_manifold orchard_contacts_within(orchard_workspace* workspace, const orchard_tree* a,
-                                         const orchard_pose* pose_a, const orchard_tree* b, const orchard_pose* pose_b,
-                                         double margin);
+                                  const orchard_tree* b, const orchard_pose* pose_b, double margin);
 
 typedef struct orchard_signed_distance {
   double lower, upper; /* lower <= distance <= upper; minus the manifold's depth where the surfaces meet. */
@@ -215,7 +221,8 @@ typedef struct orchard_impact {
   double distance; /* An upper bound at t0; infinite if unknown. */
   double on_a[3], on_b[3];
   uint32_t triangle_a, triangle_b;
-  int finished, refused;
+  uint32_t steps; /* In which the time advanced. */
+  bool finished, refused;
   uint64_t work;
 } orchard_impact;
 /* Finds the first contact from time `begin` to `end`. The search ends if the surfaces are within margin + tolerance. */
@@ -233,27 +240,23 @@ orchard_verdict orchard_collide_again(orchard_pair* pair, const orchard_pose* a,
 void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const double* origins,
                        const double* directions, double longest, size_t count, int* hit, double* along);
 
-/* An executor: `run` calls job(data, i) for each i < count, in any order, on any threads, and returns when all calls
- * have returned. */
-typedef struct orchard_executor {
-  void (*run)(void* context, size_t count, void (*job)(void* data, size_t index), void* data); /* Null: serial. */
-  void* context;
-  size_t concurrency;
-} orchard_executor;
-/* Answers pairs in one call: pair i is a[i] at poses_a[i] and b[i] at poses_b[i]. There is one workspace for each job
- * that may run at once, at least one. Answers do not depend on their number. */
-void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts);
-/* These functions do the same for orchard_measure(), and for orchard_closer_than() with one margin: closer[i] is 1, 0
- * or -1. */
-void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
-                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
-                         const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances);
-void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t workspace_count,
-                             const orchard_executor* executor, const orchard_tree* const* a,
-                             const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
-                             size_t count, double margin, int* closer);
+/* Many pairs: pair i is a[i] at poses_a[i] and b[i] at poses_b[i]. There is one workspace for each job that may run at
+ * once, at least one. Answers do not depend on their number. The executor may be null: one pair after the other. */
+typedef struct orchard_batch {
+  const orchard_tree* const* a;
+  const orchard_pose* poses_a;
+  const orchard_tree* const* b;
+  const orchard_pose* poses_b;
+  size_t count;
+  orchard_workspace* const* workspaces;
+  size_t workspace_count;
+  const orchard_executor* executor;
+} orchard_batch;
+/* These functions answer all pairs as orchard_collide() without limits, orchard_measure() and orchard_closer_than() do:
+ * closer[i] is 1, 0 or -1. */
+void orchard_collide_all(const orchard_batch* batch, orchard_verdict* verdicts);
+void orchard_measure_all(const orchard_batch* batch, double tolerance, orchard_distance* distances);
+void orchard_closer_than_all(const orchard_batch* batch, double margin, int* closer);
 
 /* Finds whether a robot touches itself or its surroundings. Parts 0 .. count - 1 have a tree each. Pairs that may
  * touch are not tested; at first there are none. An object belongs to one thread at a time; queries allocate nothing.

@@ -8,8 +8,7 @@
 #ifndef ORCHARD_RUNTIME_ORCHARD_BROAD_PHASE_H
 #define ORCHARD_RUNTIME_ORCHARD_BROAD_PHASE_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "orchard/runtime/orchard.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,11 +34,11 @@ typedef struct orchard_motion {
 
 /* Which pairs a body is in. Two bodies may be a pair if each one's mask has a bit of the other's category. Two bodies
  * of the same group other than 0 are always a pair if it is positive, and never if it is negative. If ignores_static
- * is not 0, the body has no pairs with static bodies. */
+ * is true, the body has no pairs with static bodies. */
 typedef struct orchard_body_filter {
   uint32_t category, mask;
   int32_t group;
-  int ignores_static;
+  bool ignores_static;
 } orchard_body_filter;
 
 /* A callback that fills motions[i] with the motion of bodies[i] (indices) at `time`. Static bodies have indices of the
@@ -63,15 +62,11 @@ typedef struct orchard_broad_phase_options {
   double time_step, start;
   uint32_t window; /* 0: the broad phase chooses. */
   double position_slack;
-  int validate;                         /* For debugging: compares every motion with the bounds given before. */
+  bool validate;                        /* For debugging: compares every motion with the bounds given before. */
   orchard_motion_bound_listener broken; /* Null: violations are only counted. */
   void* broken_context;
-  /* Runs updates of all windows of many bodies as jobs: run(run_context, count, job, data) calls job(data, i) for each
-   * i < count, on any threads, and returns when all calls have returned. Several jobs call the source at once then.
-   * Null: no jobs. */
-  void (*run)(void* context, size_t count, void (*job)(void* data, size_t index), void* data);
-  void* run_context;
-  size_t concurrency; /* The number of jobs that may run at once. */
+  /* Runs updates of all windows of many bodies as jobs. Several jobs call the source at once then. */
+  orchard_executor executor;
 } orchard_broad_phase_options;
 
 orchard_motion orchard_default_motion(void); /* Zeros, without expiry. */
@@ -105,12 +100,6 @@ int orchard_broad_phase_set_pair_filter(orchard_broad_phase* world, orchard_pair
 /* Returns the body with this index now, or ORCHARD_NO_BODY. */
 orchard_body orchard_broad_phase_body(const orchard_broad_phase* world, uint32_t index);
 
-typedef struct orchard_work_budget {
-  uint64_t work;        /* Motions asked for, or UINT64_MAX. */
-  uint64_t nanoseconds; /* Or UINT64_MAX. */
-  uint64_t replay;      /* Not 0: ends where a run with this orchard_advance.work ended, instead of at nanoseconds. */
-} orchard_work_budget;
-
 typedef struct orchard_advance {
   double time;           /* The time of the step of the pairs; without pairs, nothing touches before. */
   const uint32_t* pairs; /* Two indices each, ascending; valid until the next call that changes the broad phase. */
@@ -120,21 +109,26 @@ typedef struct orchard_advance {
   unsigned incomplete_from; /* 256: the budget did not interrupt the step. */
   size_t left_over;
   uint64_t work;
-  int time_refused;  /* t_now is not finite or too far away, or the broad phase is not valid: nothing was done. */
-  int out_of_memory; /* Memory ran out in this call: the broad phase refuses everything from now on. */
+  bool time_refused;  /* t_now is not finite or too far away, or the broad phase is not valid: nothing was done. */
+  bool out_of_memory; /* Memory ran out in this call: the broad phase refuses everything from now on. */
 } orchard_advance;
 
 /* Processes the steps up to t_now and stops at the first one that has pairs. Call it again with the same time until
- * there are none. A null budget is unlimited. */
-orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now,
-                                            const orchard_work_budget* budget);
+ * there are none. The budget counts motions that are asked for; null is unlimited. If `replay` is not 0, the step ends
+ * where a run with this orchard_advance.work ended, instead of at the time limit. */
+orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now, const orchard_budget* budget,
+                                            uint64_t replay);
 /* Skips steps after a pause: the next step to be processed is the last one that is not after t. Returns the number of
  * skipped steps; 0 if nothing is due before that step, or if there is no memory. */
 uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t);
-/* Predicts the work of the `count` steps after `time`. Fills the arrays (each may be null), and returns the number of
- * steps that are known. */
-size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
-                                        size_t* meetings, size_t* overlaps);
+/* The predicted work of a step: windows that will be updated, pairs whose bounds can touch from this step on, and pairs
+ * that overlapped at the last step and may still overlap. */
+typedef struct orchard_steps_ahead {
+  size_t updates, meetings, overlaps;
+} orchard_steps_ahead;
+/* Predicts the work of the `count` steps after `time`, and returns the number of steps that are known. */
+size_t orchard_broad_phase_predict_load(const orchard_broad_phase* world, double time, orchard_steps_ahead* steps,
+                                        size_t count);
 
 uint64_t orchard_broad_phase_motions_asked(const orchard_broad_phase* world);
 uint64_t orchard_broad_phase_motion_bound_violations(const orchard_broad_phase* world); /* Found by `validate`. */

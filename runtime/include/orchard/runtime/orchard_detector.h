@@ -27,8 +27,8 @@ typedef struct orchard_body_state {
   double drift;
   double half_space[3]; /* d; zero: no half-space. */
   double expiry;        /* May be INFINITY. */
-  int turns_bounded;    /* 0: angular_speed is not bounded. */
   double angular_speed; /* If turns_bounded: at most this, in radians per second. */
+  bool turns_bounded;   /* False: the angular speed is not bounded. */
 } orchard_body_state;
 
 typedef struct orchard_part {
@@ -41,7 +41,7 @@ typedef struct orchard_body_options {
   orchard_body_filter filter; /* Which pairs the body is in. */
   double continuous_speed;    /* 0: not continuous. */
   double reach;               /* 0: as far as the parts reach. */
-  int suggest;                /* Requires orchard_detector_options.watch; otherwise the body is refused. */
+  bool suggest;               /* Requires orchard_detector_options.watch; otherwise the body is refused. */
 } orchard_body_options;
 
 /* A callback that fills states[i] with the state of bodies[i] (indices) at `time`. Static bodies have indices of the
@@ -49,48 +49,44 @@ typedef struct orchard_body_options {
 typedef void (*orchard_state_source)(void* context, double time, const uint32_t* bodies, size_t count,
                                      orchard_body_state* states);
 
-/* An executor: calls job(data, i) for each i < count, on any threads, and returns when all calls have returned. */
-typedef void (*orchard_run_jobs)(void* context, size_t count, void (*job)(void* data, size_t index), void* data);
-
 typedef struct orchard_detector_options {
   double time_step, start, position_slack;
   /* Whether each step compares every moving body with its motion bounds. 0: no comparison, and contacts are missed
    * silently if bounds are not kept. Below 0, the default: with a state source only. */
   int watch;
   uint32_t steps_to_end;
-  orchard_run_jobs run; /* Null: serial. */
-  void* run_context;
-  size_t concurrency;
+  orchard_executor executor;
   size_t max_events; /* A call ends after a step with this many events; 0: the default. See orchard_frame.steps_left. */
 } orchard_detector_options;
 
-typedef enum orchard_pair_change {
-  ORCHARD_BEGIN = 0,
-  ORCHARD_STAY = 1,
-  ORCHARD_END = 2,
-  ORCHARD_POSSIBLE = 3
-} orchard_pair_change;
+enum { ORCHARD_BEGIN = 0, ORCHARD_STAY = 1, ORCHARD_END = 2, ORCHARD_POSSIBLE = 3 };
+typedef uint8_t orchard_pair_change; /* One of these. */
 
 typedef struct orchard_pair_event {
   orchard_pair_change change;
   orchard_body a, b;
   uint32_t part_a, part_b;
   double time;
-  orchard_verdict verdict;       /* `finished` and `refused` are 0. */
+  orchard_verdict verdict;       /* `finished` and `refused` are false. */
   double impact_from, impact_to; /* NaN unless the contact is between two steps. */
 } orchard_pair_event;
+
+/* What the steps of a call did: see FrameCounts in detector.h. */
+typedef struct orchard_frame_counts {
+  uint64_t pairs, certain, work, motions_asked;
+  double worst_bound;
+} orchard_frame_counts;
 
 typedef struct orchard_frame {
   double time, next_time;
   uint32_t steps;
-  size_t events; /* The number of events; orchard_detector_event() returns them. */
-  uint64_t pairs, certain, work, motions_asked;
-  double worst_bound;
-  unsigned incomplete_from; /* 256: the broad phase was not interrupted. */
-  size_t left_over, refused, broken;
-  int time_refused, out_of_memory;
   uint64_t steps_left; /* Not 0: max_events ended the call; another one with the same time continues. */
   uint64_t skipped;    /* Steps that orchard_detector_step_latest() left out. */
+  size_t events;       /* The number of events; orchard_detector_event() returns them. */
+  orchard_frame_counts counts;
+  unsigned incomplete_from; /* 256: the broad phase was not interrupted. */
+  size_t left_over, refused, broken;
+  bool time_refused, out_of_memory;
 } orchard_frame;
 
 orchard_body_options orchard_default_body(void);
@@ -159,9 +155,10 @@ orchard_manifold orchard_detector_manifold(orchard_detector* detector, size_t in
  * filter includes all bodies. */
 typedef struct orchard_world_point {
   orchard_body body;
-  uint32_t part, triangle;
+  uint32_t part;
   double distance; /* Along a ray, in multiples of its direction's length. */
   double point[3];
+  uint32_t triangle; /* ORCHARD_NO_TRIANGLE unless the shape is a tree. */
 } orchard_world_point;
 int orchard_detector_cast_ray(orchard_detector* detector, const double origin[3], const double direction[3],
                               double longest, const orchard_query_filter* filter, orchard_world_point* found);
@@ -174,9 +171,14 @@ size_t orchard_detector_touching_sphere(orchard_detector* detector, const double
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index);
 uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index);
 uint64_t orchard_detector_motion_bound_violations(const orchard_detector* detector);
-/* Predicts the cost of the next `count` steps. Fills the arrays (each may be null), and returns how many steps are
- * known. */
-size_t orchard_detector_predict_load(const orchard_detector* detector, size_t count, double* pairs, double* work);
+/* The predicted cost of a step: at least these motions, and the expected numbers of pairs and of units of work. */
+typedef struct orchard_step_load {
+  double time;
+  uint64_t motions;
+  double pairs, work;
+} orchard_step_load;
+/* Predicts the cost of the next `count` steps, and returns how many steps are known. */
+size_t orchard_detector_predict_load(const orchard_detector* detector, orchard_step_load* loads, size_t count);
 
 #ifdef __cplusplus
 }

@@ -101,12 +101,8 @@ inline constexpr std::uint32_t kSupportCount = 6 * (kSupportCells + 1) * (kSuppo
 // The largest number of levels below the root of a triangle BVH.
 inline constexpr std::uint32_t kTriangleTreeDepthLimit = 64;
 
-// A sphere-tree for the run-time: flat arrays of floats around a double origin, with every ball rounded outward. Blocks
-// are in breadth-first order; lane 0 of block 0 is the root and the only node of its block. A node's id is block * 8 +
-// lane. Every leaf lists the triangles that meet its path region; together the leaves list every triangle.
-// The exact level has a triangle BVH of its own over the same triangles, which index_triangles() builds: ball slabs in
-// breadth-first order. Lane 0 of block 0 is its root, and every other block contains the children of one node.
-struct PackedSphereTree {
+// The numbers of a tree.
+struct TreeNumbers {
   std::array<double, 3> origin{};         // The origin of all float coordinates, in mesh units.
   double bounding_radius = 0;             // R of the mesh.
   double vertex_error = 0;                // The largest distance of a stored vertex from that of the mesh.
@@ -114,6 +110,14 @@ struct PackedSphereTree {
   std::uint32_t depth = 0;                // Levels below the root.
   std::uint32_t node_count = 0;           // Lanes in use.
   std::uint32_t triangle_tree_depth = 0;  // Levels below the root of the triangle BVH.
+};
+
+// A sphere-tree for the run-time: flat arrays of floats around a double origin, with every ball rounded outward. Blocks
+// are in breadth-first order; lane 0 of block 0 is the root and the only node of its block. A node's id is block * 8 +
+// lane. Every leaf lists the triangles that meet its path region; together the leaves list every triangle.
+// The exact level has a triangle BVH of its own over the same triangles, which index_triangles() builds: ball slabs in
+// breadth-first order. Lane 0 of block 0 is its root, and every other block contains the children of one node.
+struct PackedSphereTree : TreeNumbers {
   std::vector<SiblingBlock> blocks;
   std::vector<std::array<float, 3>> vertices;           // Relative to origin.
   std::vector<std::array<std::uint32_t, 3>> triangles;  // Into vertices.
@@ -139,10 +143,7 @@ constexpr std::array<double, 3> support_direction(std::uint32_t index) noexcept 
 
 // The same data without ownership, which queries use. The arrays may belong to a PackedSphereTree or to a file that is
 // mapped into memory; they must outlive the view and not change.
-struct TreeView {
-  std::array<double, 3> origin{};
-  double bounding_radius = 0, vertex_error = 0;
-  std::uint32_t branching = 0, depth = 0, node_count = 0, triangle_tree_depth = 0;
+struct TreeView : TreeNumbers {
   std::span<const SiblingBlock> blocks;
   std::span<const std::array<float, 3>> vertices;
   std::span<const std::array<std::uint32_t, 3>> triangles;
@@ -153,13 +154,7 @@ struct TreeView {
 
   TreeView() = default;
   TreeView(const PackedSphereTree& tree) noexcept  // NOLINT: implicit, so that queries take either
-      : origin(tree.origin),
-        bounding_radius(tree.bounding_radius),
-        vertex_error(tree.vertex_error),
-        branching(tree.branching),
-        depth(tree.depth),
-        node_count(tree.node_count),
-        triangle_tree_depth(tree.triangle_tree_depth),
+      : TreeNumbers(tree),
         blocks(tree.blocks),
         vertices(tree.vertices),
         triangles(tree.triangles),

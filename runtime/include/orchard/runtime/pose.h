@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <type_traits>
-#include <utility>
 
 // Vectors, poses and rays of the run-time.
 namespace orchard::runtime {
@@ -24,18 +22,6 @@ constexpr Vec3 operator-(const Vec3& a) noexcept { return {-a[0], -a[1], -a[2]};
 constexpr Vec3 operator*(double s, const Vec3& a) noexcept { return {s * a[0], s * a[1], s * a[2]}; }
 constexpr double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
-
-}  // namespace orchard::runtime
-
-// For structured bindings.
-template <>
-struct std::tuple_size<orchard::runtime::Vec3> : std::integral_constant<std::size_t, 3> {};
-template <std::size_t i>
-struct std::tuple_element<i, orchard::runtime::Vec3> {
-  using type = double;
-};
-
-namespace orchard::runtime {
 
 // The place of a body in the world: world = scale * rotation * body + translation. The rotation is row-major.
 // Every query tests is_rigid() first. For a pose that is not rigid (zeros, a mirror, shear, scales that differ between

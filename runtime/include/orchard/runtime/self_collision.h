@@ -5,38 +5,21 @@
 
 #include "orchard/runtime/collide.h"
 
-// Finds whether a robot touches itself or its surroundings. Each part has a number and a tree; allowed pairs are not
-// tested.
+// Finds whether a robot touches itself or its surroundings.
 namespace orchard::runtime {
 
-// Which pairs of the parts 0 .. parts - 1 may touch. At first, only each part with itself.
-class AllowedPairs {
- public:
-  explicit AllowedPairs(std::size_t parts = 0)
-      : parts_(parts), allowed_(parts * parts, false) {}  // Throws std::bad_alloc.
-
-  std::size_t parts() const noexcept { return parts_; }
-  void allow(std::size_t a, std::size_t b, bool allowed = true) noexcept {
-    allowed_[a * parts_ + b] = allowed_[b * parts_ + a] = allowed;
-  }
-  void allow_all_of(std::size_t part) noexcept {
-    for (std::size_t other = 0; other < parts_; ++other) allow(part, other);
-  }
-  bool allowed(std::size_t a, std::size_t b) const noexcept { return a == b || allowed_[a * parts_ + b]; }
-
- private:
-  std::size_t parts_;
-  std::vector<bool> allowed_;
-};
-
-// Tests all pairs of parts that must not touch.
+// Tests all pairs of parts that must not touch. Each part has a number and a tree.
 class SelfCollision {
  public:
   // The trees must outlive this object. Throws std::bad_alloc only.
-  explicit SelfCollision(std::span<const PreparedTree> parts) : allowed(parts.size()), parts_(parts) {}
+  explicit SelfCollision(std::span<const PreparedTree> parts)
+      : parts_(parts), allowed_(parts.size() * parts.size(), false) {}
 
-  AllowedPairs allowed;
-
+  // Sets whether two parts may touch. Allowed pairs are not tested; at first, there are none.
+  void allow(std::size_t a, std::size_t b, bool allowed = true) noexcept {
+    allowed_[a * parts_.size() + b] = allowed_[b * parts_.size() + a] = allowed;
+  }
+  bool allows(std::size_t a, std::size_t b) const noexcept { return allowed_[a * parts_.size() + b]; }
   // Allows all pairs that touch or might touch at the given poses, which are those that always touch at rest.
   void allow_touching(Workspace& workspace, std::span<const Pose> poses) noexcept;
 
@@ -55,7 +38,7 @@ class SelfCollision {
   void each(Workspace& workspace, std::span<const Pose> poses, Found&& found) const noexcept {
     for (std::size_t a = 0; a < parts_.size(); ++a) {
       for (std::size_t b = a + 1; b < parts_.size(); ++b) {
-        if (allowed.allowed(a, b)) continue;
+        if (allows(a, b)) continue;
         const Verdict verdict = collide(workspace, TreePair(parts_[a], parts_[b]), poses[a], poses[b]);
         if (verdict.answer != Answer::no && !found(Touch{verdict.answer, a, b, verdict.contact})) return;
       }
@@ -64,6 +47,7 @@ class SelfCollision {
 
  private:
   std::span<const PreparedTree> parts_;
+  std::vector<bool> allowed_;
 };
 
 }  // namespace orchard::runtime

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -51,24 +52,17 @@ LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept;
 // does. If other programs may write to it, use load_file(), which copies it into memory.
 class MappedTree {
  public:
-  MappedTree() = default;
-  ~MappedTree() { close(); }
-  MappedTree(MappedTree&& other) noexcept;
-  MappedTree& operator=(MappedTree&& other) noexcept;
-
   // Opens a file and checks every byte, as view() does. Unless `ok` is returned, this object is empty.
   LoadStatus open(const char* path) noexcept;
-  void close() noexcept;
+  void close() noexcept { memory_.reset(); }
 
-  // Returns the tree. The view is valid until close() or destruction; moving this object leaves views valid. Without an
-  // open file it has no blocks.
-  const TreeView& view() const noexcept { return view_; }
+  // Returns the tree. The view is valid until close() or destruction of this object and of its copies. Without an open
+  // file it has no blocks.
+  TreeView view() const noexcept { return memory_ ? view_ : TreeView(); }
 
  private:
   TreeView view_;
-  PackedSphereTree copy_;  // Used where files cannot be mapped.
-  void* bytes_ = nullptr;
-  std::size_t size_ = 0;
+  std::shared_ptr<const void> memory_;  // The mapped file or, where files cannot be mapped, a tree.
 };
 
 }  // namespace orchard::runtime
