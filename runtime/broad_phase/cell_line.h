@@ -22,7 +22,7 @@ ORCHARD_INLINE std::uint64_t entry_of(std::uint64_t from, std::uint64_t below, B
 }
 ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
   constexpr std::uint64_t field = (std::uint64_t{1} << 3 * kFieldBits) - 1;
-  return (entry & field) << 3 * kFieldBits | (entry >> 3 * kFieldBits & field);
+  return entry << 3 * kFieldBits | (entry >> 3 * kFieldBits & field);  // above that it does not matter what it has
 }
 constexpr BodyIndex body_of(std::uint64_t entry) noexcept { return static_cast<BodyIndex>(entry >> kIdShift); }
 
@@ -38,7 +38,8 @@ ORCHARD_INLINE std::uint64_t zeros(const CellLine& line, const Of& of) noexcept 
     return (of(entries) - 1) & (as << kIdShift);  // of 0 the high bits are set
   };
   const Words all = half(0, Words{1, 2, 4, 8}) | half(32, Words{16, 32, 64, 0});
-  bits = ((all[0] | all[1]) | (all[2] | all[3])) >> kIdShift;
+  const auto both = __builtin_shufflevector(all, all, 0, 1) | __builtin_shufflevector(all, all, 2, 3);
+  bits = (both[0] | both[1]) >> kIdShift;
 #else
   for (std::uint32_t i = 0; i < kLineRoom; ++i) bits |= std::uint64_t{of(line.entries[i]) == 0} << i;
 #endif
@@ -55,9 +56,9 @@ ORCHARD_INLINE std::uint64_t those_of(const CellLine& line, std::uint64_t body) 
   return zeros(line, [=](const auto& entries) ORCHARD_INLINE_LAMBDA { return (entries >> kIdShift) ^ body; });
 }
 
-// False, and it stays as it is, if it is full. Without a branch: what has no room is written where the counters are,
-// which are written again.
-ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
+// 1, and it stays as it is, if it is full; else 0. Without a branch: what has no room is written where the counters
+// are, which are written again.
+ORCHARD_INLINE std::uint64_t put(CellLine& line, std::uint64_t entry) noexcept {
   constexpr int kCountAt = std::endian::native == std::endian::little ? 0 : 32;  // among the counters' bits
   static_assert(offsetof(CellLine, count) == sizeof line.entries &&
                 offsetof(CellLine, overflow) == offsetof(CellLine, count) + 4);
@@ -65,11 +66,11 @@ ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
   std::uint64_t counters;
   std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);
   const auto count = static_cast<std::uint32_t>(counters >> kCountAt);
-  const std::uint64_t room = count < kLineRoom ? 1 : 0;
+  const std::uint64_t full = (count + 1) >> 3;
   std::memcpy(bytes + std::size_t{count} * sizeof entry, &entry, sizeof entry);
-  counters += room << kCountAt;
+  counters += (full ^ 1) << kCountAt;
   std::memcpy(bytes + sizeof line.entries, &counters, sizeof counters);
-  return room != 0;
+  return full;
 }
 
 // Quanta along the three axes. They are below 2^31, so that two of them are compared at once.
@@ -93,27 +94,27 @@ struct Quanta {
 // A body's box, and one of the cells that it takes: so many steps from its first one along each axis.
 class BoxInCell {
  public:
-  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint64_t steps) noexcept
-      : lower_(Quanta::lower(box)), upper_(Quanta::upper(box)) {
-    constexpr std::uint64_t within = kQuanta - 1;  // a cell
-    first_ = {
-        (lower_.xy & ~(within | within << 32)) + ((steps & 3) << kQuantumBits | (steps & 12) << (30 + kQuantumBits)),
-        (lower_.z & ~within) + (steps >> 4 << kQuantumBits)};
-    last_ = {first_.xy | within | within << 32, first_.z | within};
-    begins_ = first_.at_most(lower_);
+  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint32_t steps) noexcept : lower_(Quanta::lower(box)) {
+    const QuantizedAabb whole = box.whole();
+    PackedAabb first, last;
+    for (std::uint32_t d = 0; d < 3; ++d) {
+      const std::uint32_t step = steps >> 2 * d & 3, begin = ((box.lower[d] >> kQuantumBits) + step) << kQuantumBits;
+      first.lower[d] = step == 0 ? 0 : begin;  // where the box begins it is the corner of what begins before
+      last.lower[d] = std::min(whole.upper[d], begin + (kQuanta - 1));
+    }
+    first_ = Quanta::lower(first);
+    last_ = Quanta::lower(last);
   }
   // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
   ORCHARD_INLINE bool meets_here(const PackedAabb& other) const noexcept {
     const Quanta from = Quanta::lower(other);
-    const Quanta after = first_.at_most(from), before = from.at_most(last_), below = from.at_most(upper_),
+    const Quanta after = first_.at_most(from), before = from.at_most(last_),
                  above = lower_.at_most(Quanta::upper(other));
-    return (~((after.xy | begins_.xy) & before.xy & below.xy & above.xy) & Quanta::kTop) == 0 &&
-           (~((after.z | begins_.z) & before.z & below.z & above.z) & Quanta::kTop) == 0;
+    return (~(after.xy & before.xy & above.xy & after.z & before.z & above.z) & Quanta::kTop) == 0;
   }
 
  private:
-  Quanta lower_, upper_, first_, last_;
-  Quanta begins_;  // along which axes it begins in the cell
+  Quanta lower_, first_, last_;  // where it begins; where boxes that meet it in the cell begin, at least and at most
 };
 
 }  // namespace orchard::runtime::detail

@@ -3,7 +3,7 @@
 
 namespace orchard::runtime::detail {
 
-// The bodies that are new, or whose bounds hold no longer, since the last step: each once, as they came.
+// The bodies that are new, or gone, or whose bounds hold no longer, since the last step: each once, as they came.
 class Changes {
  public:
   void make_room(std::size_t slots) { grow(pending_, slots); }
@@ -12,8 +12,6 @@ class Changes {
     changed_.push_back(body);
     pending_[body] = 1;
   }
-  void forget(BodyIndex body) noexcept { pending_[body] = 0; }
-  void forget_all() noexcept { changed_.clear(); }  // of bodies that have been forgotten, or are gone
   bool has(BodyIndex body) const noexcept { return pending_[body] != 0; }
   const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
   bool empty() const noexcept { return changed_.empty(); }

@@ -28,24 +28,37 @@ void KineticBroadPhase::changed(BodyIndex body) {
   state_.changes.note(body);
 }
 
+// The next step takes its box out, with those of the others that change.
 void KineticBroadPhase::removed(BodyIndex body) {
-  state_.boxes.take_away(body);
-  if (state_.windows[body].bounded) planner_.note_cancelled();
-  state_.windows[body].end = kNeverStep;  // no next update, until the slot's next body
-  state_.windows.void_events(body);
   budgeted_.leave(body);
-  state_.changes.forget(body);
+  state_.changes.note(body);
   state_.overlaps.mark(body, OverlapList::kUpdated);
 }
 
-void KineticBroadPhase::note_cancelled(BodyIndex body) {
-  const Window& window = state_.windows[body];
-  if (window.bounded && window.end >= 0) planner_.note_cancelled();
+void KineticBroadPhase::retire(BodyIndex body) {
+  state_.boxes.take_away(body);
+  state_.windows[body].end = kNeverStep;  // no next update, until the slot's next body
+  state_.windows.void_events(body);
+}
+
+// Those that have changed, or were added, are due; those that are gone leave.
+void KineticBroadPhase::take_changes() {
+  const bool all_alive = state_.pool.size() == state_.pool.slots();
+  std::size_t count = due_.bodies.size();
+  make_room(due_.bodies, count + state_.changes.size());
+  due_.bodies.resize(count + state_.changes.size());
+  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
+  state_.changes.take(load, [&](BodyIndex body) {
+    const Window& window = state_.windows[body];
+    if (window.bounded && window.end >= 0) planner_.note_cancelled();
+    if (!all_alive && !state_.pool.alive(body)) return retire(body);
+    due_.bodies[count++] = body;
+  });
+  due_.bodies.resize(count);
 }
 
 void KineticBroadPhase::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
-  make_room(due_.bodies, state_.changes.size());
   for (std::size_t i = 0; i < due_.entries.size(); ++i) {
     if (i + kAhead < due_.entries.size()) {
       const BodyIndex body = due_.entries[i + kAhead];
@@ -56,26 +69,16 @@ void KineticBroadPhase::collect_due(Step now) {
     window.end = kUpdateDue;
     due_.bodies.push_back(due_.entries[i]);
   }
-  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
-  std::size_t count = due_.bodies.size();
-  due_.bodies.resize(count + state_.changes.size());
-  state_.changes.take(load, [&](BodyIndex body) {
-    note_cancelled(body);
-    due_.bodies[count++] = body;
-  });
-  due_.bodies.resize(count);
+  take_changes();
 }
 
 // What has not been updated for this step yet is in due_.bodies already; the rest changed since, or was added.
 void KineticBroadPhase::complete_due() {
   if (state_.changes.empty() && state_.pool.size() == state_.pool.slots()) return;  // nor is anybody gone
   std::erase_if(due_.bodies, [&](BodyIndex body) { return !state_.pool.alive(body) || state_.changes.has(body); });
-  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
-  state_.changes.take(load, [&](BodyIndex body) {
-    state_.boxes.take_away(body);
-    note_cancelled(body);
-    due_.bodies.push_back(body);
-  });
+  const std::size_t before = due_.bodies.size();
+  take_changes();
+  state_.boxes.take_away(std::span(due_.bodies).subspan(before));
 }
 
 // When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
@@ -265,7 +268,6 @@ void KineticBroadPhase::forget_all() noexcept {
   state_.wheel.clear();
   state_.overlaps.clear();
   pairs_.forget_all();
-  state_.changes.forget_all();
   due_.bodies.clear();
   planner_.forget_survey();
   prepared_ = false;
@@ -285,6 +287,7 @@ void KineticBroadPhase::begin(Step now) {
 
 StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
   if (state_.pool.size() == 0) {
+    take_changes();
     forget_all();
     return {kNeverStep, {}};
   }
@@ -307,6 +310,10 @@ StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
 
 StepReport KineticBroadPhase::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
   StepReport report{now + 1, state_.overlaps.pairs()};
+  if (state_.wheel.crowded(state_.pool.size())) {  // as where bounds are cancelled again and again
+    const auto end_of = [&](BodyIndex body) -> Step& { return state_.windows[body].end; };
+    state_.wheel.tidy(now, end_of, [&](const PairEvent& event) { return state_.windows.valid(event); });
+  }
   if (incomplete_from != kNoClass) {
     report.incomplete_from = incomplete_from;
     report.left_over = budgeted_.left_over();

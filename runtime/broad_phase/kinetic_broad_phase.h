@@ -39,7 +39,8 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   void begin(Step now);
   void collect_due(Step now);
   void complete_due();
-  void note_cancelled(BodyIndex body);
+  void retire(BodyIndex body);
+  void take_changes();
   StepReport end(Step now, unsigned incomplete_from, const BudgetTracker& tracker);
 
   void step_in_full(Step now, bool completing);

@@ -63,7 +63,7 @@ void OverlapList::apply_changes() {
     const BodyPair pair = adds ? *--added : *--dropped;
     if (adds && dropped != dropped_.begin() && dropped[-1] == pair) --dropped;  // it touches
     const auto after = std::upper_bound(begin, from, pair);
-    to = std::move_backward(after, from, to);
+    to = to == from ? after : std::move_backward(after, from, to);
     from = after;
     if (from != begin && from[-1] == pair) --from;
     if (adds) *--to = pair;

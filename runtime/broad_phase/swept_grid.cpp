@@ -245,38 +245,55 @@ void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb
   Insertion insertion(boxes, pairs, counts);
   counts.entries += visits.size();
   counts.lines_read += visits.size();
+  CellLine* const lines = lines_.data();  // by themselves: what is written might be where they are
+  for (const Visit& visit : visits.first(std::min(visits.size(), kAhead))) prefetch(&lines[visit.line]);
   for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), kAtOnce))) {
-    const std::size_t count = std::min(visits.size(), kAtOnce), size = visits.size();
-    std::size_t met_count = 0, full_count = 0;
+    const std::size_t count = std::min(visits.size(), kAtOnce);
+    std::uint32_t* meets = meetings.data();
+    std::uint16_t* fulls = full.data();
     per_machine([&]() ORCHARD_INLINE_LAMBDA {
-      CellLine* const lines = lines_.data();  // by themselves: what is written might be where they are
       const Visit* const all = visits.data();
-      const std::size_t last = count, prefetched = size;
-      std::uint32_t* meets = meetings.data();
-      std::uint16_t* fulls = full.data();
+      const std::size_t last = count, size = visits.size();
+      std::uint32_t* meets_end = meets;
+      std::uint16_t* fulls_end = fulls;
       for (std::size_t k = 0; k < last; ++k) {
-        if (k + kAhead < prefetched) prefetch(&lines[all[k + kAhead].line]);
+        if (k + kAhead < size) prefetch(&lines[all[k + kAhead].line]);
         CellLine& line = lines[all[k].line];
         const std::uint64_t entry = all[k].entry, met = meeting(line, query_from(entry));
-        const bool room = put(line, entry);
-        *meets = static_cast<std::uint32_t>(k | met << kHitsAt);
-        meets += met != 0;
-        *fulls = static_cast<std::uint16_t>(k);
-        fulls += !room;
+        *meets_end = static_cast<std::uint32_t>(k | met << kHitsAt);
+        meets_end += met != 0;
+        *fulls_end = static_cast<std::uint16_t>(k);
+        fulls_end += put(line, entry);
       }
-      met_count = static_cast<std::size_t>(meets - meetings.data());
-      full_count = static_cast<std::size_t>(fulls - full.data());
+      meets = meets_end, fulls = fulls_end;
     });
-    for (const std::uint32_t meeting : std::span(meetings).first(met_count)) {
+    for (const std::uint32_t meeting : std::span(meetings.data(), meets)) {
       const Visit& visit = visits[meeting & ((1u << kHitsAt) - 1)];
-      report(insertion, lines_[visit.line], meeting >> kHitsAt, visit);
+      report(insertion, lines[visit.line], meeting >> kHitsAt, visit);
     }
-    if (full_count == 0) continue;
+    if (fulls == full.data()) continue;
     per_machine([&]() ORCHARD_INLINE_LAMBDA {
-      for (const std::uint16_t k : std::span(full).first(full_count)) insert_beyond(insertion, visits[k]);
+      for (const std::uint16_t k : std::span(full.data(), fulls)) insert_beyond(insertion, visits[k]);
     });
   }
   insertion.hand_over();
+}
+
+// Mostly one or two, which cannot be predicted.
+template <typename Use>
+void SweptGrid::for_each_line(const QuantizedAabb& box, const Use& use) const noexcept {
+  std::uint32_t axes = 0, more = 0, first = 0;
+  for (std::uint32_t d = 0; d < 3; ++d) {
+    const std::uint32_t cell = box.lower[d] >> kQuantumBits, beyond = (box.upper[d] >> kQuantumBits) - cell;
+    axes |= (beyond & 1) << d;
+    more |= beyond >> 1;
+    first += cell * factors_[d];
+  }
+  if (more != 0) return for_each_cell(box, [&](const Cell&, std::uint32_t line) { use(line); });
+  for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
+    use((first + corner_lines_[corner]) & mask_);
+  }
+  use(first & mask_);
 }
 
 // After the last one of a chain.
@@ -319,20 +336,12 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow)
   overflow.free = freed;
 }
 
-// Mostly in one cell or two, which cannot be predicted.
 void SweptGrid::remove(BodyIndex body, const QuantizedAabb& box) noexcept {
-  std::uint32_t axes = 0, more = 0, first = 0;
-  for (std::uint32_t d = 0; d < 3; ++d) {
-    const std::uint32_t cell = box.lower[d] >> kQuantumBits, beyond = (box.upper[d] >> kQuantumBits) - cell;
-    axes |= (beyond & 1) << d;
-    more |= beyond >> 1;
-    first += cell * factors_[d];
-  }
-  const auto take = [&](std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); };
-  if (more != 0) return for_each_cell(box, [&](const Cell&, std::uint32_t line) { take(line); });
-  for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes)
-    take((first + corner_lines_[corner]) & mask_);
-  take(first & mask_);
+  for_each_line(box, [&](std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); });
+}
+
+void SweptGrid::prepare_removal(const PackedAabb& box) const noexcept {
+  for_each_line(box.whole(), [&](std::uint32_t line) { prefetch(&lines_[line]); });
 }
 
 }  // namespace orchard::runtime::detail

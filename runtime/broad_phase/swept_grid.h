@@ -90,10 +90,7 @@ class SweptGrid {
   // `boxes` is by body and has the new ones, too. With the visits to one part, by one thread for each at most.
   void insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
               GridCounts& counts);
-  void prepare_removal(const PackedAabb& box) const noexcept {  // starts loading the line of its first cell
-    const auto cell = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
-    prefetch(&lines_[(cell(0) + cell(1) * factors_[1] + cell(2) * factors_[2]) & mask_]);
-  }
+  void prepare_removal(const PackedAabb& box) const noexcept;  // starts loading its lines
   void remove(BodyIndex body, const QuantizedAabb& box) noexcept;
 
   // Visits those that have entries in the box's cells, and in others that share their lines; a body as often as it has.
@@ -123,6 +120,8 @@ class SweptGrid {
       }
     }
   }
+  template <typename Use>
+  void for_each_line(const QuantizedAabb& box, const Use& use) const noexcept;
   struct Overflow {
     std::vector<CellLine> lines;
     std::uint32_t free = 0;  // 1 + index

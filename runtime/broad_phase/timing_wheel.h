@@ -26,7 +26,7 @@ struct PairEvent {
 static_assert(sizeof(PairEvent) == 12);
 
 // What is due when, for less than kWheelSteps steps ahead: bodies to update again and pairs to test, in a ring of
-// lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
+// lists indexed by step. The caller tells what is void.
 class TimingWheel {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
@@ -43,6 +43,15 @@ class TimingWheel {
   std::size_t events_due(Step step) const noexcept {  // of pairs that do not overlap yet
     return buckets_[bucket_of(step)].meetings;
   }
+  // Whether void entries may be much of it, with so many bodies.
+  bool crowded(std::size_t bodies) const noexcept {
+    constexpr std::size_t kBytesPerBody = 8;  // that do not matter
+    return bytes_used() > std::max(kBytesPerBody * bodies, tidied_bytes_ + tidied_bytes_ / 2);
+  }
+  // Drops void entries after `now`: bodies for which end_of(body), which it may write to meanwhile, is another step, or
+  // which are there twice, and events that are not valid(). Runs stay: they are short.
+  template <typename EndOf, typename Valid>
+  void tidy(Step now, const EndOf& end_of, const Valid& valid);
   // The first step after `now` that may have something; kNeverStep if there is none.
   Step next_after(Step now) const noexcept;
   std::size_t memory_bytes() const noexcept;
@@ -66,10 +75,12 @@ class TimingWheel {
   struct Pool {
     std::vector<Part> parts;
     std::uint32_t free = kNone;
+    std::size_t used = 0;
 
     Part& operator[](std::uint32_t part) noexcept { return parts[part]; }
     Part& put_before(std::uint32_t& head) {  // of a list, a part that is written now
       std::uint32_t part = free;
+      ++used;
       if (part == kNone) {
         part = static_cast<std::uint32_t>(parts.size());
         grow(parts, parts.size() + 1);
@@ -83,9 +94,10 @@ class TimingWheel {
     std::uint32_t give_back(std::uint32_t part) noexcept {  // returns the next one
       const std::uint32_t next = std::exchange(parts[part].next, free);
       free = part;
+      --used;
       return next;
     }
-    void clear() noexcept { parts.clear(), free = kNone; }
+    void clear() noexcept { parts.clear(), free = kNone, used = 0; }
   };
   struct Bucket {
     std::uint32_t bodies = kNone, events = kNone;
@@ -93,6 +105,7 @@ class TimingWheel {
     std::uint32_t meetings : 28 = 0;             // events of pairs that do not overlap yet
   };
 
+  std::size_t bytes_used() const noexcept { return bodies_.used * sizeof(Bodies) + events_.used * sizeof(Events); }
   template <typename Use>
   void for_each_busy(const Use& use) noexcept;  // bucket
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }
@@ -102,6 +115,39 @@ class TimingWheel {
   std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
   Pool<Bodies> bodies_;
   Pool<Events> events_;
+  std::size_t tidied_bytes_ = 0;
 };
+
+template <typename EndOf, typename Valid>
+void TimingWheel::tidy(Step now, const EndOf& end_of, const Valid& valid) {
+  for (Step step = now + 1; step < now + kWheelSteps; ++step) {
+    Bucket& bucket = buckets_[bucket_of(step)];
+    const Bucket old = std::exchange(bucket, Bucket{});
+    for (std::uint32_t part = old.bodies; part != kNone;) {
+      const Bodies some = bodies_[part];
+      part = bodies_.give_back(part);
+      if (some.ids[1] == kRun) bodies_.put_before(bucket.bodies).ids = some.ids;
+      for (std::size_t i = 0; some.ids[1] != kRun && i < some.ids.size() && some.ids[i] != kNoIndex; ++i) {
+        Step& end = end_of(some.ids[i]);
+        if (end != step) continue;
+        end = now;  // once is enough
+        set_due(some.ids[i], step);
+      }
+    }
+    for (std::uint32_t part = bucket.bodies; part != kNone; part = bodies_[part].next) {
+      const std::array<BodyIndex, 3>& ids = bodies_[part].ids;
+      for (std::size_t i = 0; ids[1] != kRun && i < ids.size() && ids[i] != kNoIndex; ++i) end_of(ids[i]) = step;
+    }
+    std::uint32_t count = old.in_first;
+    for (std::uint32_t part = old.events; part != kNone; count = kEventsInPart) {
+      const Events some = events_[part];
+      part = events_.give_back(part);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (valid(some.events[i])) add(some.events[i], step);
+      }
+    }
+  }
+  tidied_bytes_ = bytes_used();
+}
 
 }  // namespace orchard::runtime::detail

@@ -160,10 +160,13 @@ void WindowUpdates::fold(Chunk& chunk) {
   state_.overlaps.mark_updated(placed);
   state_.boxes.meet_oversized(placed, near_);
   while (!placed.empty()) {  // those one after the other whose windows end together
-    const Step end = state_.windows[placed[0]].end;
-    const auto other = [&](BodyIndex body) { return state_.windows[body].end != end; };
+    const Window first = state_.windows[placed[0]];
+    const auto other = [&](BodyIndex body) {
+      const Window& window = state_.windows[body];
+      return window.end != first.end || window.listed != first.listed;
+    };
     const auto run = static_cast<std::size_t>(std::find_if(placed.begin(), placed.end(), other) - placed.begin());
-    if (end != kNeverStep) state_.wheel.set_due(placed.first(run), end);
+    if (first.end != kNeverStep && !first.listed) state_.wheel.set_due(placed.first(run), first.end);
     placed = placed.subspan(run);
   }
   for (const BodyIndex body : chunk.unknown) state_.changes.note(body);

@@ -9,6 +9,7 @@ struct Window {
   Step end = 0;          // the step of the next update
   Round updated = 0;     // the round of the last update: events of earlier rounds are void
   bool bounded = false;  // whether bounds are relied on, which may be cancelled; not of static bodies
+  bool listed = false;   // its end was the same before: the wheel has the body there
 };
 
 // It will never move, unless it is cancelled.
@@ -37,7 +38,11 @@ class Windows {
   void plan(Step steps, bool all_end) noexcept { planned_ = steps, all_end_ = all_end; }
   // The first step at which the bound of a body does not hold or which another update is due at.
   Step end_of(Step from, BodyIndex body, const Motion& motion) const noexcept;
-  void set(BodyIndex body, Step end) noexcept { windows_[body] = {end, round_, !pool_.statics.has(body)}; }
+  void set(BodyIndex body, Step end) noexcept {
+    Window& window = windows_[body];
+    const bool listed = rebuilt_round_ != round_ && window.end == end && !is_later(rebuilt_round_, window.updated);
+    window = {end, round_, !pool_.statics.has(body), listed};
+  }
 
   bool valid(const PairEvent& event) const noexcept {
     const Round created = event.created;
