@@ -281,7 +281,7 @@ void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb
 
 // Mostly one or two, which cannot be predicted.
 template <typename Use>
-void SweptGrid::for_each_line(const QuantizedAabb& box, const Use& use) const noexcept {
+ORCHARD_INLINE void SweptGrid::for_each_line(const QuantizedAabb& box, const Use& use) const noexcept {
   std::uint32_t axes = 0, more = 0, first = 0;
   for (std::uint32_t d = 0; d < 3; ++d) {
     const std::uint32_t cell = box.lower[d] >> kQuantumBits, beyond = (box.upper[d] >> kQuantumBits) - cell;
@@ -289,11 +289,11 @@ void SweptGrid::for_each_line(const QuantizedAabb& box, const Use& use) const no
     more |= beyond >> 1;
     first += cell * factors_[d];
   }
-  if (more != 0) return for_each_cell(box, [&](const Cell&, std::uint32_t line) { use(line); });
-  for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
+  if (more != 0) return for_each_cell(box, [&](const Cell&, std::uint32_t line) ORCHARD_INLINE_LAMBDA { use(line); });
+  for (std::uint32_t corner = axes;; corner = (corner - 1) & axes) {
     use((first + corner_lines_[corner]) & mask_);
+    if (corner == 0) return;
   }
-  use(first & mask_);
 }
 
 // After the last one of a chain.
@@ -314,7 +314,7 @@ CellLine& SweptGrid::add_line(CellLine& last, Overflow& overflow) {
 }
 
 // The last entry of the chain takes the place.
-void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
+ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
   CellLine *line = &first, *before_last = nullptr;
   std::uint64_t* found = nullptr;
   for (;; line = &overflow.lines[line->overflow - 1]) {
@@ -337,7 +337,10 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow)
 }
 
 void SweptGrid::remove(BodyIndex body, const QuantizedAabb& box) noexcept {
-  for_each_line(box, [&](std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); });
+  per_machine([&]() ORCHARD_INLINE_LAMBDA {
+    for_each_line(box, [&](std::uint32_t line)
+                           ORCHARD_INLINE_LAMBDA { remove_from(lines_[line], body, overflow_[part_of(line)]); });
+  });
 }
 
 void SweptGrid::prepare_removal(const PackedAabb& box) const noexcept {

@@ -109,7 +109,7 @@ class SweptGrid {
 
  private:
   template <typename Use>
-  void for_each_cell(const QuantizedAabb& box, const Use& use) const {  // use(cell, line)
+  ORCHARD_INLINE void for_each_cell(const QuantizedAabb& box, const Use& use) const {  // use(cell, line)
     const auto first = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
     const auto last = [&](std::size_t d) { return box.upper[d] >> kQuantumBits; };
     Cell cell;

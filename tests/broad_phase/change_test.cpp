@@ -297,5 +297,39 @@ TEST(BroadPhase, TimeNeverRunsBackwards) {  // a smaller time than before change
   EXPECT_NEAR(world.advance(1.02).time, 1.01, 1e-9);
 }
 
+// What the steps need at most, of bodies of which every so many are cancelled at each step.
+std::size_t memory_where_cancelled(BodyIndex every, double expiry) {
+  constexpr BodyIndex kPerAxis = 14, kCount = kPerAxis * kPerAxis * kPerAxis;
+  const MotionSource source = [&](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const BodyIndex i = bodies[k];
+      test::Draw draw(i);
+      Motion& m = motions[k] = {};
+      m.velocity = 0.2 * draw.direction();
+      m.position = 4.0 * Vec3{1.0 * (i % kPerAxis), 1.0 * (i / kPerAxis % kPerAxis), 1.0 * (i / kPerAxis / kPerAxis)} +
+                   time * m.velocity;
+      m.radius = 1.5;
+      m.acceleration = 0.5;
+      m.expiry = expiry;
+    }
+  };
+  BroadPhase world(source, {.time_step = kStep});
+  for (BodyIndex i = 0; i < kCount; ++i) world.add();
+  std::size_t most = 0;
+  for (int step = 0; step < 100; ++step) {
+    for (BodyIndex i = 0; step > 0 && every > 0 && i < kCount; i += every) world.cancel(world.id_of(i));
+    world.advance(kStep * step);
+    most = std::max(most, world.memory_bytes());
+  }
+  return most;
+}
+
+TEST(BroadPhase, CancelledBodiesTakeLittleMemory) {
+  for (const double expiry : {200 * kStep, std::numeric_limits<double>::infinity()}) {
+    const std::size_t calm = memory_where_cancelled(0, expiry), changing = memory_where_cancelled(4, expiry);
+    EXPECT_LT(changing, calm + calm / 4) << "of bounds until " << expiry;
+  }
+}
+
 }  // namespace
 }  // namespace orchard::runtime
