@@ -45,8 +45,8 @@ class TimingWheel {
   }
   // Whether void entries may be much of it, with so many bodies.
   bool crowded(std::size_t bodies) const noexcept {
-    constexpr std::size_t kBytesPerBody = 12;  // that do not matter
-    return bytes_used() > std::max(kBytesPerBody * bodies, 2 * tidied_bytes_);
+    constexpr std::size_t kBytesPerBody = 8;  // that do not matter
+    return bytes_used() > std::max(kBytesPerBody * bodies, tidied_bytes_ + tidied_bytes_ / 2);
   }
   // Drops void entries after `now`: bodies for which end_of(body), which it may write to meanwhile, is another step, or
   // which are there twice, and events that are not valid(). Runs stay: they are short.
