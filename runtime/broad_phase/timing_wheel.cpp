@@ -41,7 +41,7 @@ void TimingWheel::clear_bodies() noexcept {
 }
 
 void TimingWheel::clear_events() noexcept {
-  for_each_busy([](Bucket& bucket) { bucket.events = kNone, bucket.in_first = kEventsInPart, bucket.meetings = 0; });
+  for_each_busy([](Bucket& bucket) { bucket = {.bodies = bucket.bodies}; });
   events_.clear();
 }
 
@@ -68,14 +68,7 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
   const std::size_t index = bucket_of(step);
   Bucket& bucket = buckets_[index];
   for (std::uint32_t part = bucket.bodies; part != kNone; part = bodies_.give_back(part)) {
-    const std::array<BodyIndex, 3>& ids = bodies_[part].ids;
-    if (ids[1] == kRun) {
-      for (BodyIndex i = 0; i < ids[2]; ++i) bodies.push_back(ids[0] + i);
-    } else {
-      for (const BodyIndex body : ids) {
-        if (body != kNoIndex) bodies.push_back(body);
-      }
-    }
+    for_each(bodies_[part], [&](BodyIndex body) { bodies.push_back(body); });
   }
   std::uint32_t count = bucket.in_first;
   for (std::uint32_t part = bucket.events; part != kNone; count = kEventsInPart) {  // the last one added comes first
@@ -91,12 +84,7 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
 std::size_t TimingWheel::bodies_due(Step step) const noexcept {
   std::size_t count = 0;
   for (std::uint32_t part = buckets_[bucket_of(step)].bodies; part != kNone; part = bodies_.parts[part].next) {
-    const std::array<BodyIndex, 3>& ids = bodies_.parts[part].ids;
-    if (ids[1] == kRun) {
-      count += ids[2];
-    } else {
-      for (const BodyIndex body : ids) count += body != kNoIndex;
-    }
+    for_each(bodies_.parts[part], [&](BodyIndex) { ++count; });
   }
   return count;
 }

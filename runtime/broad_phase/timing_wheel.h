@@ -108,6 +108,14 @@ class TimingWheel {
   std::size_t bytes_used() const noexcept { return bodies_.used * sizeof(Bodies) + events_.used * sizeof(Events); }
   template <typename Use>
   void for_each_busy(const Use& use) noexcept;  // bucket
+  template <typename Use>
+  static void for_each(const Bodies& some, const Use& use) {
+    const bool run = some.ids[1] == kRun;
+    const std::size_t count = run ? some.ids[2] : some.ids.size();
+    for (std::size_t i = 0; i < count && (run || some.ids[i] != kNoIndex); ++i) {
+      use(run ? some.ids[0] + static_cast<BodyIndex>(i) : some.ids[i]);
+    }
+  }
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
@@ -126,17 +134,18 @@ void TimingWheel::tidy(Step now, const EndOf& end_of, const Valid& valid) {
     for (std::uint32_t part = old.bodies; part != kNone;) {
       const Bodies some = bodies_[part];
       part = bodies_.give_back(part);
-      if (some.ids[1] == kRun) bodies_.put_before(bucket.bodies).ids = some.ids;
-      for (std::size_t i = 0; some.ids[1] != kRun && i < some.ids.size() && some.ids[i] != kNoIndex; ++i) {
-        Step& end = end_of(some.ids[i]);
-        if (end != step) continue;
-        end = now;  // once is enough
-        set_due(some.ids[i], step);
+      if (some.ids[1] == kRun) {
+        bodies_.put_before(bucket.bodies).ids = some.ids;
+        continue;
       }
+      for_each(some, [&](BodyIndex body) {
+        if (end_of(body) != step) return;
+        end_of(body) = now;  // once is enough
+        set_due(body, step);
+      });
     }
     for (std::uint32_t part = bucket.bodies; part != kNone; part = bodies_[part].next) {
-      const std::array<BodyIndex, 3>& ids = bodies_[part].ids;
-      for (std::size_t i = 0; ids[1] != kRun && i < ids.size() && ids[i] != kNoIndex; ++i) end_of(ids[i]) = step;
+      if (bodies_[part].ids[1] != kRun) for_each(bodies_[part], [&](BodyIndex body) { end_of(body) = step; });
     }
     std::uint32_t count = old.in_first;
     for (std::uint32_t part = old.events; part != kNone; count = kEventsInPart) {
