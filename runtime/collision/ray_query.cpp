@@ -80,7 +80,8 @@ struct IndexTriangles {
   void along(const Line& line, Visit&& visit) const noexcept {
     const BoxTree tree = RayIndexAccess::tree(index);
     const BoxRay ray(line.ray);
-    RayWalk walk(line.ray, line.begin, line.end, 0);
+    const std::uint32_t first = tree.boxes.size() > 1 ? 1 : 0;  // the root's children, unless it is a leaf
+    RayWalk walk(line.ray, line.begin, line.end, first);
     for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
       walk.end = visit(leaf, walk.end);
     }

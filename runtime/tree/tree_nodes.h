@@ -63,4 +63,7 @@ inline TrianglePoints points_of(const TreeView& tree, std::uint32_t triangle) no
   return points;
 }
 
+// As index_triangles(), but cut along the coordinates' axes, for boxes along them; without a table of supports.
+void index_for_rays(PackedSphereTree& tree);
+
 }  // namespace orchard::runtime::detail
