@@ -126,10 +126,8 @@ void first_directions(const MinimumTranslationSearch& search, Directions& direct
 
 // Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
 double least_nudge(const PlacedTrees& trees, double size) noexcept {
-  double places = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    places += std::fabs(trees.first_pose().translation[i]) + std::fabs(trees.second_pose().translation[i]);
-  }
+  const double places =
+      detail::one_norm(trees.first_pose().translation) + detail::one_norm(trees.second_pose().translation);
   return 1e-12 * size + 2e-15 * places / trees.first_pose().scale;
 }
 

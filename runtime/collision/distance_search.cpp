@@ -17,10 +17,6 @@ namespace {
 constexpr double kDistanceRounding = 1e-12;  // of distances in double, relative to them
 constexpr double kSmallMargin = 0.125;       // of two leaves' radii: then most of their triangles are farther apart
 
-float float_above(double value) noexcept {
-  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
-}
-
 // Compares as the float does; of 32 bits.
 std::uint64_t ordered(float value) noexcept {
   const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -140,7 +136,7 @@ void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apar
   const TriangleBlock &lanes = trees.lanes(pair), &rows = trees.rows(pair);
   if (limit_.length < kSmallMargin * double{trees.radii(pair)}) return find_within(trees, pair);
   detail::TriangleGaps gaps;
-  const float reach = float_above(std::min(cut_, 1e30));
+  const float reach = detail::next_float(std::min(cut_, 1e30));
   detail::triangle_gaps(lanes, rows, trees.placement, nearest_.direction, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
   float left_out = gaps.beyond;
@@ -173,7 +169,7 @@ void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apar
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
 void DistanceSearch::find_within(const detail::PlacedViews& trees, const Apart& pair) noexcept {
   detail::Placement near = trees.placement;
-  near.margin = float_above((double{near.margin} + limit_.length) * (1 + 1e-6));
+  near.margin = detail::next_float((double{near.margin} + limit_.length) * (1 + 1e-6));
   min_lower_ = std::min(min_lower_, limit_.length);
   const bool found = detail::PlacedViews{trees.first, trees.second, near, trees.relative}.each_candidate(
       pair, [&](std::uint32_t lane, std::uint32_t row) {
@@ -216,9 +212,8 @@ void DistanceSearch::report() noexcept {
 DistanceSearch::Points DistanceSearch::points() const noexcept {
   Points result;
   if (nearest_.triangle_first == kNoTriangle) return result;
-  const auto world = [this](std::array<double, 3> point) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] += first().origin[i];
-    return transform(trees_.first_pose(), point);
+  const auto world = [this](const Vec3& point) {
+    return transform(trees_.first_pose(), detail::along(point, first().origin, 1));
   };
   result = {world(nearest_.on_first), world(nearest_.on_second), nearest_.triangle_first, nearest_.triangle_second};
   if (trees_.exchanged()) {

@@ -65,11 +65,11 @@ void ImpactSearch::compare_leaves(const PlacedViews& trees, const Scratch::Timed
   const TriangleBlock &lanes = trees.lanes(top), &rows = trees.rows(top);
   const auto reach = [](const NodeBox& box, const Vec3& center) {
     const Vec3 from = minus({box.center[0], box.center[1], box.center[2]}, center);
-    return (length_of(from) + double{box.radius}) * (1 + 1e-5);
+    return (length(from) + double{box.radius}) * (1 + 1e-5);
   };
   const double first_reach = reach(trees.first_box(top), motion_.first.center),
                second_reach = reach(trees.second_box(top), motion_.second.center);
-  const double fastest = length_of(motion_.velocity) + motion_.speed +
+  const double fastest = length(motion_.velocity) + motion_.speed +
                          (motion_.first.spin + motion_.first.turning) * first_reach +
                          (motion_.second.spin + motion_.second.turning) * second_reach;
   // Before that no gap closes, whatever its direction.
@@ -105,7 +105,7 @@ void ImpactSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t l
   const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, trees_.relative());
   const NearestPoints nearest = nearest_points(a, b);
   const Vec3 way = minus(nearest.on_b, nearest.on_a);
-  const double size = length_of(way);
+  const double size = length(way);
   double gap = -1, rate = speeds.fastest;
   if (size > 0) {
     const Vec3 u = along({0, 0, 0}, way, 1 / size);

@@ -9,8 +9,6 @@
 // Rays in a body's frame, and how they go through its triangles.
 namespace orchard::runtime::detail {
 
-inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
-
 // A ray's direction by a vector of about one unit, so that those of every length are as good as unit vectors.
 struct Direction {
   Direction(const Vec3& direction, double pose_scale) noexcept : scale(pose_scale) {
@@ -32,16 +30,6 @@ struct Direction {
   double scale;
   int power = 0;
 };
-
-// A ball around all triangles of a body, in its frame.
-struct Ball {
-  Vec3 middle{};
-  double radius = 0;
-};
-inline Ball ball_around(const TreeView& tree) noexcept {
-  const ObbNodeBlock& root = tree.obb_nodes[0];
-  return {{root.x[0], root.y[0], root.z[0]}, double{root.radius[0]}};
-}
 
 // From a point to outside of everything.
 inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3& point) noexcept {

@@ -333,7 +333,7 @@ void index_triangles(PackedSphereTree& tree) {
   }
   for (const double reach : most) {
     const double above_all = reach + 1e-15 * 3 * largest;  // the sum's rounding
-    tree.supports.push_back(std::nextafter(static_cast<float>(above_all), std::numeric_limits<float>::infinity()));
+    tree.supports.push_back(detail::next_float(above_all));
   }
 }
 

@@ -50,7 +50,7 @@ class TreePair {
   void forget() noexcept { memory_ = {}; }
 
  private:
-  friend class Coherence;
+  friend class CoherentPair;
   // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
   struct Witness {
     std::uint32_t a, b;
