@@ -64,12 +64,11 @@ Verdict CoherentPair::search(const Budget& budget) noexcept {
   }
   narrow_.trees().place();
   constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-  const MeetingTriangles::Place place = last_place();
   if (budget.work == 0) return remember();
   direct_.add_work(tests);
   Budget rest = budget;
   rest.work -= std::min(rest.work, tests);
-  if (!direct_.test_leaves({place.first, place.second})) narrow_.refine_exactly(rest);
+  if (!direct_.test_leaves(last_place())) narrow_.refine_exactly(rest);
   return remember();
 }
 
@@ -78,9 +77,7 @@ Verdict CoherentPair::remember() noexcept {
   memory_.met = answer == Answer::yes;
   if (memory_.met) {
     const MeetingTriangles::Place& place = direct_.found().place;
-    memory_.witness = narrow_.trees().exchanged()
-                          ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
-                          : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
+    memory_.witness = in_order({place.a, place.b, place.lane_a, place.lane_b});
   }
   const bool have_triangles = !pair_.a().tree.obb_nodes.empty() && !pair_.b().tree.obb_nodes.empty();
   memory_.clearance = answer == Answer::no && have_triangles ? narrow_.known().lower_bound / a_.scale : 0;
@@ -106,10 +103,13 @@ bool CoherentPair::place_for_triangles() noexcept {
   return placed_;
 }
 
+TreePair::Witness CoherentPair::in_order(const TreePair::Witness& w) const noexcept {
+  return narrow_.trees().exchanged() ? TreePair::Witness{w.b, w.a, w.lane_b, w.lane_a} : w;
+}
+
 MeetingTriangles::Place CoherentPair::last_place() const noexcept {
-  const TreePair::Witness& w = memory_.witness;
-  if (narrow_.trees().exchanged()) return {w.b, w.a, w.lane_b, w.lane_a};
-  return {w.a, w.b, w.lane_a, w.lane_b};
+  const TreePair::Witness w = in_order(memory_.witness);
+  return {{w.a, w.b}, w.lane_a, w.lane_b};
 }
 
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {

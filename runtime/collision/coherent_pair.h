@@ -29,6 +29,7 @@ class CoherentPair {
   bool find_rigid() noexcept;  // both, side by side
   const Pose& find_relative() noexcept;
   bool place_for_triangles() noexcept;
+  TreePair::Witness in_order(const TreePair::Witness& w) const noexcept;  // of the bodies as of the trees, and back
   MeetingTriangles::Place last_place() const noexcept;
 
   PairQuery& narrow_;  // the workspace's

@@ -162,7 +162,7 @@ Contact PairQuery::contact() const noexcept {
   }
   // A "yes" whose triangles say nothing about a direction has that of the spheres.
   if (known_.answer != Answer::yes || !(length(normal) > 0)) add_ball(contact, normal);
-  contact.center = transform(trees_.first_pose(), detail::along(contact.center, trees_.first().tree.origin, 1));
+  contact.center = trees_.in_world(contact.center);
   if (exchanged) normal = Vec3() - normal;
   contact.radius *= trees_.first_pose().scale;
   contact.normal = rotate(trees_.first_pose(), normal);

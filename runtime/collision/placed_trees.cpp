@@ -102,14 +102,14 @@ void OrderedTrees::order(const PreparedTree& a, const PreparedTree& b) noexcept 
 void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   if (is_bound_to(a, b)) return;
   order(a, b);
-  first_.refer_to(exchanged_ ? b : a), second_.refer_to(exchanged_ ? a : b);
+  first_.at = exchanged_ ? &b : &a, second_.at = exchanged_ ? &a : &b;
 }
 
 void OrderedTrees::bind(const TreeView& a, const TreeView& b) noexcept {
   const PreparedTree of_a(a);
   const PreparedTree of_b = compare(a, b) == 0 ? of_a : PreparedTree(b);
   order(of_a, of_b);
-  first_.keep(exchanged_ ? of_b : of_a), second_.keep(exchanged_ ? of_a : of_b);
+  first_ = {exchanged_ ? of_b : of_a}, second_ = {exchanged_ ? of_a : of_b};
 }
 
 // Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,

@@ -142,4 +142,36 @@ void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   }
 }
 
+// The triangles of a tree, as queries along rays go through them.
+struct TreeTriangles {
+  const TreeView& tree;
+
+  Frame frame(const Pose& pose) const noexcept { return {tree, pose}; }
+  Ball ball() const noexcept { return ball_around(tree); }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    walk_ray(tree, line, visit);
+  }
+  std::span<const TriangleBlock> all() const noexcept { return tree.triangle_blocks; }
+};
+
+// Calls visit(points, triangle, whether the line surely runs through it, end) for the triangles that a line may meet,
+// or for all where floats do not reach. It returns the new end, as for walk_ray().
+template <typename Triangles, typename Visit>
+void each_triangle_along(const Triangles& triangles, const Line& line, Visit&& visit) noexcept {
+  if (!line.in_float) {
+    each_triangle(triangles.all(), [&](const TrianglePoints& points, std::uint32_t triangle) {
+      return visit(points, triangle, false, line.end) >= 0;
+    });
+    return;
+  }
+  triangles.along(line, [&](const RayLeaf& leaf, float end) {
+    for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      end = visit(points_of(*leaf.block, lane), leaf.block->triangle[lane], (leaf.sure >> lane & 1) != 0, end);
+    }
+    return end;
+  });
+}
+
 }  // namespace orchard::runtime::detail

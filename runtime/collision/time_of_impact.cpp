@@ -115,10 +115,8 @@ double ImpactSearch::without_turning() const noexcept {
 
 void ImpactSearch::report(const Critical& critical) noexcept {
   if (critical.triangle_first == kNoTriangle) return;
-  const Pose& frame = trees_.first_pose();
-  const auto world = [&](const Vec3& p) { return transform(frame, along(p, first().origin, 1)); };
-  result_.distance = critical.distance * frame.scale * (1 + kImpactRounding) + trees_.exact_error();
-  result_.on_a = world(critical.on_first), result_.on_b = world(critical.on_second);
+  result_.distance = critical.distance * trees_.first_pose().scale * (1 + kImpactRounding) + trees_.exact_error();
+  result_.on_a = trees_.in_world(critical.on_first), result_.on_b = trees_.in_world(critical.on_second);
   result_.triangle_a = critical.triangle_first, result_.triangle_b = critical.triangle_second;
   if (!trees_.exchanged()) return;
   std::swap(result_.on_a, result_.on_b);

@@ -279,15 +279,12 @@ class Builder {
     const ObbNode slab = fitter_.obb_node_of(node.part);
     ObbNodeBlock& block = tree_.obb_nodes[node.block];
     const std::uint32_t lane = node.lane;
-    block.x[lane] = static_cast<float>(slab.center[0]);
-    block.y[lane] = static_cast<float>(slab.center[1]);
-    block.z[lane] = static_cast<float>(slab.center[2]);
-    block.nx[lane] = static_cast<float>(slab.normal[0]);
-    block.ny[lane] = static_cast<float>(slab.normal[1]);
-    block.nz[lane] = static_cast<float>(slab.normal[2]);
-    block.mx[lane] = static_cast<float>(slab.second[0]);
-    block.my[lane] = static_cast<float>(slab.second[1]);
-    block.mz[lane] = static_cast<float>(slab.second[2]);
+    const auto put = [lane](const Vec3& v, auto& x, auto& y, auto& z) {
+      x[lane] = static_cast<float>(v[0]), y[lane] = static_cast<float>(v[1]), z[lane] = static_cast<float>(v[2]);
+    };
+    put(slab.center, block.x, block.y, block.z);
+    put(slab.normal, block.nx, block.ny, block.nz);
+    put(slab.second, block.mx, block.my, block.mz);
     block.radius[lane] = stored_above(slab.radius);
     // What cancels in a height is of the size of the distances from the centre.
     block.height[lane] = stored_above(slab.height + 1e-15 * slab.radius);
