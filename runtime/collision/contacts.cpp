@@ -28,6 +28,10 @@ namespace {
 
 using Cut = Workspace::Scratch::Cut;
 
+struct PosePair {
+  Pose a, b;
+};
+
 // All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
 std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
   std::size_t found = 0;

@@ -81,26 +81,15 @@ bool before(const Pose& a, const Pose& b) noexcept {
 
 }  // namespace
 
-// Whether that is so already: bodies of one shape follow each other often.
-bool OrderedTrees::is_bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept {
-  if (equal_ && exchanged_) return false;  // as the last poses had it
-  const std::size_t of_a = exchanged_ ? 1 : 0;
-  const PreparedTree &tree_a = exchanged_ ? *second_ : *first_, &tree_b = exchanged_ ? *first_ : *second_;
-  return a.fingerprint != 0 && &tree_a == &a && &tree_b == &b && prints_[of_a] == a.fingerprint &&
-         prints_[1 - of_a] == b.fingerprint;
-}
-
 void OrderedTrees::order(const PreparedTree& a, const PreparedTree& b) noexcept {
   equal_ = a.fingerprint == b.fingerprint;
   one_tree_ = equal_ && same_place(a.tree, b.tree);
   exchanged_ = !equal_ && compare(a.tree, b.tree) > 0;
   const PreparedTree &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
   for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first.root[i], second.root[i]};
-  prints_ = {first.fingerprint, second.fingerprint};
 }
 
 void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
-  if (is_bound_to(a, b)) return;
   order(a, b);
   first_.at = exchanged_ ? &b : &a, second_.at = exchanged_ ? &a : &b;
 }
@@ -119,7 +108,6 @@ bool OrderedTrees::order_at(const Pose& a, const Pose& b) noexcept {
   if (!equal_ || before(b, a) == exchanged_) return exchanged_;
   exchanged_ = !exchanged_;
   std::swap(first_, second_);
-  std::swap(prints_[0], prints_[1]);
   for (auto& pair : roots_) std::swap(pair[0], pair[1]);
   return exchanged_;
 }

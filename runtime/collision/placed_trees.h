@@ -33,11 +33,9 @@ class OrderedTrees {
     const PreparedTree* at = nullptr;  // in the caller's place; null: its own
     const PreparedTree& operator*() const noexcept { return at != nullptr ? *at : own; }
   };
-  bool is_bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept;
   void order(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   Side first_, second_;
-  std::array<std::uint64_t, 2> prints_{};         // their fingerprints
   std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
   bool equal_ = false;                            // ordered by their poses
   bool one_tree_ = false;                         // equal, and in the same place

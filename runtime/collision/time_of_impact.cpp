@@ -127,7 +127,7 @@ void ImpactSearch::report(const Critical& critical) noexcept {
 bool ImpactSearch::touching(PairBudget& tracker, double time) noexcept {
   if (tracker.exhausted()) return false;
   const std::uint64_t left = options_.budget.work - tracker.spent();
-  const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
+  const Answer answer = closer_than(workspace_, pair_, a_.at(time), b_.at(time), options_.margin, {left});
   tracker.spend(options_.margin > 0 ? workspace_.distance.work() : query_of(workspace_.narrow).known().work);
   return answer == Answer::yes;
 }

@@ -55,8 +55,6 @@ inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a n
 struct Frame {  // the body's, with its coordinates relative to the tree's origin
   Frame(const Vec3& tree_origin, double tree_radius, const Pose& body) noexcept
       : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse(body)) {}
-  Frame(const Vec3& tree_origin, double tree_radius, const Pose& body, const Pose& inverse_of_body)
-      : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse_of_body) {}
   Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
   Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), origin)); }
   Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, origin, 1)); }
