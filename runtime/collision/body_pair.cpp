@@ -25,21 +25,17 @@ Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const
   return collide(query, a, b, budget, order);
 }
 
-Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept {
-  return closer_within(workspace, pair, {a, b}, margin, {});
-}
-
-Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
-                     const Budget& budget) noexcept {
+Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin,
+                   const Budget& budget) noexcept {
   if (!(margin >= 0)) return Answer::maybe;
   if (margin == 0) {
     PairQuery& query = query_of(workspace.narrow);
     query.bind(pair.a(), pair.b());
-    return collide(query, poses.a, poses.b, budget).answer;
+    return collide(query, a, b, budget).answer;
   }
   DistanceSearch& query = search_of(workspace.distance);
   query.bind(pair.a(), pair.b());
-  query.start_within(poses.a, poses.b, margin);
+  query.start_within(a, b, margin);
   query.refine(budget);
   if (query.lower() > margin) return Answer::no;
   return query.upper() <= margin && std::isfinite(query.upper()) ? Answer::yes : Answer::maybe;

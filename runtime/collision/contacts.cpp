@@ -28,6 +28,10 @@ namespace {
 
 using Cut = Workspace::Scratch::Cut;
 
+struct PosePair {
+  Pose a, b;
+};
+
 // All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
 std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
   std::size_t found = 0;
@@ -126,10 +130,8 @@ void first_directions(const MinimumTranslationSearch& search, Directions& direct
 
 // Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
 double least_nudge(const PlacedTrees& trees, double size) noexcept {
-  double places = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    places += std::fabs(trees.first_pose().translation[i]) + std::fabs(trees.second_pose().translation[i]);
-  }
+  const double places =
+      detail::one_norm(trees.first_pose().translation) + detail::one_norm(trees.second_pose().translation);
   return 1e-12 * size + 2e-15 * places / trees.first_pose().scale;
 }
 

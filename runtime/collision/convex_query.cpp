@@ -42,7 +42,7 @@ class Solid {
         if (shape.facets[f][k] >= corners_) return false;
         facet_[f][k] = corner_[shape.facets[f][k]];
       }
-      if (flat(facet_[f])) return false;
+      if (in_line(facet_[f][0], facet_[f][1], facet_[f][2])) return false;
     }
     return true;
   }
@@ -77,10 +77,6 @@ class Solid {
   }
 
  private:
-  static bool flat(const TrianglePoints& t) noexcept {
-    return orientation(t[0], t[1], t[2], 0) == 0 && orientation(t[0], t[1], t[2], 1) == 0 &&
-           orientation(t[0], t[1], t[2], 2) == 0;
-  }
   int outside(std::size_t f, const Vec3& p) const noexcept {
     return -orientation(facet_[f][0], facet_[f][1], facet_[f][2], p);
   }
@@ -113,9 +109,8 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
   std::size_t count = 0;
   double least = std::numeric_limits<double>::infinity();
   Vec3 deepest{};
-  const double rounding =
-      kRounding * (length({tree.obb_nodes[0].x[0], tree.obb_nodes[0].y[0], tree.obb_nodes[0].z[0]}) +
-                   double{tree.obb_nodes[0].radius[0]});
+  const Ball all = ball_around(tree);
+  const double rounding = kRounding * (length(all.middle) + all.radius);
   stack[count++] = {-std::numeric_limits<double>::infinity(), tree.obb_nodes[0].child[0]};
   while (count > 0) {
     const Entry entry = stack[--count];

@@ -17,16 +17,6 @@ namespace {
 constexpr double kDistanceRounding = 1e-12;  // of distances in double, relative to them
 constexpr double kSmallMargin = 0.125;       // of two leaves' radii: then most of their triangles are farther apart
 
-float float_above(double value) noexcept {
-  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
-}
-
-// Compares as the float does; of 32 bits.
-std::uint64_t ordered(float value) noexcept {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
-}
-
 }  // namespace
 
 DistanceSearch::DistanceSearch(const TreeView& a, const TreeView& b) noexcept {
@@ -140,31 +130,15 @@ void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apar
   const TriangleBlock &lanes = trees.lanes(pair), &rows = trees.rows(pair);
   if (limit_.length < kSmallMargin * double{trees.radii(pair)}) return find_within(trees, pair);
   detail::TriangleGaps gaps;
-  const float reach = float_above(std::min(cut_, 1e30));
+  const float reach = detail::next_float(std::min(cut_, 1e30));
   detail::triangle_gaps(lanes, rows, trees.placement, nearest_.direction, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
-  float left_out = gaps.beyond;
-  std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;  // triangles to be looked at
-  std::size_t count = 0;
-  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
-    for (std::uint32_t near = gaps.near[row]; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      left[count++] = ordered(gaps.lower[row][lane]) << 32 | (kBlockWidth * row + lane);
-    }
-  }
-  for (; count > 0; --count) {  // few are: no need to sort them all
-    auto nearest = std::min_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(count));
-    const auto row = static_cast<std::uint32_t>(*nearest) / kBlockWidth,
-               lane = static_cast<std::uint32_t>(*nearest) % kBlockWidth;
-    const float lower = gaps.lower[row][lane];
+  const float left_out = detail::each_nearest_first(gaps, [&](std::uint32_t lane, std::uint32_t row, float lower) {
     // The rest of the pair is no nearer than this one and than its boxes.
-    if (nearest_.distance <= limit_.enough || !may_be_nearer(double{std::max(lower, least)})) {
-      left_out = std::min(left_out, lower);
-      break;
-    }
-    *nearest = left[count - 1];
+    if (nearest_.distance <= limit_.enough || !may_be_nearer(double{std::max(lower, least)})) return false;
     compare_triangles(lanes, lane, rows, row, lower <= 0);
-  }
+    return true;
+  });
   if (left_out < std::numeric_limits<float>::infinity()) {
     min_lower_ = std::min(min_lower_, double{std::max(left_out, least)});
   }
@@ -173,7 +147,7 @@ void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apar
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
 void DistanceSearch::find_within(const detail::PlacedViews& trees, const Apart& pair) noexcept {
   detail::Placement near = trees.placement;
-  near.margin = float_above((double{near.margin} + limit_.length) * (1 + 1e-6));
+  near.margin = detail::next_float((double{near.margin} + limit_.length) * (1 + 1e-6));
   min_lower_ = std::min(min_lower_, limit_.length);
   const bool found = detail::PlacedViews{trees.first, trees.second, near, trees.relative}.each_candidate(
       pair, [&](std::uint32_t lane, std::uint32_t row) {
@@ -216,11 +190,8 @@ void DistanceSearch::report() noexcept {
 DistanceSearch::Points DistanceSearch::points() const noexcept {
   Points result;
   if (nearest_.triangle_first == kNoTriangle) return result;
-  const auto world = [this](std::array<double, 3> point) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] += first().origin[i];
-    return transform(trees_.first_pose(), point);
-  };
-  result = {world(nearest_.on_first), world(nearest_.on_second), nearest_.triangle_first, nearest_.triangle_second};
+  result = {trees_.in_world(nearest_.on_first), trees_.in_world(nearest_.on_second), nearest_.triangle_first,
+            nearest_.triangle_second};
   if (trees_.exchanged()) {
     std::swap(result.on_a, result.on_b);
     std::swap(result.triangle_a, result.triangle_b);

@@ -65,11 +65,11 @@ void ImpactSearch::compare_leaves(const PlacedViews& trees, const Scratch::Timed
   const TriangleBlock &lanes = trees.lanes(top), &rows = trees.rows(top);
   const auto reach = [](const NodeBox& box, const Vec3& center) {
     const Vec3 from = minus({box.center[0], box.center[1], box.center[2]}, center);
-    return (length_of(from) + double{box.radius}) * (1 + 1e-5);
+    return (length(from) + double{box.radius}) * (1 + 1e-5);
   };
   const double first_reach = reach(trees.first_box(top), motion_.first.center),
                second_reach = reach(trees.second_box(top), motion_.second.center);
-  const double fastest = length_of(motion_.velocity) + motion_.speed +
+  const double fastest = length(motion_.velocity) + motion_.speed +
                          (motion_.first.spin + motion_.first.turning) * first_reach +
                          (motion_.second.spin + motion_.second.turning) * second_reach;
   // Before that no gap closes, whatever its direction.
@@ -81,23 +81,13 @@ void ImpactSearch::compare_leaves(const PlacedViews& trees, const Scratch::Timed
   TriangleGaps gaps;
   triangle_gaps(lanes, rows, trees.placement, direction_,
                 static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
-  // The nearest first: each makes fewer of the others worth a look.
-  std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
-  std::size_t count = 0;
-  const auto lower_of = [&](std::uint8_t i) { return gaps.lower[i / kBlockWidth][i % kBlockWidth]; };
-  for (std::uint32_t row = 0; row < kBlockWidth && rows.triangle[row] != kNoTriangle; ++row) {
-    for (std::uint32_t lane = 0; lane < kBlockWidth && lanes.triangle[lane] != kNoTriangle; ++lane) {
-      const float lower = gaps.lower[row][lane];
-      if (critical.leaves(earliest(lower))) continue;
-      std::size_t at = count++;
-      for (; at > 0 && lower_of(order[at - 1]) > lower; --at) order[at] = order[at - 1];
-      order[at] = static_cast<std::uint8_t>(kBlockWidth * row + lane);
-    }
-  }
-  for (std::size_t i = 0; i < count && !critical.leaves(earliest(lower_of(order[i]))); ++i) {
-    compare_triangles(lanes, order[i] % kBlockWidth, rows, order[i] / kBlockWidth, {fastest, first_reach, second_reach},
-                      critical);
-  }
+  // Each found makes fewer of the others worth a look.
+  const float others = each_nearest_first(gaps, [&](std::uint32_t lane, std::uint32_t row, float lower) {
+    if (critical.leaves(earliest(lower))) return false;
+    compare_triangles(lanes, lane, rows, row, {fastest, first_reach, second_reach}, critical);
+    return true;
+  });
+  critical.left_out = std::min(critical.left_out, earliest(others));
 }
 
 void ImpactSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
@@ -105,7 +95,7 @@ void ImpactSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t l
   const TrianglePoints a = points_of(lanes, lane), b = moved_points_of(rows, row, trees_.relative());
   const NearestPoints nearest = nearest_points(a, b);
   const Vec3 way = minus(nearest.on_b, nearest.on_a);
-  const double size = length_of(way);
+  const double size = length(way);
   double gap = -1, rate = speeds.fastest;
   if (size > 0) {
     const Vec3 u = along({0, 0, 0}, way, 1 / size);

@@ -14,15 +14,13 @@ namespace orchard::runtime::detail {
 
 inline constexpr double kImpactRounding = 1e-12;  // of lengths in double
 
-inline double length_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
-
 // One body's motion in the first tree's frame as it is at one time.
 struct Turn {
   Vec3 center{}, axis{};
   double spin = 0, turning = 0;
   // How fast a point so far from the centre comes closer along u at most.
   double rate(const Vec3& u, double reach) const noexcept {
-    return (spin * (length_of(cross(axis, u)) + kImpactRounding) + turning) * reach;
+    return (spin * (length(cross(axis, u)) + kImpactRounding) + turning) * reach;
   }
   // The same seen from another frame's axes and origin.
   Turn from(const Pose& frame) const noexcept {

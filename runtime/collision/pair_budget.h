@@ -17,7 +17,10 @@ class PairBudget {
       deadline_ = std::chrono::steady_clock::now() + budget.time;
     }
   }
-  bool exhausted() noexcept { return spent_ >= limit_ || (spent_ >= next_clock_ && late()); }
+  bool exhausted() noexcept {  // and from then on
+    if (spent_ >= next_clock_) look_at_clock();
+    return spent_ >= limit_;
+  }
   // How many rows of so many tests may follow before the limits are seen to again: at least one.
   std::uint32_t rows(std::uint32_t tests) const noexcept {
     const std::uint64_t left = std::min(limit_, next_clock_) - spent_;
@@ -28,9 +31,9 @@ class PairBudget {
   std::uint64_t spent() const noexcept { return spent_; }
 
  private:
-  bool late() noexcept {
+  void look_at_clock() noexcept {
     next_clock_ = spent_ + kClockInterval;
-    return std::chrono::steady_clock::now() >= deadline_;
+    if (std::chrono::steady_clock::now() >= deadline_) limit_ = std::min(limit_, spent_);
   }
   std::uint64_t limit_, spent_ = 0, next_clock_ = std::numeric_limits<std::uint64_t>::max();
   std::chrono::steady_clock::time_point deadline_;

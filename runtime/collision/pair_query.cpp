@@ -162,11 +162,8 @@ Contact PairQuery::contact() const noexcept {
   }
   // A "yes" whose triangles say nothing about a direction has that of the spheres.
   if (known_.answer != Answer::yes || !(length(normal) > 0)) add_ball(contact, normal);
-  for (std::size_t i = 0; i < 3; ++i) contact.center[i] += trees_.first().tree.origin[i];
-  if (exchanged) {
-    for (double& component : normal) component = 0 - component;
-  }
-  contact.center = transform(trees_.first_pose(), contact.center);
+  contact.center = trees_.in_world(contact.center);
+  if (exchanged) normal = Vec3() - normal;
   contact.radius *= trees_.first_pose().scale;
   contact.normal = rotate(trees_.first_pose(), normal);
   return contact;
@@ -180,7 +177,7 @@ void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
   const auto p = detail::center_of(first, a);
   const Pose relative = trees_.relative_pose();
   const auto q = transform(relative, detail::center_of(second, b));
-  const Vec3 way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+  const Vec3 way = detail::minus(q, p);
   const double distance = length(way);
   normal = {1, 0, 0};
   for (std::size_t i = 0; i < 3 && distance > 0; ++i) normal[i] = way[i] / distance;
@@ -198,7 +195,7 @@ void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
     contact.radius = std::sqrt(std::max(0.0, ra * ra - at * at));
     share = at / distance;
   }
-  for (std::size_t i = 0; i < 3; ++i) contact.center[i] = p[i] + share * way[i];
+  contact.center = detail::along(p, way, share);
 }
 
 // From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.
@@ -212,8 +209,7 @@ Vec3 PairQuery::triangle_normal() const noexcept {
   const auto of_first = normal_of(detail::points_of(trees_.first().tree, triangles_.found().first));
   const auto of_second =
       rotate(trees_.relative(), normal_of(detail::points_of(trees_.second().tree, triangles_.found().second)));
-  Vec3 way{};
-  for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
+  Vec3 way = detail::minus(of_first, of_second);
   const double size = length(way);
   for (double& component : way) component = size > kMinOpposition ? component / size : 0;
   return way;

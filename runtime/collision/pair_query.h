@@ -93,7 +93,6 @@ class DirectSearch {
   bool test_leaves(const NodePair& leaves) noexcept {
     return say_yes_if(query_.triangles_.test_leaves(query_.trees_.views(), leaves));
   }
-  void search(const Budget& budget) noexcept { query_.refine_exactly(budget); }  // all of the last level
   void add_work(std::uint64_t work) noexcept { query_.known_.work += work; }
 
   const MeetingTriangles& found() const noexcept { return query_.triangles_.found(); }

@@ -18,11 +18,10 @@ struct PlacedPair {
   // The second one moved by `by`, in the first one's units.
   PlacedPair moved(const Vec3& by) const noexcept {
     PlacedPair result = *this;
-    double size = 0;
+    const double size = one_norm(by);
     for (std::size_t i = 0; i < 3; ++i) {
       result.relative.translation[i] += by[i];
       result.placement.translation[i] = static_cast<float>(result.relative.translation[i]);
-      size += std::fabs(by[i]);
     }
     // A margin has at most 108 u for each unit of the translation's length, or 204 u (placed_trees.cpp).
     result.placement.margin += static_cast<float>(size * 0x1p-17);

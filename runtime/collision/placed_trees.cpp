@@ -39,6 +39,7 @@
 namespace orchard::runtime {
 
 using detail::minus;
+using detail::one_norm;
 using detail::turned_back;
 
 namespace {
@@ -78,18 +79,7 @@ bool before(const Pose& a, const Pose& b) noexcept {
   return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
 }
 
-double sum_of_sizes(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
-
 }  // namespace
-
-// Whether that is so already: bodies of one shape follow each other often.
-bool OrderedTrees::is_bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept {
-  if (equal_ && exchanged_) return false;  // as the last poses had it
-  const std::size_t of_a = exchanged_ ? 1 : 0;
-  const PreparedTree &tree_a = exchanged_ ? *second_ : *first_, &tree_b = exchanged_ ? *first_ : *second_;
-  return a.fingerprint != 0 && &tree_a == &a && &tree_b == &b && prints_[of_a] == a.fingerprint &&
-         prints_[1 - of_a] == b.fingerprint;
-}
 
 void OrderedTrees::order(const PreparedTree& a, const PreparedTree& b) noexcept {
   equal_ = a.fingerprint == b.fingerprint;
@@ -97,20 +87,18 @@ void OrderedTrees::order(const PreparedTree& a, const PreparedTree& b) noexcept 
   exchanged_ = !equal_ && compare(a.tree, b.tree) > 0;
   const PreparedTree &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
   for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first.root[i], second.root[i]};
-  prints_ = {first.fingerprint, second.fingerprint};
 }
 
 void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
-  if (is_bound_to(a, b)) return;
   order(a, b);
-  first_.refer_to(exchanged_ ? b : a), second_.refer_to(exchanged_ ? a : b);
+  first_.at = exchanged_ ? &b : &a, second_.at = exchanged_ ? &a : &b;
 }
 
 void OrderedTrees::bind(const TreeView& a, const TreeView& b) noexcept {
   const PreparedTree of_a(a);
   const PreparedTree of_b = compare(a, b) == 0 ? of_a : PreparedTree(b);
   order(of_a, of_b);
-  first_.keep(exchanged_ ? of_b : of_a), second_.keep(exchanged_ ? of_a : of_b);
+  first_ = {exchanged_ ? of_b : of_a}, second_ = {exchanged_ ? of_a : of_b};
 }
 
 // Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,
@@ -120,7 +108,6 @@ bool OrderedTrees::order_at(const Pose& a, const Pose& b) noexcept {
   if (!equal_ || before(b, a) == exchanged_) return exchanged_;
   exchanged_ = !exchanged_;
   std::swap(first_, second_);
-  std::swap(prints_[0], prints_[1]);
   for (auto& pair : roots_) std::swap(pair[0], pair[1]);
   return exchanged_;
 }
@@ -129,7 +116,7 @@ void PlacedTrees::bind(const TreeView& a, const TreeView& b) noexcept { trees_.b
 
 void PlacedTrees::find_exact_error(const Pose& of_first, const Pose& of_second) noexcept {
   exact_error_ = (of_first.scale * first().error + of_second.scale * second().error) +
-                 1e-14 * (sum_of_sizes(of_first.translation) + sum_of_sizes(of_second.translation)) + kMinError;
+                 1e-14 * (one_norm(of_first.translation) + one_norm(of_second.translation)) + kMinError;
 }
 
 // Nothing is done here that only deeper levels need. In double and in the world: bodies that are far apart must not
@@ -201,8 +188,7 @@ double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const
     const Vec3 direction = turned_back(pose, v);
     detail::Support support = detail::support_along(side.tree.supports, direction);
     support.most = pose.scale * (support.most - dot(direction, side.middle));
-    support.point = rotate(pose, minus(support.point, side.middle));
-    for (double& component : support.point) component *= pose.scale;
+    support.point = pose.scale * Vec3(rotate(pose, minus(support.point, side.middle)));
     return support;  // from the root's centre, in the world
   };
   double best = -std::numeric_limits<double>::infinity();
@@ -213,11 +199,10 @@ double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const
     if (gap <= best) break;
     best = gap;
     // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
-    const Vec3 apart = minus(q.point, p.point), between = {way[0] + apart[0], way[1] + apart[1], way[2] + apart[2]};
+    const Vec3 between = way + (q.point - p.point);
     const double square = dot(between, between), component = dot(between, u);
     if (component >= 0 || !(square > 0)) break;
-    const double factor = 2 * component / square;
-    for (std::size_t i = 0; i < 3; ++i) u[i] -= factor * between[i];
+    u = u - (2 * component / square) * between;
   }
   return best;
 }
@@ -225,23 +210,17 @@ double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const
 // The second tree's frame in the first one's, both relative to the trees' origins: these enter here, so that everything
 // below works on the trees' own small coordinates.
 Pose PlacedTrees::relative_pose() const noexcept {
-  const auto& r = first_pose_.rotation;
-  const auto& q = second_pose_.rotation;
   const double shrink = 1 / first_pose_.scale;
   // What is below this is no more than rounding, and without it no product of three coordinates underflows:
   // exact_sign.h.
   const auto settled = [](double value, double least) { return std::fabs(value) < least ? 0.0 : value; };
   Pose relative;
   relative.scale = second_pose_.scale * shrink;
-  auto offset = transform(second_pose_, second().tree.origin);
-  for (std::size_t i = 0; i < 3; ++i) offset[i] -= first_pose_.translation[i];
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      relative.rotation[3 * i + j] = settled(r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j], 0x1p-60);
-    }
-    relative.translation[i] = settled(
-        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first().tree.origin[i], 0x1p-305);
-  }
+  relative.rotation = detail::product(detail::transposed(first_pose_.rotation), second_pose_.rotation);
+  for (double& entry : relative.rotation) entry = settled(entry, 0x1p-60);
+  const Vec3 place = transform(second_pose_, second().tree.origin), way = minus(place, first_pose_.translation);
+  relative.translation = minus(shrink * turned_back(first_pose_, way), first().tree.origin);
+  for (double& coordinate : relative.translation) coordinate = settled(coordinate, 0x1p-305);
   return relative;
 }
 

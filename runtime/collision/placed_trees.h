@@ -28,30 +28,14 @@ class OrderedTrees {
   const std::array<double, 2>& roots(std::size_t i) const noexcept { return roots_[i]; }
 
  private:
-  class Side {  // in the caller's place, or its own
-   public:
-    Side() noexcept = default;
-    Side(const Side& other) noexcept : own_(other.own_), at_(other.owns() ? &own_ : other.at_) {}
-    Side& operator=(const Side& other) noexcept {
-      if (this == &other) return *this;
-      own_ = other.own_;
-      at_ = other.owns() ? &own_ : other.at_;
-      return *this;
-    }
-    void keep(const PreparedTree& tree) noexcept { own_ = tree, at_ = &own_; }
-    void refer_to(const PreparedTree& tree) noexcept { at_ = &tree; }
-    bool owns() const noexcept { return at_ == &own_; }
-    const PreparedTree& operator*() const noexcept { return *at_; }
-
-   private:
-    PreparedTree own_;
-    const PreparedTree* at_ = &own_;
+  struct Side {
+    PreparedTree own{};
+    const PreparedTree* at = nullptr;  // in the caller's place; null: its own
+    const PreparedTree& operator*() const noexcept { return at != nullptr ? *at : own; }
   };
-  bool is_bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept;
   void order(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   Side first_, second_;
-  std::array<std::uint64_t, 2> prints_{};         // their fingerprints
   std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
   bool equal_ = false;                            // ordered by their poses
   bool one_tree_ = false;                         // equal, and in the same place
@@ -93,6 +77,9 @@ class PlacedTrees {
   const Pose& relative() const noexcept { return relative_; }
   const detail::Placement& placement() const noexcept { return placement_; }
   detail::PlacedViews views() const noexcept { return {first().tree, second().tree, placement_, relative_}; }
+  Vec3 in_world(const Vec3& place) const noexcept {  // a point of the first tree's frame
+    return transform(first_pose_, place + first().tree.origin);
+  }
   double exact_error() const noexcept { return exact_error_; }  // of a point's place in double, in the world
   // relative() at the poses kept by test_roots() or place_for_triangles().
   Pose relative_pose() const noexcept;

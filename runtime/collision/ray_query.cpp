@@ -58,19 +58,7 @@ struct Nearest {
   }
 };
 
-// The triangles of a tree, as Caster goes through them.
-struct TreeTriangles {
-  const TreeView& tree;
-
-  Frame frame(const Pose& pose) const noexcept { return {tree, pose}; }
-  Ball ball() const noexcept { return ball_around(tree); }
-  template <typename Visit>
-  void along(const Line& line, Visit&& visit) const noexcept {
-    walk_ray(tree, line, visit);
-  }
-  std::span<const TriangleBlock> all() const noexcept { return tree.triangle_blocks; }
-};
-
+// The same of an index.
 struct IndexTriangles {
   const RayIndex& index;
 
@@ -80,7 +68,8 @@ struct IndexTriangles {
   void along(const Line& line, Visit&& visit) const noexcept {
     const BoxTree tree = RayIndexAccess::tree(index);
     const BoxRay ray(line.ray);
-    RayWalk walk(line.ray, line.begin, line.end, 0);
+    const std::uint32_t first = tree.boxes.size() > 1 ? 1 : 0;  // the root's children, unless it is a leaf
+    RayWalk walk(line.ray, line.begin, line.end, first);
     for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
       walk.end = visit(leaf, walk.end);
     }
@@ -94,12 +83,6 @@ class Caster {
  public:
   Caster(const Triangles& triangles, const Pose& pose) noexcept
       : triangles_(triangles), frame_(triangles.frame(pose)), ball_(triangles.ball()) {}
-
-  std::optional<RayHit> cast(const Ray& ray) const noexcept {
-    const Direction direction(ray.direction, frame_.pose.scale);
-    const double steps = direction.steps(ray.longest);
-    return cast(ray, direction, start_of(frame_, ball_, ray.origin, direction.way, steps));
-  }
 
   // What is before the walk for several rays at once.
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const noexcept {
@@ -121,7 +104,12 @@ class Caster {
         hits[first + i] = cast(rays[first + i], direction, starts.at_lane(i));
       }
     }
-    for (; first < rays.size(); ++first) hits[first] = cast(rays[first]);
+    for (; first < rays.size(); ++first) {
+      const Ray& ray = rays[first];
+      const Direction direction(ray.direction, frame_.pose.scale);
+      const double steps = direction.steps(ray.longest);
+      hits[first] = cast(ray, direction, start_of(frame_, ball_, ray.origin, direction.way, steps));
+    }
   }
 
  private:
@@ -131,34 +119,21 @@ class Caster {
     }
     if (ray.longest < 0 || start.line.misses) return std::nullopt;
     const RayEnd limit{direction, ray.longest};
-    const Nearest nearest = start.line.in_float ? nearest_along(start, limit) : nearest_of_all(start, limit);
+    const Nearest nearest = nearest_along(start, limit);
     if (nearest.triangle == kNoTriangle) return std::nullopt;
     return RayHit{min(direction.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
   }
 
   Nearest nearest_along(const RayStart& ray, const RayEnd& limit) const noexcept {
     Nearest nearest;
-    triangles_.along(ray.line, [&](const RayLeaf& leaf, float end) {
-      for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-        const bool sure = (leaf.sure >> lane & 1) != 0;
-        if (!nearest.offer(ray, limit, points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
-        const double rounding = kRounding * (one_norm(ray.from) + frame_.bounding_radius);
-        const double s = nearest.steps * ray.speed;
-        const float behind = static_cast<float>(s + rounding - ray.line.at) + ray.line.ray.margin;
-        end = behind < end ? behind : end;
-      }
-      return end;
-    });
-    return nearest;
-  }
-
-  Nearest nearest_of_all(const RayStart& ray, const RayEnd& limit) const noexcept {  // where floats do not reach
-    Nearest nearest;
-    each_triangle(triangles_.all(), [&](const TrianglePoints& t, std::uint32_t triangle) {
-      nearest.offer(ray, limit, t, triangle, false);
-      return true;
-    });
+    const auto offer = [&](const TrianglePoints& points, std::uint32_t triangle, bool sure, float end) {
+      if (!nearest.offer(ray, limit, points, triangle, sure) || !ray.line.in_float) return end;
+      const double rounding = kRounding * (one_norm(ray.from) + frame_.bounding_radius);
+      const double s = nearest.steps * ray.speed;
+      const float behind = static_cast<float>(s + rounding - ray.line.at) + ray.line.ray.margin;
+      return behind < end ? behind : end;
+    };
+    each_triangle_along(triangles_, ray.line, offer);
     return nearest;
   }
 
@@ -168,50 +143,43 @@ class Caster {
 };
 
 template <typename Triangles>
-std::optional<RayHit> cast_one(const Triangles& triangles, const Pose& pose, const Ray& ray) noexcept {
-  if (!is_rigid(pose)) return RayHit{0, ray.origin, kNoTriangle};
-  return Caster<Triangles>(triangles, pose).cast(ray);
+void cast_all(const Triangles& triangles, const Pose& pose, std::span<const Ray> rays,
+              std::span<std::optional<RayHit>> hits) noexcept {
+  if (triangles.all().empty()) {
+    std::fill_n(hits.begin(), rays.size(), std::nullopt);
+  } else if (is_rigid(pose)) {
+    Caster<Triangles>(triangles, pose).cast(rays, hits);
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = RayHit{0, rays[i].origin, kNoTriangle};
+  }
 }
 
 template <typename Triangles>
-void cast_all(const Triangles& triangles, const Pose& pose, std::span<const Ray> rays,
-              std::span<std::optional<RayHit>> hits) noexcept {
-  if (!is_rigid(pose)) {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = RayHit{0, rays[i].origin, kNoTriangle};
-    return;
-  }
-  Caster<Triangles>(triangles, pose).cast(rays, hits);
+std::optional<RayHit> cast_one(const Triangles& triangles, const Pose& pose, const Ray& ray) noexcept {
+  std::optional<RayHit> hit;
+  cast_all(triangles, pose, {&ray, 1}, {&hit, 1});
+  return hit;
 }
 
 }  // namespace
 
 std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction, double longest) noexcept {
-  if (tree.obb_nodes.empty()) return std::nullopt;
   return cast_one(TreeTriangles{tree}, pose, {origin, direction, longest});
 }
 
 void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
                std::span<std::optional<RayHit>> hits) noexcept {
-  if (tree.obb_nodes.empty()) {
-    std::fill_n(hits.begin(), rays.size(), std::nullopt);
-    return;
-  }
   cast_all(TreeTriangles{tree}, pose, rays, hits);
 }
 
 std::optional<RayHit> cast_ray(const RayIndex& index, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction, double longest) noexcept {
-  if (index.empty()) return std::nullopt;
   return cast_one(IndexTriangles{index}, pose, {origin, direction, longest});
 }
 
 void cast_rays(const RayIndex& index, const Pose& pose, std::span<const Ray> rays,
                std::span<std::optional<RayHit>> hits) noexcept {
-  if (index.empty()) {
-    std::fill_n(hits.begin(), rays.size(), std::nullopt);
-    return;
-  }
   cast_all(IndexTriangles{index}, pose, rays, hits);
 }
 

@@ -5,9 +5,8 @@ namespace orchard::runtime::detail {
 namespace {
 
 ORCHARD_INLINE void make_all(const Frame& given, const Ball& ball, RayStarts& starts) noexcept {
-  const Pose pose = given.pose;
-  const Frame frame = {given.origin, given.bounding_radius, pose, given.back};
-  const Ball around = ball;  // copies, which no row can be part of
+  const Frame frame = given;  // copies, which no row can be part of
+  const Ball around = ball;
   for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
     const RayStart start = start_of(frame, around, {starts.origin[0][i], starts.origin[1][i], starts.origin[2][i]},
                                     {starts.way[0][i], starts.way[1][i], starts.way[2][i]}, starts.steps[i]);

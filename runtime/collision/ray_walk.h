@@ -9,8 +9,6 @@
 // Rays in a body's frame, and how they go through its triangles.
 namespace orchard::runtime::detail {
 
-inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
-
 // A ray's direction by a vector of about one unit, so that those of every length are as good as unit vectors.
 struct Direction {
   Direction(const Vec3& direction, double pose_scale) noexcept : scale(pose_scale) {
@@ -32,16 +30,6 @@ struct Direction {
   double scale;
   int power = 0;
 };
-
-// A ball around all triangles of a body, in its frame.
-struct Ball {
-  Vec3 middle{};
-  double radius = 0;
-};
-inline Ball ball_around(const TreeView& tree) noexcept {
-  const ObbNodeBlock& root = tree.obb_nodes[0];
-  return {{root.x[0], root.y[0], root.z[0]}, double{root.radius[0]}};
-}
 
 // From a point to outside of everything.
 inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3& point) noexcept {
@@ -152,6 +140,38 @@ void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   for (RayLeaf leaf = next_leaf(tree, walk); leaf.block != nullptr; leaf = next_leaf(tree, walk)) {
     walk.end = visit(leaf, walk.end);
   }
+}
+
+// The triangles of a tree, as queries along rays go through them.
+struct TreeTriangles {
+  const TreeView& tree;
+
+  Frame frame(const Pose& pose) const noexcept { return {tree, pose}; }
+  Ball ball() const noexcept { return ball_around(tree); }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    walk_ray(tree, line, visit);
+  }
+  std::span<const TriangleBlock> all() const noexcept { return tree.triangle_blocks; }
+};
+
+// Calls visit(points, triangle, whether the line surely runs through it, end) for the triangles that a line may meet,
+// or for all where floats do not reach. It returns the new end, as for walk_ray().
+template <typename Triangles, typename Visit>
+void each_triangle_along(const Triangles& triangles, const Line& line, Visit&& visit) noexcept {
+  if (!line.in_float) {
+    each_triangle(triangles.all(), [&](const TrianglePoints& points, std::uint32_t triangle) {
+      return visit(points, triangle, false, line.end) >= 0;
+    });
+    return;
+  }
+  triangles.along(line, [&](const RayLeaf& leaf, float end) {
+    for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      end = visit(points_of(*leaf.block, lane), leaf.block->triangle[lane], (leaf.sure >> lane & 1) != 0, end);
+    }
+    return end;
+  });
 }
 
 }  // namespace orchard::runtime::detail

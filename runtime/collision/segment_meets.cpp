@@ -67,18 +67,9 @@ Vec3 first_common(const Vec3& from, const Vec3& to, const TrianglePoints& t, con
 
 // The same by exact signs, and on common planes as triangles_intersect() does it.
 bool meets_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
-  const int p = orientation(t[0], t[1], t[2], from), q = orientation(t[0], t[1], t[2], to);
-  if (p * q > 0) return false;
-  if (p == 0 && q == 0) {
-    if (!triangles_intersect({from, to, to}, t, &common)) return false;
-    common = first_common(from, to, t, common);
-    return true;
-  }
-  const int a = orientation(from, to, t[0], t[1]), b = orientation(from, to, t[1], t[2]);
-  if (a * b < 0) return false;
-  const int c = orientation(from, to, t[2], t[0]);
-  if (a * c < 0 || b * c < 0) return false;
-  common = crossing_exactly(from, to, t);
+  if (!triangles_intersect({from, to, to}, t, &common)) return false;
+  const bool in_plane = orientation(t[0], t[1], t[2], from) == 0 && orientation(t[0], t[1], t[2], to) == 0;
+  if (in_plane) common = first_common(from, to, t, common);
   return true;
 }
 

@@ -141,26 +141,14 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
     const Vec3 way = ray_direction(ray), q = settled(along(p, way, reach));
     int winding = 0;
     bool clear = true;
-    const auto count = [&](const TrianglePoints& t) {
+    const Line line = line_of(ball, p, way, reach);
+    if (line.misses) return false;
+    each_triangle_along(TreeTriangles{solid}, line, [&](const TrianglePoints& t, std::uint32_t, bool, float end) {
       const Crossing kind = crossing(p, q, t);
       winding += (kind == Crossing::leaving) - (kind == Crossing::entering);
       clear = clear && kind != Crossing::unclear;
-    };
-    const Line line = line_of(ball, p, way, reach);
-    if (line.misses) return false;
-    if (line.in_float) {
-      walk_ray(solid, line, [&](const RayLeaf& leaf, float end) {
-        for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
-          count(points_of(*leaf.block, static_cast<std::uint32_t>(std::countr_zero(left))));
-        }
-        return clear ? end : -std::numeric_limits<float>::infinity();
-      });
-    } else {
-      each_triangle(solid.triangle_blocks, [&](const TrianglePoints& t, std::uint32_t) {
-        count(t);
-        return clear;
-      });
-    }
+      return clear ? end : -std::numeric_limits<float>::infinity();
+    });
     if (clear) return winding > 0;
   }
   return winding_angle(solid, p) > 2 * std::numbers::pi;

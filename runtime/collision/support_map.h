@@ -41,19 +41,9 @@ inline SupportCell support_cell(std::span<const float> map, const Vec3& u) noexc
   return c;
 }
 
-// How far a body reaches along a direction, not zero, from PackedSphereTree::supports: the support function of a set is
-// convex and homogeneous, so between the four directions around a given one it lies below their interpolation. Some 1 %
-// too far.
-inline double reach_along(std::span<const float> map, const Vec3& u) noexcept {
-  const SupportCell cell = support_cell(map, u);
-  const float* const at = cell.corner;
-  const double a = double{at[0]}, b = double{at[kSupportCells + 1]}, c = double{at[1]},
-               d = double{at[kSupportCells + 2]};
-  const double low = a + cell.f * (b - a), high = c + cell.f * (d - c);
-  return (low + cell.g * (high - low)) * cell.size;
-}
-
-// The same, and the point that reaches so far: the interpolation's gradient.
+// How far a body reaches along a direction, not zero, from PackedSphereTree::supports, and the point that does: the
+// support function of a set is convex and homogeneous, so between the four directions around a given one it lies below
+// their interpolation, whose gradient is the point. Some 1 % too far.
 inline Support support_along(std::span<const float> map, const Vec3& u) noexcept {
   const SupportCell cell = support_cell(map, u);
   const float* const at = cell.corner;
@@ -67,5 +57,6 @@ inline Support support_along(std::span<const float> map, const Vec3& u) noexcept
   support.point[cell.next] = by_slow, support.point[cell.last] = by_fast;
   return support;
 }
+inline double reach_along(std::span<const float> map, const Vec3& u) noexcept { return support_along(map, u).most; }
 
 }  // namespace orchard::runtime::detail

@@ -19,8 +19,8 @@ constexpr int kHalvings = 8;            // of the bracket
 
 // Of a point of the surface from the centre of rotation, at most.
 double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
-  const ObbNodeBlock& root = tree.tree.obb_nodes[0];
-  return (length_of(minus(center, {root.x[0], root.y[0], root.z[0]})) + double{root.radius[0]}) * (1 + kImpactRounding);
+  const Ball all = ball_around(tree.tree);
+  return (length(minus(center, all.middle)) + all.radius) * (1 + kImpactRounding);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ bool ImpactSearch::place(double time) noexcept {
   const double shrink = 1 / frame.scale;
   const auto turn_of = [&](const Travel& travel) {
     Turn turn;
-    const double spin = length_of(travel.spin);
+    const double spin = length(travel.spin);
     if (travel.pose_at != nullptr) {
       turn.turning = travel.turning;
     } else if (!(spin == 0)) {  // what is not a number is refused below
@@ -66,7 +66,7 @@ bool ImpactSearch::place(double time) noexcept {
   const double scale = trees_.relative().scale, size = p.extent + q.extent * scale;
   const double reach =
       reach_of(p, motion_.first.center) + scale * reach_of(q, minus(second.center, this->second().origin));
-  const double fastest = length_of(motion_.velocity) + motion_.speed +
+  const double fastest = length(motion_.velocity) + motion_.speed +
                          (motion_.first.spin + motion_.first.turning + motion_.second.spin + motion_.second.turning);
   if (!(fastest <= kMaxQuantity && reach <= kMaxQuantity && fastest * reach <= kMaxQuantity * kMaxQuantity))
     return false;
@@ -84,7 +84,7 @@ void ImpactSearch::find_closing() noexcept {
   const Pose& relative = trees_.relative();
   const Vec3 back = turned_back(relative, motion_.velocity);
   Closing both;
-  both.speed = static_cast<float>((motion_.speed + 1e-6 * length_of(motion_.velocity)) * (1 + 1e-6));
+  both.speed = static_cast<float>((motion_.speed + 1e-6 * length(motion_.velocity)) * (1 + 1e-6));
   both.rounding = trees_.placement().box_margin;
   motion_.of_first = motion_.of_second = both;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -100,7 +100,7 @@ void ImpactSearch::find_closing() noexcept {
 double ImpactSearch::without_turning() const noexcept {
   const double scale = trees_.relative().scale;
   const Vec3 way = minus(motion_.second.center, motion_.first.center);
-  const double distance = length_of(way);
+  const double distance = length(way);
   const auto &p = trees_.first(), &q = trees_.second();
   const bool exchanged = trees_.exchanged();
   const Vec3 center = minus((exchanged ? a_ : b_).center, q.tree.origin);
@@ -109,16 +109,14 @@ double ImpactSearch::without_turning() const noexcept {
   if (!(gap > 0)) return 0;
   // The direction is fixed, so this holds for balls that pass each other, too.
   const double rate =
-      motion_.speed - dot(motion_.velocity, way) / distance + kImpactRounding * length_of(motion_.velocity);
+      motion_.speed - dot(motion_.velocity, way) / distance + kImpactRounding * length(motion_.velocity);
   return rate > 0 ? gap / rate : std::numeric_limits<double>::infinity();
 }
 
 void ImpactSearch::report(const Critical& critical) noexcept {
   if (critical.triangle_first == kNoTriangle) return;
-  const Pose& frame = trees_.first_pose();
-  const auto world = [&](const Vec3& p) { return transform(frame, along(p, first().origin, 1)); };
-  result_.distance = critical.distance * frame.scale * (1 + kImpactRounding) + trees_.exact_error();
-  result_.on_a = world(critical.on_first), result_.on_b = world(critical.on_second);
+  result_.distance = critical.distance * trees_.first_pose().scale * (1 + kImpactRounding) + trees_.exact_error();
+  result_.on_a = trees_.in_world(critical.on_first), result_.on_b = trees_.in_world(critical.on_second);
   result_.triangle_a = critical.triangle_first, result_.triangle_b = critical.triangle_second;
   if (!trees_.exchanged()) return;
   std::swap(result_.on_a, result_.on_b);
@@ -129,7 +127,7 @@ void ImpactSearch::report(const Critical& critical) noexcept {
 bool ImpactSearch::touching(PairBudget& tracker, double time) noexcept {
   if (tracker.exhausted()) return false;
   const std::uint64_t left = options_.budget.work - tracker.spent();
-  const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
+  const Answer answer = closer_than(workspace_, pair_, a_.at(time), b_.at(time), options_.margin, {left});
   tracker.spend(options_.margin > 0 ? workspace_.distance.work() : query_of(workspace_.narrow).known().work);
   return answer == Answer::yes;
 }

@@ -8,12 +8,10 @@
 namespace orchard::runtime {
 
 using detail::along;
-using detail::cross;
+using detail::Matrix;
 using detail::minus;
 
 namespace {
-
-using Matrix = std::array<double, 9>;
 
 // By the angle |v| about v (Rodrigues).
 Matrix rotation_by(const Vec3& v) noexcept {
@@ -47,22 +45,12 @@ Vec3 rotation_vector(const Matrix& r) noexcept {
   return along({0, 0, 0}, k, sign * angle / size);
 }
 
-Pose turned(const Pose& pose, const Matrix& by) noexcept {
-  Pose result = pose;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      result.rotation[3 * i + j] =
-          by[3 * i] * pose.rotation[j] + by[3 * i + 1] * pose.rotation[3 + j] + by[3 * i + 2] * pose.rotation[6 + j];
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 Pose Travel::at(double time) const noexcept {
   if (pose_at != nullptr) return pose_at(context, time);
-  Pose pose = turned(start, rotation_by(along({0, 0, 0}, spin, time)));
+  Pose pose = start;
+  pose.rotation = detail::product(rotation_by(along({0, 0, 0}, spin, time)), start.rotation);
   if (is_rigid(start) && !is_rigid(pose)) pose = made_rigid(pose).value_or(pose);  // both roundings together
   const Vec3 place = along(transform(start, center), velocity, time), arm = rotate(pose, center);
   pose.translation = along(place, arm, -pose.scale);
@@ -74,13 +62,7 @@ Travel travel_between(const Pose& from, const Pose& to, const std::array<double,
   travel.start = from;
   travel.center = center;
   travel.velocity = minus(transform(to, center), transform(from, center));
-  Matrix change{};  // to after the inverse of from
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t k = 0; k < 3; ++k) change[3 * i + j] += to.rotation[3 * i + k] * from.rotation[3 * j + k];
-    }
-  }
-  travel.spin = rotation_vector(change);
+  travel.spin = rotation_vector(detail::product(to.rotation, detail::transposed(from.rotation)));
   return travel;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "collision/kernels/eight.h"
+#include "collision/kernels/farthest_first.h"
 #include "collision/kernels/node_box.h"
 #include "collision/kernels/segment_block.h"
 #include "collision/kernels/triangle_block.h"
@@ -54,8 +55,6 @@ inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a n
 struct Frame {  // the body's, with its coordinates relative to the tree's origin
   Frame(const Vec3& tree_origin, double tree_radius, const Pose& body) noexcept
       : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse(body)) {}
-  Frame(const Vec3& tree_origin, double tree_radius, const Pose& body, const Pose& inverse_of_body)
-      : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse_of_body) {}
   Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
   Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), origin)); }
   Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, origin, 1)); }
@@ -75,22 +74,15 @@ struct FloatShape {
 
 inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   constexpr double unit = 0x1p-24;
-  const ObbNodeBlock& root = tree.obb_nodes[0];
+  const Ball all = ball_around(tree);
   const Vec3 middle = along(s.p, s.d, 0.5);
   const double half = length(s.d) / 2;
-  const double size = length(middle) + half + length({root.x[0], root.y[0], root.z[0]}) + double{root.radius[0]};
+  const double size = length(middle) + half + length(all.middle) + all.radius;
   FloatShape shape;
   shape.in_float = size <= kFloatReach;
   Vec3 normal = {1, 0, 0};
   if (half > 0) {  // across the segment
-    std::size_t least = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-      if (std::fabs(s.d[i]) < std::fabs(s.d[least])) least = i;
-    }
-    Vec3 axis{};
-    axis[least] = 1;
-    normal = cross(along({0, 0, 0}, s.d, 0.5 / half), axis);
-    normal = along({0, 0, 0}, normal, 1 / length(normal));
+    normal = unit_or_zero(cross(along({0, 0, 0}, s.d, 0.5 / half), least_axis(s.d)));
   }
   const auto f = [](double x) { return static_cast<float>(x); };
   const Vec3 second = half > 0 ? along({0, 0, 0}, cross(s.d, normal), 0.5 / half) : Vec3{0, 1, 0};
@@ -125,8 +117,8 @@ float walk_outward(const TreeView& tree, const Segment& segment, Limit&& limit, 
   const FloatShape shape = shape_of(tree, segment);
   if (!shape.in_float) {
     for (const TriangleBlock& block : tree.triangle_blocks) {
-      for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
-        if (!visit(block, lane, true)) return 0;
+      for (std::uint32_t left = used_lanes(block); left != 0; left &= left - 1) {
+        if (!visit(block, static_cast<std::uint32_t>(std::countr_zero(left)), true)) return 0;
       }
     }
     return 0;
@@ -169,13 +161,12 @@ float walk_outward(const TreeView& tree, const Segment& segment, Limit&& limit, 
     box_gaps(shape.box, block, 1, shape.placement.box_margin, gaps);
     const Within some = within(gaps.gap, limit());
     leave_out(some.beyond);
-    const std::size_t begin = size;
-    for (std::uint32_t left = some.lanes; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      std::size_t place = size++;
-      for (; place > begin && stack[place - 1].gap < gaps.gap[lane]; --place) stack[place] = stack[place - 1];
-      stack[place] = {gaps.gap[lane], block.child[lane]};
-    }
+    size = push_farthest_first(
+        stack.data(), size, some.lanes,
+        [&](std::uint32_t lane) {
+          return Entry{gaps.gap[lane], block.child[lane]};
+        },
+        [](const Entry& child, std::uint32_t) { return child.gap; });
   }
   return beyond;
 }

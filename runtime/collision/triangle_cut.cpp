@@ -120,13 +120,7 @@ struct NearPair {
 }  // namespace
 
 Way::Way(const Vec3& direction) noexcept : u(unit_or_zero(direction)) {
-  std::size_t least = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (std::fabs(u[i]) < std::fabs(u[least])) least = i;
-  }
-  Vec3 axis{};
-  axis[least] = 1;
-  e = unit_or_zero(cross(u, axis));
+  e = unit_or_zero(cross(u, least_axis(u)));
   f = cross(u, e);
 }
 

@@ -19,20 +19,8 @@ namespace {
 constexpr double kParallelSineSquare = 1e-14;
 
 // Three lanes, and a fourth that repeats the last: as one vector, or as several narrower ones or numbers.
-#ifdef ORCHARD_VECTORS
+template <typename Part>
 struct FourDoubles {
-  using Numbers __attribute__((vector_size(32))) = double;
-  using Mask __attribute__((vector_size(32))) = std::int64_t;
-  ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
-    return mask ? a : b;
-  }
-  ORCHARD_INLINE static double lane(const Numbers& of, std::size_t i) noexcept { return of[i]; }
-};
-using Part __attribute__((vector_size(16))) = double;
-#else
-using Part = double;
-#endif
-struct PartsOfFour {
   using Numbers = Several<Part, 4 * sizeof(double) / sizeof(Part)>;
   using Mask = decltype(Numbers{} < Numbers{});
   ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
@@ -44,8 +32,14 @@ struct PartsOfFour {
     return all[i];
   }
 };
-#ifndef ORCHARD_VECTORS
-using FourDoubles = PartsOfFour;
+#ifdef ORCHARD_VECTORS
+using TwoNumbers __attribute__((vector_size(16))) = double;
+using FourNumbers __attribute__((vector_size(32))) = double;
+using Wide = FourDoubles<FourNumbers>;
+using Narrow = FourDoubles<TwoNumbers>;
+#else
+using Wide = FourDoubles<double>;
+using Narrow = Wide;
 #endif
 
 template <typename Kind>
@@ -215,11 +209,11 @@ double longest_edge(const TrianglePoints& t) noexcept {
 }
 
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept {
-  return found_points(PerMachine<near_triangle<FourDoubles>, near_triangle<PartsOfFour>>::call(a, b));
+  return found_points(PerMachine<near_triangle<Wide>, near_triangle<Narrow>>::call(a, b));
 }
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  return found_points(p == q ? PerMachine<near_point<FourDoubles>, near_point<PartsOfFour>>::call(p, t)
-                             : PerMachine<near_segment<FourDoubles>, near_segment<PartsOfFour>>::call(p, q, t));
+  return found_points(p == q ? PerMachine<near_point<Wide>, near_point<Narrow>>::call(p, t)
+                             : PerMachine<near_segment<Wide>, near_segment<Narrow>>::call(p, q, t));
 }
 
 }  // namespace orchard::runtime::detail

@@ -59,19 +59,18 @@ bool TriangleSearch::test_leaves(const detail::PlacedViews& trees, const NodePai
   };
   tests_.triangles += used(trees.lanes(pair)) * used(trees.rows(pair));
   return trees.each_candidate(pair, [&](std::uint32_t lane, std::uint32_t row) {
-    return test_two(trees, {pair.a, pair.b, static_cast<std::uint8_t>(lane), static_cast<std::uint8_t>(row)});
+    return test_two(trees, {pair, static_cast<std::uint8_t>(lane), static_cast<std::uint8_t>(row)});
   });
 }
 
 bool TriangleSearch::test_two(const detail::PlacedViews& trees, const MeetingTriangles::Place& place) noexcept {
-  const TriangleBlock &lanes = trees.lanes({place.first, place.second}),
-                      &rows = trees.rows({place.first, place.second});
-  if (!detail::triangles_intersect(detail::points_of(lanes, place.lane_first),
-                                   detail::moved_points_of(rows, place.lane_second, trees.relative), &found_.common)) {
+  const TriangleBlock &lanes = trees.lanes(place), &rows = trees.rows(place);
+  if (!detail::triangles_intersect(detail::points_of(lanes, place.lane_a),
+                                   detail::moved_points_of(rows, place.lane_b, trees.relative), &found_.common)) {
     return false;
   }
-  found_.first = lanes.triangle[place.lane_first];
-  found_.second = rows.triangle[place.lane_second];
+  found_.first = lanes.triangle[place.lane_a];
+  found_.second = rows.triangle[place.lane_b];
   found_.place = place;
   return true;
 }

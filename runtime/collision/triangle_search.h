@@ -10,9 +10,8 @@ namespace orchard::runtime {
 
 // Two triangles that meet, of the first and of the second tree.
 struct MeetingTriangles {
-  struct Place {  // ball slabs of leaves, and which triangles of these
-    std::uint32_t first, second;
-    std::uint8_t lane_first, lane_second;
+  struct Place : NodePair {  // ball slabs of leaves, and which triangles of these
+    std::uint8_t lane_a, lane_b;
   };
   Place place{};
   std::uint32_t first = kNoTriangle, second = kNoTriangle;

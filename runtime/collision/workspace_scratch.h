@@ -30,13 +30,4 @@ struct Workspace::Scratch {
   detail::TreeStack<TimedPair> timed;
 };
 
-struct PosePair {
-  Pose a, b;
-};
-
-// closer_than() within a budget, whose end makes "maybe" of what is not known by then. The work is that of
-// workspace.narrow if the margin is 0, else that of workspace.distance.
-Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
-                     const Budget& budget) noexcept;
-
 }  // namespace orchard::runtime

@@ -52,8 +52,9 @@ void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch
   if (!(apart <= reach)) verdict = unasked(pair);
   if (apart <= reach || verdict.answer != Answer::no) {
     const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
-    if (!CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
-      ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
+    CoherentPair coherent(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose());
+    if (!coherent.recall(verdict)) {
+      ::new (&verdict) Verdict(coherent.search());
       record.apart_along = query_of(scratch.workspace.narrow).known().apart_along;
     }
     scratch.work += kPairWork + verdict.work;
@@ -77,11 +78,9 @@ Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, cons
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
                      &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
   if (!known) return answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess);
-  const Pose &a = pair.a.pose(), &b = pair.b.pose();
+  CoherentPair coherent(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose());
   Verdict verdict;
-  if (!CoherentPair::recall(scratch.workspace, record.trees, a, b, verdict)) {
-    verdict = CoherentPair::search(scratch.workspace, record.trees, a, b);
-  }
+  if (!coherent.recall(verdict)) verdict = coherent.search();
   scratch.work += kPairWork + verdict.work;
   make_solid(verdict, pair);
   return verdict;
@@ -93,7 +92,7 @@ Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, Answe
   record.met = verdict.answer == Answer::yes && !pair.simple();
   if (!record.met) return verdict;
   record.trees = TreePair(pair.a.shape->prepared, pair.b.shape->prepared);
-  CoherentPair::remember(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose());
+  CoherentPair(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()).remember();
   return verdict;
 }
 

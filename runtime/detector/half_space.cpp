@@ -118,13 +118,7 @@ class PlaneCut {
 
 // Two unit vectors across a unit vector and each other.
 std::array<Vec3, 2> axes_across(const Vec3& n) noexcept {
-  std::size_t least = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (std::fabs(n[i]) < std::fabs(n[least])) least = i;
-  }
-  Vec3 axis{};
-  axis[least] = 1;
-  const Vec3 across = cross(n, axis), e = (1 / length(across)) * across;
+  const Vec3 across = cross(n, least_axis(n)), e = (1 / length(across)) * across;
   return {e, cross(n, e)};
 }
 

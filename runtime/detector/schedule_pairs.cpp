@@ -129,7 +129,7 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scr
   answerer_.place(record, task.part_a, task.part_b, pair);
   const double bound = task.verdict.separation_bound;
   Verdict known;
-  if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), known)) {
+  if (remembers && CoherentPair(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()).recall(known)) {
     task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
@@ -158,7 +158,7 @@ void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& mos
   }
   const double bound = task.verdict.separation_bound;
   if (record.coherent && is_first) {
-    task.verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), most);
+    task.verdict = CoherentPair(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()).search(most);
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     task.verdict = collide(narrow, pair.a.pose(), pair.b.pose(), most);

@@ -167,4 +167,8 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis) n
   return exact.sign();
 }
 
+bool in_line(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  return orientation(a, b, c, 0) == 0 && orientation(a, b, c, 1) == 0 && orientation(a, b, c, 2) == 0;
+}
+
 }  // namespace orchard::runtime::detail

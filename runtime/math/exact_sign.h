@@ -20,6 +20,9 @@ double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexce
 // The sign in the plane that remains when `axis` is dropped: > 0 if a, b, c turn counterclockwise, 0 if collinear.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis) noexcept;
 
+// Whether three points lie on one line: so in every plane.
+bool in_line(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+
 // Plain evaluation: every difference, product and sum has a relative error of a unit, 2^-53, and no term passes through
 // more than eight of them, so that a determinant is off by at most 8.1 units times the sum of the terms' sizes (the
 // permanent), which is itself computed to 8.1 units. Twice that leaves room.

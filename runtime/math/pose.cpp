@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/rigid_pair.h"
+#include "math/vector_functions.h"
 
 namespace orchard::runtime {
 
@@ -16,20 +17,10 @@ double defect_of(const std::array<double, 9>& rotation) noexcept {
 }
 
 // One step of Newton and Schulz towards the nearest orthogonal matrix: X (3 I - X^T X) / 2.
-std::array<double, 9> nearer_rotation(const std::array<double, 9>& x) noexcept {
-  std::array<double, 9> factor{}, result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double product = x[i] * x[j] + x[3 + i] * x[3 + j] + x[6 + i] * x[6 + j];
-      factor[3 * i + j] = ((i == j ? 3.0 : 0.0) - product) / 2;
-    }
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t k = 0; k < 3; ++k) result[3 * i + j] += x[3 * i + k] * factor[3 * k + j];
-    }
-  }
-  return result;
+detail::Matrix nearer_rotation(const detail::Matrix& x) noexcept {
+  detail::Matrix factor = detail::product(detail::transposed(x), x);
+  for (std::size_t i = 0; i < 9; ++i) factor[i] = ((i % 4 == 0 ? 3.0 : 0.0) - factor[i]) / 2;
+  return detail::product(x, factor);
 }
 
 }  // namespace
@@ -89,25 +80,12 @@ std::optional<Pose> pose_from_quaternion(const std::array<double, 4>& wxyz,
 }
 
 Pose compose(const Pose& outer, const Pose& inner) noexcept {
-  Pose result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      result.rotation[3 * i + j] = outer.rotation[3 * i] * inner.rotation[j] +
-                                   outer.rotation[3 * i + 1] * inner.rotation[3 + j] +
-                                   outer.rotation[3 * i + 2] * inner.rotation[6 + j];
-    }
-  }
-  result.scale = outer.scale * inner.scale;
-  result.translation = transform(outer, inner.translation);
-  return result;
+  return {detail::product(outer.rotation, inner.rotation), transform(outer, inner.translation),
+          outer.scale * inner.scale};
 }
 
 Pose inverse(const Pose& pose) noexcept {
-  Pose result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) result.rotation[3 * i + j] = pose.rotation[3 * j + i];
-  }
-  result.scale = 1 / pose.scale;
+  Pose result{.rotation = detail::transposed(pose.rotation), .scale = 1 / pose.scale};
   result.translation = rotate(result, pose.translation);
   for (double& t : result.translation) t = 0 - t * result.scale;  // not -t: no negative zero for the identity
   return result;

@@ -11,9 +11,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-Vec3 between(const Vec3& a, const Vec3& b, double t) noexcept {
-  return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
-}
+Vec3 between(const Vec3& a, const Vec3& b, double t) noexcept { return along(a, minus(b, a), t); }
 double ratio(double part, double whole) noexcept { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
 // ---- Witnesses: only ever used after the exact tests said yes.
@@ -71,13 +69,6 @@ bool holds_2d(const TrianglePoints& t, const Vec3& p, std::size_t axis) noexcept
   if (turn == 0) return false;  // flattened to a segment: its edges are all of it
   return turn * orientation(t[0], t[1], p, axis) >= 0 && turn * orientation(t[1], t[2], p, axis) >= 0 &&
          turn * orientation(t[2], t[0], p, axis) >= 0;
-}
-
-bool degenerate(const TrianglePoints& t) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (orientation(t[0], t[1], t[2], axis) != 0) return false;
-  }
-  return true;
 }
 
 // A segment in the plane of a triangle that is not degenerate.
@@ -145,7 +136,8 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, Vec3*
   const Sides a_sides = sides(b, a);
   if (on_one_side(a_sides)) return false;
   // Some side differs from 0 only if the plane exists.
-  const bool a_flat = in_plane(b_sides) && degenerate(a), b_flat = in_plane(a_sides) && degenerate(b);
+  const bool a_flat = in_plane(b_sides) && in_line(a[0], a[1], a[2]),
+             b_flat = in_plane(a_sides) && in_line(b[0], b[1], b[2]);
   if (a_flat && b_flat) return segments_of_both_meet(a, b, witness);
   return (!a_flat && edges_meet(b, b_sides, a, witness)) || (!b_flat && edges_meet(a, a_sides, b, witness));
 }

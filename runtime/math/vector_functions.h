@@ -24,6 +24,29 @@ inline Vec3 unit_or_zero(const Vec3& v) noexcept {
   const double size = length(v);
   return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{};
 }
+// The axis of coordinates that a vector is least along.
+inline Vec3 least_axis(const Vec3& v) noexcept {
+  std::size_t least = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (std::fabs(v[i]) < std::fabs(v[least])) least = i;
+  }
+  Vec3 axis{};
+  axis[least] = 1;
+  return axis;
+}
+inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
+
+// Matrices row by row.
+using Matrix = std::array<double, 9>;
+inline Matrix transposed(const Matrix& m) noexcept { return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]}; }
+inline Matrix product(const Matrix& a, const Matrix& b) noexcept {
+  Matrix result;
+  for (std::size_t i = 0; i < 9; i += 3) {
+    for (std::size_t j = 0; j < 3; ++j) result[i + j] = a[i] * b[j] + a[i + 1] * b[3 + j] + a[i + 2] * b[6 + j];
+  }
+  return result;
+}
+
 // By the inverse of a pose's rotation.
 inline Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
   const auto& r = pose.rotation;
@@ -31,10 +54,11 @@ inline Vec3 turned_back(const Pose& pose, const Vec3& v) noexcept {
           r[2] * v[0] + r[5] * v[1] + r[8] * v[2]};
 }
 
-// A float that is at least `value`, rounding of a few operations in double included.
-inline float stored_above(double value) noexcept {
-  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
+// A float above `value`, and one that is even with the rounding of a few operations in double.
+inline float next_float(double value) noexcept {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
+inline float stored_above(double value) noexcept { return next_float(value * (1 + 1e-14)); }
 
 // As std::ilogb and std::ldexp, which the sizes that occur need no call for.
 inline int exponent_of(double value) noexcept {  // of a finite value above 0

@@ -36,11 +36,6 @@ inline Machine machine() noexcept {
 #define ORCHARD_FOR_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq"), noinline))
 #endif
 
-// Where AVX-512 has GCC's names, for what it does not find by itself.
-#if defined(__GNUC__) && !defined(__clang__) && (defined(ORCHARD_MACHINES) || defined(__AVX512BW__))
-#define ORCHARD_AVX512_NAMES 1
-#endif
-
 // PerMachine<kernel>::call(..) is kernel(..) for the machine chosen. The kernel is ORCHARD_INLINE, so that it becomes
 // part of a function for each.
 // `base`: the same for the base of the architecture, where that is better served by other code; `portable`: one number

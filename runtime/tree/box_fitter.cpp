@@ -25,10 +25,6 @@ Vec3 direction(const Vec3& v) {
   return result;
 }
 
-Vec3 point_along(const Vec3& from, const Vec3& way, double by) {
-  return {from[0] + by * way[0], from[1] + by * way[1], from[2] + by * way[2]};
-}
-
 // As queries find it, in float.
 Vec3 float_cross(const Vec3& p, const Vec3& q) {
   Vec3 result{};
@@ -128,7 +124,7 @@ ObbNode BoxFitter::obb_node_across(const Range& part, const Vec3& middle, const 
   });
   ObbNode slab{};
   slab.normal = normal;
-  slab.center = point_along(middle, normal, (low + high) / 2);
+  slab.center = along(middle, normal, (low + high) / 2);
   slab.height = (high - low) / 2;
   return slab;
 }
@@ -153,13 +149,7 @@ ObbNode BoxFitter::obb_node_of(const Part& part) {
 // The other two pairs of planes: across the directions, among a few, that make the smallest box, which is centred
 // between all of them. Everything is measured last, from what is stored.
 void BoxFitter::find_box(const Range& part, ObbNode& slab) {
-  std::size_t least = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (std::fabs(slab.normal[i]) < std::fabs(slab.normal[least])) least = i;
-  }
-  Vec3 axis{};
-  axis[least] = 1;
-  const Vec3 u = direction(cross(slab.normal, axis)), v = cross(slab.normal, u);
+  const Vec3 u = direction(cross(slab.normal, least_axis(slab.normal))), v = cross(slab.normal, u);
   across_.clear();
   each_corner(part, [&](const Vec3& p) {
     const Vec3 d = minus(p, slab.center);
@@ -179,9 +169,9 @@ void BoxFitter::find_box(const Range& part, ObbNode& slab) {
     smallest = area;
     turn = {c, s}, middle = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
   }
-  const auto in_plane = [&](double x, double y) { return point_along(point_along({}, u, x), v, y); };
+  const auto in_plane = [&](double x, double y) { return along(along({}, u, x), v, y); };
   const Vec3 second = in_plane(turn[0], turn[1]), third = in_plane(-turn[1], turn[0]);
-  slab.center = point_along(point_along(slab.center, second, middle[0]), third, middle[1]);
+  slab.center = along(along(slab.center, second, middle[0]), third, middle[1]);
   slab.second = direction(second);
   take_smaller_frame(part, smallest, slab);
   measure_box(part, slab);
@@ -200,7 +190,7 @@ void BoxFitter::take_smaller_frame(const Range& part, double smallest, ObbNode& 
     slab.second = direction(frame[order[1]]);
     slab.center = {};
     for (std::size_t i = 0; i < 3; ++i) {
-      slab.center = point_along(slab.center, frame[i], (extent.low[i] + extent.high[i]) / 2);
+      slab.center = along(slab.center, frame[i], (extent.low[i] + extent.high[i]) / 2);
     }
   }
 }

@@ -46,8 +46,8 @@ std::uint64_t fingerprint_of(const TreeView& tree) noexcept {
 }  // namespace
 
 PreparedTree::PreparedTree(const TreeView& view) noexcept : tree(view) {
-  middle = root = detail::center_of(tree, 0);
-  for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
+  middle = detail::center_of(tree, 0);
+  root = Vec3(middle) + tree.origin;
   const SiblingBlock& block = tree.blocks[0];
   radius = double{block.radius[0]}, reach = double{block.error[0]}, depth = double{block.depth[0]};
   bits = link_bits(tree.branching);

@@ -84,13 +84,7 @@ class Hull {
     std::uint32_t b = 1, c = 1, d = 1;
     while (b < count && points_[b] == points_[0]) ++b;
     if (b == count) return false;
-    const auto in_line = [&](std::uint32_t p) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (orientation(points_[0], points_[b], points_[p], axis) != 0) return false;
-      }
-      return true;
-    };
-    while (c < count && in_line(c)) ++c;
+    while (c < count && detail::in_line(points_[0], points_[b], points_[c])) ++c;
     if (c == count) return false;
     while (d < count && orientation(points_[0], points_[b], points_[c], points_[d]) == 0) ++d;
     if (d == count) return false;

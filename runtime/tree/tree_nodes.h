@@ -63,4 +63,17 @@ inline TrianglePoints points_of(const TreeView& tree, std::uint32_t triangle) no
   return points;
 }
 
+// A ball around all triangles of a body, in its frame.
+struct Ball {
+  Vec3 middle{};
+  double radius = 0;
+};
+inline Ball ball_around(const TreeView& tree) noexcept {
+  const ObbNodeBlock& root = tree.obb_nodes[0];
+  return {{root.x[0], root.y[0], root.z[0]}, double{root.radius[0]}};
+}
+
+// As index_triangles(), but cut along the coordinates' axes, for boxes along them; without a table of supports.
+void index_for_rays(PackedSphereTree& tree);
+
 }  // namespace orchard::runtime::detail

@@ -8,6 +8,7 @@
 
 #include "orchard/runtime/packed_tree.h"
 #include "tree/box_fitter.h"
+#include "tree/tree_nodes.h"
 
 // The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
 // triangles. Where all leaves fit in one block (a box, a wall, a simple hull), triangles are few and large beside what
@@ -19,6 +20,7 @@ using detail::as_doubles, detail::cross, detail::minus, detail::stored_above;
 using detail::ObbNode, detail::BoxFitter, detail::Extent, detail::Part, detail::Range, detail::Triangle;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const std::array<Vec3, 3> kAxes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
@@ -29,9 +31,14 @@ constexpr std::size_t kFew = std::size_t{kBlockWidth} * kBlockWidth;
 // the whole part's. A smaller share would end too soon: of the four sides of a box, no single one is worth it.
 constexpr double kWorthCutting = 1 - 1e-3;
 
+enum class Cuts {
+  principal,  // across principal directions, so that leaves are full
+  aligned     // across the coordinates' axes, wherever boxes along them are smallest
+};
+
 class Builder {
  public:
-  explicit Builder(PackedSphereTree& tree) : tree_(tree) {
+  Builder(PackedSphereTree& tree, Cuts cuts) : tree_(tree), cuts_(cuts) {
     order_.resize(tree.triangles.size());
     centroids_.resize(order_.size());
     for (std::size_t t = 0; t < order_.size(); ++t) {
@@ -157,14 +164,15 @@ class Builder {
   // 1990), the more even parts of equal ones; far down in half, which limits the depth. At a multiple of eight
   // triangles, so that leaves are full.
   std::size_t halve(const Part& part) {
-    const std::size_t half = multiple_of_width(part.size() / 2);
+    const bool aligned = cuts_ == Cuts::aligned;
+    const std::size_t half = aligned ? part.size() / 2 : multiple_of_width(part.size() / 2);
     if (tree_.triangle_tree_depth >= kCostlyDepth) {
       find_places(part, part.axes[0], 0);
       put_in_order(places_[0], part);
       return part.begin + half;
     }
     Cut best = {.at = half};
-    find_cut(part, part.axes, 0, half, kBlockWidth, best);
+    find_cut(part, aligned ? kAxes : part.axes, 0, half, aligned ? 1 : kBlockWidth, best);
     put_in_order(places_[best.axis], part);
     return part.begin + best.at;
   }
@@ -217,7 +225,7 @@ class Builder {
   // them, across the triangle and along its shortest edge. Principal axes of few corners are tilted against all faces.
   void find_frames() {
     constexpr std::size_t kMaxFrames = 8;
-    frames_ = {{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}};
+    frames_ = {kAxes};
     std::vector<std::pair<double, std::array<Vec3, 3>>> faces;
     for (const Triangle& t : order_) {
       std::array<Vec3, 3> edges{};
@@ -271,15 +279,12 @@ class Builder {
     const ObbNode slab = fitter_.obb_node_of(node.part);
     ObbNodeBlock& block = tree_.obb_nodes[node.block];
     const std::uint32_t lane = node.lane;
-    block.x[lane] = static_cast<float>(slab.center[0]);
-    block.y[lane] = static_cast<float>(slab.center[1]);
-    block.z[lane] = static_cast<float>(slab.center[2]);
-    block.nx[lane] = static_cast<float>(slab.normal[0]);
-    block.ny[lane] = static_cast<float>(slab.normal[1]);
-    block.nz[lane] = static_cast<float>(slab.normal[2]);
-    block.mx[lane] = static_cast<float>(slab.second[0]);
-    block.my[lane] = static_cast<float>(slab.second[1]);
-    block.mz[lane] = static_cast<float>(slab.second[2]);
+    const auto put = [lane](const Vec3& v, auto& x, auto& y, auto& z) {
+      x[lane] = static_cast<float>(v[0]), y[lane] = static_cast<float>(v[1]), z[lane] = static_cast<float>(v[2]);
+    };
+    put(slab.center, block.x, block.y, block.z);
+    put(slab.normal, block.nx, block.ny, block.nz);
+    put(slab.second, block.mx, block.my, block.mz);
     block.radius[lane] = stored_above(slab.radius);
     // What cancels in a height is of the size of the distances from the centre.
     block.height[lane] = stored_above(slab.height + 1e-15 * slab.radius);
@@ -288,6 +293,7 @@ class Builder {
   }
 
   PackedSphereTree& tree_;
+  Cuts cuts_;
   std::vector<Triangle> order_;
   BoxFitter fitter_{order_, frames_};
   std::vector<Vec3> centroids_;  // by the triangles' numbers
@@ -301,8 +307,10 @@ class Builder {
 
 }  // namespace
 
+void detail::index_for_rays(PackedSphereTree& tree) { Builder(tree, Cuts::aligned).build(); }
+
 void index_triangles(PackedSphereTree& tree) {
-  Builder(tree).build();
+  Builder(tree, Cuts::principal).build();
   tree.supports.clear();
   if (tree.triangles.empty()) return;
   std::vector<bool> used(tree.vertices.size());
@@ -322,7 +330,7 @@ void index_triangles(PackedSphereTree& tree) {
   }
   for (const double reach : most) {
     const double above_all = reach + 1e-15 * 3 * largest;  // the sum's rounding
-    tree.supports.push_back(std::nextafter(static_cast<float>(above_all), std::numeric_limits<float>::infinity()));
+    tree.supports.push_back(detail::next_float(above_all));
   }
 }
 

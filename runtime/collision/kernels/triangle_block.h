@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -47,6 +48,32 @@ struct TriangleGaps {
 // than need be to see that.
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept;
+// Calls take(lane, row, lower bound) for the triangles within reach, the nearest first, until it returns false. Returns
+// how far all others are apart, at least. Few are taken: no need to sort them all.
+template <typename Take>
+float each_nearest_first(const TriangleGaps& gaps, const Take& take) noexcept {
+  const auto ordered = [](float value) -> std::uint64_t {  // compares as the float does; of 32 bits
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
+  };
+  std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;
+  std::size_t count = 0;
+  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
+    for (std::uint32_t near = gaps.near[row]; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      left[count++] = ordered(gaps.lower[row][lane]) << 32 | (kBlockWidth * row + lane);
+    }
+  }
+  for (; count > 0; --count) {
+    auto nearest = std::min_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(count));
+    const auto row = static_cast<std::uint32_t>(*nearest) / kBlockWidth,
+               lane = static_cast<std::uint32_t>(*nearest) % kBlockWidth;
+    *nearest = left[count - 1];
+    if (!take(lane, row, gaps.lower[row][lane])) return std::min(gaps.beyond, gaps.lower[row][lane]);
+  }
+  return gaps.beyond;
+}
+
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept;
 TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept;
 

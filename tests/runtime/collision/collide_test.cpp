@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "bodies.h"
+#include "collision/coherent_pair.h"
 
 namespace orchard::runtime {
 namespace {
@@ -50,6 +51,38 @@ TEST(Collide, AnswersEachPoseWithinTheBudgetWhateverWasAskedBefore) {
     EXPECT_EQ(answers[1] == 0, tests > 1000);
     EXPECT_GT(answers[0], 0);
   }
+}
+
+TEST(Collide, EndsAtTheFirstLookAtTheClockThatTheTimeIsOver) {
+  constexpr std::uint64_t kStep = std::uint64_t{kLeafPairTests} * kTriangleTestCost + 2 * kBlockWidth;
+  const auto all = bodies();
+  NarrowPhase pair(all[2].tree, all[5].tree);
+  int longer = 0;
+  for (const auto& [a, b] : poses_of(all[2], all[5], 100)) {
+    longer += collide(pair, a, b).work > kClockInterval + kStep;
+    ASSERT_LE(collide(pair, a, b, {.time = std::chrono::nanoseconds(0)}).work, kClockInterval + kStep);
+  }
+  EXPECT_GT(longer, 0);
+}
+
+TEST(CoherentPair, RepeatsATimedSearchFromItsWork) {
+  const auto all = bodies();
+  const PreparedTree first(all[2].tree), second(all[5].tree);
+  Workspace workspace;
+  int cut = 0, searched = 0;
+  for (auto [a, b] : poses_of(all[2], all[5], 200)) {
+    TreePair pair(first, second);
+    collide_coherently(workspace, pair, a, b);
+    for (double& t : b.translation) t += 0.1 * all[5].tree.bounding_radius;
+    Verdict known;
+    if (CoherentPair(workspace, pair, a, b).recall(known)) continue;
+    TreePair again = pair;
+    const Verdict timed = CoherentPair(workspace, pair, a, b).search({.time = std::chrono::nanoseconds(500)});
+    ASSERT_TRUE(same(timed, CoherentPair(workspace, again, a, b).search({.work = timed.work})));
+    cut += timed.answer == Answer::maybe, ++searched;
+  }
+  EXPECT_GT(searched, 0);
+  EXPECT_GT(cut, 0);
 }
 
 TEST(Collide, RepeatsATimedRunFromItsWork) {

@@ -50,7 +50,7 @@ class TreePair {
   void forget() noexcept { memory_ = {}; }
 
  private:
-  friend class Coherence;
+  friend class CoherentPair;
   // Triangles that met: ball slabs of leaves of both trees, and the lanes in these.
   struct Witness {
     std::uint32_t a, b;
@@ -106,7 +106,10 @@ Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, 
 // with nearly parallel edges within 2e-7 of these. It is also the answer for poses that NarrowPhase refuses, for a
 // margin that is NaN or negative, and if a tree has no triangles. Costs about as much as collide(), and up to twice
 // that for margins far larger than triangles.
-Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept;
+// A budget that ends first makes "maybe" of what is not known by then. The work is that of workspace.narrow if the
+// margin is 0, otherwise that of workspace.distance.
+Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin,
+                   const Budget& budget = {}) noexcept;
 
 // The distance between two surfaces by DistanceQuery, and the nearest points.
 struct Distance {
