@@ -26,9 +26,9 @@ struct BoundingSphere {
 // Where a part is in its body's frame. What a new pose needs comes first.
 struct PartPlace {
   Vec3 center{};          // of a sphere around it,
-  double reach = 0;       // its radius,
-  double off = 0;         // and how far it is from the origin
+  double reach = 0;       // and its radius
   BoundingSphere sphere;  // at the pose of the body that is known
+  double off = 0;         // of the center from the origin
   bool at_origin = true;  // `local` changes nothing
   Pose local{};
 };
@@ -43,15 +43,9 @@ struct PartBefore {
   Step until = kNotAsked;
 };
 
+// By lines of memory: the first five are what a new pose needs of a body of one part, as most are.
 struct alignas(64) Body {
   BodyId id = kNoBody;  // kNoBody: no body has this index now
-  BodyOptions options;  // as the application wants them
-  struct Changes {
-    std::uint32_t filters = 0;   // of its filter
-    std::uint32_t jumps = 0;     // teleports
-    std::uint32_t deformed = 0;  // of its shapes' trees
-  };
-  Changes changes;
   bool is_static = false;
   bool asleep = false;    // wanted by the application
   bool frozen = false;    // asleep, and its state is known: never asked again
@@ -59,15 +53,21 @@ struct alignas(64) Body {
   bool by_parts = false;  // its pairs with static bodies are found by PartPairs
   struct Steps {
     Step moved = -1;                // the last one at which the pose was another one than at the time asked before
-    Step stretched = kNotAsked;     // after which parts went farther out than ever before
-    Step since = 0;                 // the first one that it takes part in
     Step asked = kNotAsked;         // that `state` is of
     Step known_before = kNotAsked;  // that `before` is of
   };
   Steps steps;
+  std::vector<PartRecord> several;  // all parts, if there is more than one
 
-  BodyState state;     // as known last
-  Pose before;         // at the step asked before, once there are continuous bodies
+  BodyState state;      // as known last
+  PartRecord one;       // the part, if there is one
+  BodyOptions options;  // as the application wants them
+  struct Changes {
+    std::uint32_t filters = 0;   // of its filter
+    std::uint32_t jumps = 0;     // teleports
+    std::uint32_t deformed = 0;  // of its shapes' trees
+  };
+  Changes changes;
   struct Extent {      // at scale 1
     double reach = 0;  // around the origin: what the broad phase has been told of
     // A sphere around the parts, where they stay as they are and it is smaller than that around the origin; else its
@@ -82,9 +82,15 @@ struct alignas(64) Body {
     bool by_middle = false;
   };
   Told told;
-  std::vector<PartRecord> parts;
+  Step since = 0;                        // the first step that it takes part in
+  Step stretched = kNotAsked;            // the one after which parts went farther out than ever before
+  Pose before;                           // at the step asked before, once there are continuous bodies
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
 
+  std::span<PartRecord> parts() noexcept { return several.empty() ? std::span(&one, 1) : std::span(several); }
+  std::span<const PartRecord> parts() const noexcept {
+    return several.empty() ? std::span(&one, 1) : std::span(several);
+  }
   bool is_continuous() const noexcept { return options.continuous_speed > 0; }
   bool is_asked() const noexcept { return id != kNoBody && !is_static && !frozen; }  // for its states
   bool has_middle() const noexcept { return extent.middle_reach < extent.reach; }
@@ -152,6 +158,11 @@ class BodyTable {
   const Body& operator[](BodyIndex body) const noexcept { return bodies_[body]; }
   std::size_t slots() const noexcept { return bodies_.size(); }
   const BoundingSphereCache& sphere_cache(BodyIndex body) const noexcept { return sphere_caches_[body]; }
+  ORCHARD_INLINE void prefetch_pose(BodyIndex index) const noexcept {  // and what a new one changes
+    const Body& body = bodies_[index];
+    prefetch_all(body.steps), prefetch_all(body.state), prefetch_all(body.one.sphere);
+    prefetch(&sphere_caches_[index]);
+  }
   ORCHARD_INLINE void prefetch_sphere_cache(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < sphere_caches_.size()) prefetch(&sphere_caches_[body]);
   }

@@ -36,13 +36,13 @@ Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const Bod
   world.any.own_filter = world.any.own_filter || detail::PartPairs::broad_filter(body) != BodyFilter{};
   world.any.parts = world.any.parts || parts.size() > 1;
   if (body.is_continuous() && !world.any.continuous) rely_on_origins();
-  for (const BodyPart& part : parts) {
-    PartRecord& added = body.parts.emplace_back();
-    added.shape = part.shape;
-    detail::set_local(added, world.shapes[part.shape], part.local);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    PartRecord& added = body.parts()[i];
+    added.shape = parts[i].shape;
+    detail::set_local(added, world.shapes[added.shape], parts[i].local);
   }
-  body.steps.since = world.answered + 1;
-  body.extent.reach = std::max(with.reach, detail::reach_of(body.parts));
+  body.since = world.answered + 1;
+  body.extent.reach = std::max(with.reach, detail::reach_of(body.parts()));
   if (!world.any.continuous && !with.suggest && !(with.reach > 0)) body.find_middle();
   return body;
 }
@@ -115,7 +115,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   if (!s.takes_changes() || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
   body.options.filter = options.filter, body.options.importance = options.importance;
-  body.steps.since = body.steps.moved = s.world.answered + 1;
+  body.since = body.steps.moved = s.world.answered + 1;
   return s.or_fail([&] {
     const BodyIndex index = s.world.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
     s.world.half_space_times.update_all();
@@ -166,8 +166,8 @@ bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
   constexpr double kStretchAhead = 1 + 0x1p-4;  // so that the broad phase need not be told of each step on the way
   State& s = *state_;
   return s.change(id, [&](Body& body) {
-    if (part >= body.parts.size()) return false;
-    const PartRecord& record = body.parts[part];
+    if (part >= body.parts().size()) return false;
+    const PartRecord& record = body.parts()[part];
     const detail::Shape& shape = s.world.shapes[record.shape];
     detail::PartPlace place;
     if (!detail::set_local(place, shape, local)) return false;
@@ -183,13 +183,13 @@ bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
       return false;
     }
     if (s.world.any.continuous) {
-      body.parts_before.resize(body.parts.size());
+      body.parts_before.resize(body.parts().size());
       detail::PartBefore& was = body.parts_before[part];
       if (was.until != s.world.answered) was = {record, s.world.answered};
     }
     s.world.bodies.move_part(id.index, part, place, shape);
     body.steps.moved = s.world.answered + 1;
-    if (stretches) body.steps.stretched = s.world.answered;
+    if (stretches) body.stretched = s.world.answered;
     if (body.is_static)
       ++s.world.static_changes;
     else if (grows)
@@ -247,7 +247,7 @@ bool Detector::shape_changed(ShapeId shape) {
   for (BodyIndex i = 0; i < s.world.bodies.slots(); ++i) {
     Body& body = s.world.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
-    if (body.id == kNoBody || std::none_of(body.parts.begin(), body.parts.end(), uses)) continue;
+    if (body.id == kNoBody || std::ranges::none_of(body.parts(), uses)) continue;
     body.steps.moved = s.world.answered + 1;
     s.world.bodies.invalidate(i);
     ++body.changes.deformed;

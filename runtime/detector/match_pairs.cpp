@@ -59,8 +59,8 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
   pair.versions.pair_filter = world_.filter_version - 1;
   pair.versions.jumps = a.changes.jumps + b.changes.jumps;
   pair.versions.deformed = a.changes.deformed + b.changes.deformed;
-  if (a.parts.size() != 1 || b.parts.size() != 1) return pair;
-  const Shape &of_a = world_.shapes[a.parts[0].shape], &of_b = world_.shapes[b.parts[0].shape];
+  if (is_half_space(known.pair.b) || !a.several.empty() || !b.several.empty()) return pair;
+  const Shape &of_a = world_.shapes[a.one.shape], &of_b = world_.shapes[b.one.shape];
   pair.coherent = of_a.has_tree() && of_b.has_tree();
   if (pair.coherent) pair.trees = TreePair(of_a.prepared, of_b.prepared);
   return pair;

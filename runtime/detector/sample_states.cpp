@@ -63,7 +63,7 @@ void StateSampler::ask_source(Step step) {
     auto take_some = [&](std::size_t job) {
       const std::size_t end = std::min(some.size(), (job + 1) * kPerJob);
       for (std::size_t i = job * kPerJob; i < end; ++i) {
-        if (i + kAhead < end) prefetch_all(world_.bodies[some[i + kAhead]]);
+        if (i + kAhead < end) world_.bodies.prefetch_pose(some[i + kAhead]);
         take_answer(step, some[i], answers_[i]);
       }
     };

@@ -16,7 +16,7 @@ void ShapePlacements::place(BodyIndex body, std::uint32_t part, PlacedPart& plac
   placed_part.shape = nullptr;
   if (is_half_space(body)) return;
   const Body& of = (*bodies_)[body];
-  const PartRecord& record = of.parts[part];
+  const PartRecord& record = of.parts()[part];
   place_at(of.state.pose, of.valid, record.shape, record, placed_part);
   placed_part.be_in(record.sphere);
 }
@@ -28,7 +28,7 @@ void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
   const Body& of = (*bodies_)[body];
   const bool moves = !of.is_static && of.steps.asked == now;  // one that falls asleep has come here first
   const Pose& pose = moves ? of.before : of.state.pose;
-  const PartRecord& record = of.parts[part];
+  const PartRecord& record = of.parts()[part];
   const bool was_elsewhere = !of.parts_before.empty() && of.parts_before[part].until == now - 1;
   const PartPlace& place = was_elsewhere ? of.parts_before[part].place : record;
   place_at(pose, is_rigid(pose), record.shape, place, placed_part);
@@ -37,7 +37,7 @@ void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
 
 double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept {
   const Body& of = (*bodies_)[body];
-  const PartRecord& record = of.parts[part];
+  const PartRecord& record = of.parts()[part];
   if (!of.valid) return 0;
   double scale = 1, size = sphere.size;
   Vec3 at = sphere.center;

@@ -36,11 +36,11 @@ class ShapePlacements {
     return is_half_space(index) ? halves_->body(index) : (*bodies_)[index];
   }
   std::uint32_t parts(BodyIndex index) const noexcept {
-    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts.size());
+    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts().size());
   }
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   const BoundingSphere& sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
-    return (*bodies_)[body].parts[part].sphere;
+    return (*bodies_)[body].parts()[part].sphere;
   }
   // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
   // sphere: long shapes fill little of theirs. Else at most 0.

@@ -50,10 +50,10 @@ bool PairSkipper::sphere_above(const BodyPair& pair) const noexcept {
 // Whether each part of the one is apart from each of the other: for bodies of several parts.
 bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
   const Body &a = world_.bodies[pair.a], &b = world_.bodies[pair.b];
-  if (a.parts.size() + b.parts.size() == 2 || !a.valid || !b.valid || a.is_continuous() || b.is_continuous())
+  if ((a.several.empty() && b.several.empty()) || !a.valid || !b.valid || a.is_continuous() || b.is_continuous())
     return false;
-  for (const PartRecord& p : a.parts) {
-    for (const PartRecord& q : b.parts) {
+  for (const PartRecord& p : a.parts()) {
+    for (const PartRecord& q : b.parts()) {
       if (!spheres_part(p.sphere, q.sphere)) return false;
     }
   }
@@ -129,8 +129,8 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) co
   pair.sweep.possible = continuous && pair.versions.jumps == jumps && known_before(a) && known_before(b);
   // As spheres reach as far as a step leads, a body that was not sampled at the step before had nothing near it then:
   // unless the broad phase was interrupted, or the body's parts go farther now. Nothing was between it and a new body.
-  const bool sphere_fell_short = interrupted || a.steps.stretched == step - 1 || b.steps.stretched == step - 1;
-  const bool both_before = std::max(a.steps.since, b.steps.since) < step;
+  const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
+  const bool both_before = std::max(a.since, b.since) < step;
   pair.sweep.unseen =
       continuous && pair.versions.jumps == jumps && !pair.sweep.possible && sphere_fell_short && both_before;
   pair.versions.jumps = jumps;

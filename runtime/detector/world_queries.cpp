@@ -60,7 +60,7 @@ void WorldQueries::update(const World& world, const StateSampler& sampler) {
   tree_.clear();
   for (BodyIndex i = 0; i < poses_.size(); ++i) {
     if (world.bodies[i].id == kNoBody || !is_rigid(poses_[i])) continue;
-    const auto& parts = world.bodies[i].parts;
+    const std::span<const PartRecord> parts = world.bodies[i].parts();
     for (std::uint32_t k = 0; k < parts.size(); ++k) {
       const BoundingSphere sphere(transform(poses_[i], parts[k].center), parts[k].reach * poses_[i].scale);
       if (std::isfinite(sphere.size)) tree_.add(sphere, i, k);
@@ -80,7 +80,7 @@ void WorldQueries::each_target(const World& world, const QueryFilter& filter, co
   const auto use_part = [&](const SphereTree::Part& part) {
     const Body& body = world.bodies[part.body];
     if (!counts(body, filter)) return;
-    const PartRecord& record = body.parts[part.part];
+    const PartRecord& record = body.parts()[part.part];
     const Pose& pose = poses_[part.body];
     use(Target{.body = body,
                .part = part.part,
