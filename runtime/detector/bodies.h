@@ -92,7 +92,7 @@ struct alignas(64) Body {
     return several.empty() ? std::span(&one, 1) : std::span(several);
   }
   bool is_continuous() const noexcept { return options.continuous_speed > 0; }
-  bool is_asked() const noexcept { return id != kNoBody && !is_static && !frozen; }  // for its states
+  bool is_asked() const noexcept { return !is_static && !frozen && id != kNoBody; }  // for its states
   bool has_middle() const noexcept { return extent.middle_reach < extent.reach; }
   void find_middle() noexcept;
   void forget_middle() noexcept { extent.middle_reach = kInfinity; }

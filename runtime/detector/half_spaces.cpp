@@ -60,14 +60,15 @@ void HalfSpaceTimes::update_all() noexcept {
 
 void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) {
   if (next() > now) return;
-  next_ = kNeverStep;
-  for (BodyIndex body = 0; body < due_.size(); ++body) {
-    if (due_[body] <= now) {
-      bodies.push_back(body);
-    } else {
-      next_ = std::min(next_, due_[body]);
-    }
+  Step next = kNeverStep;
+  const std::span<const Step> all = due_;
+  for (std::size_t body = 0; body < all.size(); ++body) {
+    if (all[body] <= now)
+      bodies.push_back(static_cast<BodyIndex>(body));
+    else
+      next = std::min(next, all[body]);
   }
+  next_ = next;
 }
 
 void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Motion motion, double slack,

@@ -28,7 +28,7 @@ StateSampler::StateSampler(World& world, BroadPhase& broad, StateSource source)
 
 void StateSampler::ask_for(BodyIndex index, Step step) {
   Body& body = world_.bodies[index];
-  if (body.steps.asked == step || !body.is_asked()) return;
+  if (!body.is_asked() || body.steps.asked == step) return;
   body.steps.known_before = std::exchange(body.steps.asked, step);
   asking_.push_back(index);
 }
