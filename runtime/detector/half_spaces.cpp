@@ -29,7 +29,9 @@ double seconds_above(const HalfSpace& half, const Motion& motion, double height)
 
 BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
   // An index is never used again: half-spaces are few, and pairs may still name a removed one.
-  planes_.push_back({half, with, true});
+  Shape shape;
+  shape.kind = ShapeKind::half_space, shape.half = half;
+  planes_.push_back({std::move(shape), with, true});
   ++alive_;
   const auto index = static_cast<BodyIndex>(kFirstHalfSpace + planes_.size() - 1);
   planes_.back().body.id = {index, 1};
@@ -81,9 +83,9 @@ void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Moti
   if (is_valid(motion)) {
     double seconds = kInfinity;
     const std::size_t before = pairs.size();
-    halves_.each([&](const Body& of, const HalfSpace& half) {
-      const double height = height_over(half, motion);
-      seconds = std::min(seconds, seconds_above(half, motion, height));
+    halves_.each([&](const Body& of, const Shape& shape) {
+      const double height = height_over(shape.half, motion);
+      seconds = std::min(seconds, seconds_above(shape.half, motion, height));
       if (!(height > 0)) pairs.push_back({index, of.id.index});
     });
     const Step last = body.frozen ? kNeverStep : clock.last_before_expiry(motion.expiry);

@@ -12,21 +12,21 @@ class HalfSpaces {
     return is_half_space(id.index) && id.generation == 1 && id.index - kFirstHalfSpace < planes_.size() &&
            planes_[id.index - kFirstHalfSpace].alive;
   }
-  const HalfSpace& half_space(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].half; }
+  const Shape& shape(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].shape; }
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
   std::size_t size() const noexcept { return alive_; }
   template <typename Visit>
-  void each(Visit&& visit) const {  // visit(body, half-space)
+  void each(Visit&& visit) const {  // visit(body, shape)
     for (const Plane& plane : planes_) {
-      if (plane.alive) visit(plane.body, plane.half);
+      if (plane.alive) visit(plane.body, plane.shape);
     }
   }
   std::size_t memory_bytes() const noexcept { return bytes_of(planes_); }
 
  private:
   struct Plane {
-    HalfSpace half;
+    Shape shape;
     Body body;
     bool alive = false;
   };

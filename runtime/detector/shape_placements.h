@@ -7,9 +7,9 @@
 
 namespace orchard::runtime::detail {
 
-// What is asked at one step about two parts, or a part and a half-space.
+// What is asked at one step about two parts, the second of which may be a half-space, which no sphere is around.
 struct PlacedPart : BoundingSphere {
-  const Shape* shape = nullptr;  // null: a half-space
+  const Shape* shape = nullptr;
   bool rigid = true;
 
   PlacedPart() noexcept : BoundingSphere({}, 0) {}
@@ -22,8 +22,8 @@ struct PlacedPart : BoundingSphere {
 
 struct PartPair {
   PlacedPart a, b;
-  HalfSpace half;  // b, where it is one
-  bool simple() const noexcept { return b.shape == nullptr || !a.shape->has_tree() || !b.shape->has_tree(); }
+  bool simple() const noexcept { return !a.shape->has_tree() || !b.shape->has_tree(); }
+  bool with_half_space() const noexcept { return b.shape->kind == ShapeKind::half_space; }
 };
 
 // Where bodies, parts and half-spaces are at the step under way.
@@ -57,7 +57,7 @@ class ShapePlacements {
       bodies_->prefetch_sphere_cache(body);
     }
   }
-  const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->half_space(index); }
+  const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->shape(index).half; }
 
  private:
   double bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept;
@@ -87,16 +87,13 @@ inline SphereGap sphere_gap(const BoundingSphere& a, const HalfSpace& half) noex
   return sphere_gap(dot(half.normal, a.center) - half.offset, a.reach, a.size + std::fabs(half.offset));
 }
 inline SphereGap sphere_gap(const PartPair& pair) noexcept {
-  return pair.b.shape == nullptr ? sphere_gap(pair.a, pair.half) : sphere_gap(pair.a, pair.b);
+  return pair.with_half_space() ? sphere_gap(pair.a, pair.b.shape->half) : sphere_gap(pair.a, pair.b);
 }
 // Whether the least gap is more than 0, or not quite.
 inline bool spheres_part(const BoundingSphere& a, const BoundingSphere& b) noexcept {
   const Vec3 way = b.center - a.center;
   const double reach = a.reach + b.reach + kPlaceRounding * (a.size + b.size), square = dot(way, way);
   return square > reach * reach * (1 + 1e-14) && square <= std::numeric_limits<double>::max();
-}
-inline bool spheres_part(const PartPair& pair) noexcept {
-  return pair.b.shape == nullptr ? sphere_gap(pair).least > 0 : spheres_part(pair.a, pair.b);
 }
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;

@@ -172,6 +172,16 @@ Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::u
   return verdict;
 }
 
+// The normal into the half-space.
+Verdict of_half_space(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept {
+  const SurfacePoint lowest = lowest_point(shape, pose, half);
+  if (!std::isfinite(lowest.distance)) return unknown_verdict();
+  if (lowest.distance > 0) return no_with(lowest.distance, 0);
+  Verdict verdict = yes_at(lowest.point, -1.0 * half.normal);
+  verdict.contact.triangle_a = lowest.triangle;
+  return verdict;
+}
+
 void exchange(Contact& contact) noexcept {
   for (double& x : contact.normal) x = -x;
   std::swap(contact.triangle_a, contact.triangle_b);
@@ -187,6 +197,7 @@ Verdict unknown_verdict() noexcept {
 
 Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::uint32_t guess) noexcept {
+  if (b.kind == ShapeKind::half_space) return of_half_space(a, pose_a, b.half);
   if (!a.has_tree() && !b.has_tree()) return of_rounds(Round(a, pose_a), Round(b, pose_b));
   if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b), guess);
   Verdict verdict = of_tree(b, pose_b, Round(a, pose_a), guess);
@@ -212,17 +223,6 @@ bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& 
   return false;
 }
 
-namespace {
-
-// How far the shape reaches along a unit vector.
-double top_along(const Shape& shape, const Pose& pose, const Vec3& n) noexcept {
-  if (shape.has_tree()) return -deepest_point(shape.tree, pose, -1.0 * n, 0).distance;
-  const Round round(shape, pose);
-  return std::max(dot(n, round.p), dot(n, round.q)) + round.radius;
-}
-
-}  // namespace
-
 // Where their extents along the normal are free of each other, both are. Before that the second one is moved to where
 // it has certainly left what it touches now, again and again, and every third time to half of the rest, since many
 // surfaces may be in the way one after another. A gap lasts for as long a way back, and what is in common for a way on.
@@ -230,7 +230,8 @@ double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Po
                     const Vec3& normal) noexcept {
   constexpr int kSteps = 120;
   constexpr double kRounding = 1e-12;  // of coordinates and lengths, in what is known from others
-  const double most = std::max(0.0, top_along(a, pose_a, normal) + top_along(b, pose_b, -1.0 * normal));
+  const double most = std::max(
+      0.0, -lowest_point(a, pose_a, {-1.0 * normal, 0}).distance - lowest_point(b, pose_b, {normal, 0}).distance);
   if (!a.has_tree() && !b.has_tree()) return most;
   const bool second = a.has_tree();  // is the round one
   const Round round(second ? b : a, second ? pose_b : pose_a);

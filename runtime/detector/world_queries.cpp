@@ -74,8 +74,8 @@ void WorldQueries::update(const World& world, const StateSampler& sampler) {
 template <typename Bound, typename Most, typename Use>
 void WorldQueries::each_target(const World& world, const QueryFilter& filter, const Bound& bound, const Most& most,
                                const Use& use) const {
-  world.halves.each([&](const Body& body, const HalfSpace& half) {
-    if (counts(body, filter)) use(Target{.body = body, .half = half});
+  world.halves.each([&](const Body& body, const Shape& shape) {
+    if (counts(body, filter)) use(Target{.body = body, .shape = shape});
   });
   const auto use_part = [&](const SphereTree::Part& part) {
     const Body& body = world.bodies[part.body];
@@ -84,7 +84,7 @@ void WorldQueries::each_target(const World& world, const QueryFilter& filter, co
     const Pose& pose = poses_[part.body];
     use(Target{.body = body,
                .part = part.part,
-               .shape = &world.shapes[record.shape],
+               .shape = world.shapes[record.shape],
                .pose = record.at_origin ? pose : placed(pose, record.local)});
   };
   tree_.walk(bound, most, [&](std::uint32_t begin, std::uint32_t end) {
@@ -99,9 +99,7 @@ std::optional<WorldPoint> WorldQueries::cast_ray(const World& world, const Ray& 
     return enters_box(low, high, ray.origin, ray.direction, kInfinity);
   };
   each_target(world, filter, bound, most, [&](const Target& target) {
-    const Ray within{ray.origin, ray.direction, most()};
-    const auto hit = target.shape == nullptr ? detail::cast_ray(target.half, within)
-                                             : detail::cast_ray(*target.shape, target.pose, within);
+    const auto hit = detail::cast_ray(target.shape, target.pose, {ray.origin, ray.direction, most()});
     if (hit) take_nearer(best, {target.body.id, target.part, hit->along, hit->point, hit->triangle});
   });
   return best;
@@ -113,8 +111,7 @@ std::optional<WorldPoint> WorldQueries::nearest(const World& world, const Vec3& 
   const auto most = [&] { return best ? best->distance : limit; };
   const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, point)); };
   each_target(world, filter, bound, most, [&](const Target& target) {
-    const SurfacePoint near = target.shape == nullptr ? nearest_point(target.half, point, most())
-                                                      : nearest_point(*target.shape, target.pose, point, most());
+    const SurfacePoint near = nearest_point(target.shape, target.pose, point, most());
     if (std::isfinite(near.distance))
       take_nearer(best, {target.body.id, target.part, near.distance, near.point, near.triangle});
   });
@@ -127,8 +124,7 @@ std::span<const BodyId> WorldQueries::touching_sphere(const World& world, const 
   const auto most = [&] { return radius; };
   const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, center)); };
   each_target(world, filter, bound, most, [&](const Target& target) {
-    const SurfacePoint near = target.shape == nullptr ? nearest_point(target.half, center, radius)
-                                                      : nearest_point(*target.shape, target.pose, center, radius);
+    const SurfacePoint near = nearest_point(target.shape, target.pose, center, radius);
     if (near.distance <= radius) found_.push_back(target.body.id);
   });
   const auto by_index = [](const BodyId& p, const BodyId& q) { return p.index < q.index; };

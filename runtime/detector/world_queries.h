@@ -19,12 +19,11 @@ class WorldQueries {
   }
 
  private:
-  // A part of a body, or a half-space.
+  // A part of a body, or a half-space, whose pose does not matter.
   struct Target {
     const Body& body;
     std::uint32_t part = 0;
-    const Shape* shape = nullptr;  // null: a half-space
-    HalfSpace half{};
+    const Shape& shape;
     Pose pose{};
   };
   void find_poses(const World& world, const StateSampler& sampler);
