@@ -78,9 +78,8 @@ Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, cons
   if (!known) return answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work, kNoLimit, guess);
   const Pose &a = pair.a.pose(), &b = pair.b.pose();
   Verdict verdict;
-  if (!CoherentPair::recall(scratch.workspace, record.trees, a, b, verdict)) {
+  if (!CoherentPair::recall(scratch.workspace, record.trees, a, b, verdict))
     verdict = CoherentPair::search(scratch.workspace, record.trees, a, b);
-  }
   scratch.work += kPairWork + verdict.work;
   make_solid(verdict, pair);
   return verdict;

@@ -1,9 +1,14 @@
 #pragma once
-#include "detector/answer_scratch.h"
 #include "detector/pair_cache.h"
 #include "detector/sweep.h"
 
 namespace orchard::runtime::detail {
+
+// What a job needs while it answers pairs.
+struct AnswerScratch {
+  Workspace workspace{0};
+  std::uint64_t work = 0;
+};
 
 // What is known of a pair before anything is asked: no parts of it are near. What two of its parts add to that. And
 // where what happened between two steps is not known: "maybe", unless it touches at this one.

@@ -16,14 +16,22 @@ bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept 
   return std::isfinite(part.reach + part.off);
 }
 
+namespace {
+
+Motion motion_of(const BodyState& state, double radius) noexcept {
+  return {.position = state.pose.translation,
+          .velocity = state.velocity,
+          .radius = radius,
+          .acceleration = state.acceleration,
+          .drift = state.drift,
+          .half_space = state.half_space,
+          .expiry = state.expiry};
+}
+
+}  // namespace
+
 bool is_valid(const BodyState& state) noexcept {
-  const Motion motion{.position = state.pose.translation,
-                      .velocity = state.velocity,
-                      .acceleration = state.acceleration,
-                      .drift = state.drift,
-                      .half_space = state.half_space,
-                      .expiry = state.expiry};
-  return is_rigid(state.pose) && runtime::is_valid(motion) && state.angular_speed >= 0;
+  return is_rigid(state.pose) && runtime::is_valid(motion_of(state, 0)) && state.angular_speed >= 0;
 }
 
 // Rotations are rotations to kRigidTolerance only.
@@ -59,13 +67,7 @@ void Body::find_middle() noexcept {
 
 // The middle goes as the origin does, but for what it turns about that.
 Motion Body::motion(double time_step, bool by_middle) const noexcept {
-  Motion motion{.position = state.pose.translation,
-                .velocity = state.velocity,
-                .radius = extent.reach * state.pose.scale + options.continuous_speed * time_step,
-                .acceleration = state.acceleration,
-                .drift = state.drift,
-                .half_space = state.half_space,
-                .expiry = state.expiry};
+  Motion motion = motion_of(state, extent.reach * state.pose.scale + options.continuous_speed * time_step);
   if (by_middle) {
     motion.position = transform(state.pose, extent.middle);
     motion.radius = extent.middle_reach * state.pose.scale;

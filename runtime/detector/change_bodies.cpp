@@ -215,27 +215,20 @@ bool Detector::set_filter(BodyId id, const BodyFilter& filter) {
   });
 }
 
-bool Detector::sleep(BodyId id) {
-  State& s = *state_;
-  return s.change(id, [&](Body& body) {
+bool Detector::State::set_asleep(BodyId id, bool asleep) {
+  return change(id, [&](Body& body) {
     if (body.is_static) return false;
-    if (std::exchange(body.asleep, true)) return true;
-    if (s.world.kept_states) s.world.keep_state(body, state(id));
-    s.sampler.cancel(body);
+    if (std::exchange(body.asleep, asleep) == asleep) return true;
+    if (!asleep) world.wake(body);
+    if (asleep && world.kept_states) world.keep_state(body, world.state(body));
+    sampler.cancel(body);
     return true;
   });
 }
 
-bool Detector::wake(BodyId id) {
-  State& s = *state_;
-  return s.change(id, [&](Body& body) {
-    if (body.is_static) return false;
-    if (!std::exchange(body.asleep, false)) return true;
-    s.world.wake(body);
-    s.sampler.cancel(body);
-    return true;
-  });
-}
+bool Detector::sleep(BodyId id) { return state_->set_asleep(id, true); }
+
+bool Detector::wake(BodyId id) { return state_->set_asleep(id, false); }
 
 bool Detector::asleep(BodyId id) const noexcept { return state_->contains(id) && state_->world.body(id.index).asleep; }
 
@@ -295,9 +288,7 @@ bool Detector::set_velocity(BodyId id, const Vec3& velocity) {
 BodyState Detector::state(BodyId id) const noexcept {
   const State& s = *state_;
   if (!s.contains(id)) return {};
-  const Body& body = s.world.body(id.index);
-  return s.world.kept_states && !body.is_static ? s.world.kept_states->at(s.world.time_of_last_step(), id.index)
-                                                : body.state;
+  return s.world.state(s.world.body(id.index));
 }
 
 bool Detector::moves(BodyId id) const noexcept {

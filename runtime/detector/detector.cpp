@@ -16,13 +16,11 @@ bool is_valid_option(const DetectorOptions& options) noexcept {
 
 BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
   constexpr std::size_t kMinBodies = 4096;  // fewer than elsewhere: answers leave little in the caches anyway
-  BroadPhaseOptions result;
-  result.executor = executor;
-  result.min_bodies_for_jobs = kMinBodies;
-  result.time_step = options.time_step;
-  result.start = options.start;
-  result.position_slack = options.position_slack;
-  return result;
+  return {.time_step = options.time_step,
+          .start = options.start,
+          .position_slack = options.position_slack,
+          .executor = executor,
+          .min_bodies_for_jobs = kMinBodies};
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
   // An index is never used again: half-spaces are few, and pairs may still name a removed one.
   Shape shape;
   shape.kind = ShapeKind::half_space, shape.half = half;
-  planes_.push_back({std::move(shape), with, true});
+  planes_.push_back({std::move(shape), with});
   ++alive_;
   const auto index = static_cast<BodyIndex>(kFirstHalfSpace + planes_.size() - 1);
   planes_.back().body.id = {index, 1};
@@ -41,8 +41,7 @@ BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
 
 bool HalfSpaces::remove(BodyIndex index) noexcept {
   Plane& plane = planes_[index - kFirstHalfSpace];
-  if (!plane.alive) return false;
-  plane.alive = false;
+  if (plane.body.id == kNoBody) return false;
   plane.body.id = kNoBody;
   --alive_;
   return true;

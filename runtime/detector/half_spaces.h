@@ -10,7 +10,7 @@ class HalfSpaces {
   bool remove(BodyIndex index) noexcept;
   bool contains(BodyId id) const noexcept {
     return is_half_space(id.index) && id.generation == 1 && id.index - kFirstHalfSpace < planes_.size() &&
-           planes_[id.index - kFirstHalfSpace].alive;
+           body(id.index).id == id;
   }
   const Shape& shape(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].shape; }
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
@@ -19,7 +19,7 @@ class HalfSpaces {
   template <typename Visit>
   void each(Visit&& visit) const {  // visit(body, shape)
     for (const Plane& plane : planes_) {
-      if (plane.alive) visit(plane.body, plane.shape);
+      if (plane.body.id != kNoBody) visit(plane.body, plane.shape);
     }
   }
   std::size_t memory_bytes() const noexcept { return bytes_of(planes_); }
@@ -28,7 +28,6 @@ class HalfSpaces {
   struct Plane {
     Shape shape;
     Body body;
-    bool alive = false;
   };
   std::vector<Plane> planes_;
   std::size_t alive_ = 0;

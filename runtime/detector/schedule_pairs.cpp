@@ -4,6 +4,7 @@
 
 #include "collision/coherent_pair.h"
 #include "collision/pair_query.h"
+#include "collision/workspace_scratch.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -20,7 +21,31 @@ void PairScheduler::prepare() {
   const Executor& executor = world_.options.executor;
   const std::size_t jobs =
       executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * kJobsPerThread;
-  scratches_.prepare(world_.shapes, jobs, world_.any.continuous);
+  const bool more = seen_shapes_ < world_.shapes.size() || (world_.any.continuous && !sweeps_);
+  sweeps_ = sweeps_ || world_.any.continuous;
+  for (; seen_shapes_ < world_.shapes.size(); ++seen_shapes_) {
+    const Shape& shape = world_.shapes[static_cast<ShapeId>(seen_shapes_)];
+    if (deepest_.tree.blocks.empty() || deepest_.tree.triangle_tree_depth <= shape.tree.triangle_tree_depth)
+      deepest_ = shape.prepared;
+  }
+  const std::size_t before = scratches_.size();
+  while (scratches_.size() < jobs) scratches_.push_back(std::make_unique<AnswerScratch>());
+  if (deepest_.tree.blocks.empty()) return;
+  for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
+    Workspace& workspace = scratches_[i]->workspace;
+    workspace.narrow.bind(deepest_, deepest_);
+    workspace.distance.bind(deepest_, deepest_);
+    Workspace::Scratch* const scratch = sweeps_ ? workspace.scratch() : nullptr;
+    if (scratch != nullptr) scratch->timed.reserve(deepest_.tree, deepest_.tree);
+  }
+}
+
+std::size_t PairScheduler::memory_bytes() const noexcept {
+  constexpr std::size_t kStackEntry = 48;
+  const std::size_t pairs = std::size_t{kBlockWidth} * (2 * deepest_.tree.triangle_tree_depth + 1) + 1;
+  const std::size_t sweeps = sweeps_ ? sizeof(Workspace::Scratch) + pairs * sizeof(Workspace::Scratch::TimedPair) : 0;
+  return scratches_.size() * (sizeof(AnswerScratch) + 2 * pairs * kStackEntry + sweeps) +
+         bytes_of(tasks_, schedule_, order_);
 }
 
 void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open) {
@@ -130,16 +155,17 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scr
   const double bound = task.verdict.separation_bound;
   Verdict known;
   if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), known)) {
-    task.verdict = solid_verdict(known, pair);
+    task.verdict = known;
     task.done = true;
   } else {
     PairQuery& narrow = query_of(scratch.workspace.narrow);
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     narrow.start(pair.a.pose(), pair.b.pose());
-    task.verdict = verdict_of(narrow, pair);
+    task.verdict = narrow.verdict();
     task.done = narrow.finished();
     if (record.coherent) record.turn.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
   }
+  make_solid(task.verdict, pair);
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
   task.verdict.work = task.work;
 }
@@ -186,9 +212,9 @@ void PairScheduler::sweep_within(PairCache& records, std::span<const std::uint32
     if (record.sweep.unseen || (record.sweep.possible && !budget.may_sweep(swept)))
       leave_open(record);
     else if (record.sweep.possible) {
-      scratches_[0].work = 0;
-      answerer_.sweep(record, now, scratches_[0], budget.left());
-      budget.spend(scratches_[0].work);
+      scratches_[0]->work = 0;
+      answerer_.sweep(record, now, *scratches_[0], budget.left());
+      budget.spend(scratches_[0]->work);
       ++swept;
     }
   }

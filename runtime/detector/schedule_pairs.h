@@ -16,7 +16,9 @@ class PairScheduler {
  public:
   explicit PairScheduler(const World& world) noexcept : world_(world), answerer_(world.places) {}
 
-  void prepare();  // before a step: room for all shapes and threads
+  // Before a step: a scratch for each job, with room for pairs of all shapes, and for sweeps if there are any, so that
+  // no query allocates.
+  void prepare();
 
   // use(i, scratch) for i = 0 .. count - 1, by jobs. Returns the work that the scratches count.
   template <typename Use>
@@ -31,8 +33,8 @@ class PairScheduler {
   // What happened between the step before and this one, for the records that can be swept.
   void sweep_within(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
 
-  Workspace* workspace() noexcept { return scratches_.size() == 0 ? nullptr : &scratches_[0].workspace; }
-  std::size_t memory_bytes() const noexcept { return scratches_.memory_bytes() + bytes_of(tasks_, schedule_, order_); }
+  Workspace* workspace() noexcept { return scratches_.empty() ? nullptr : &scratches_[0]->workspace; }
+  std::size_t memory_bytes() const noexcept;
 
  private:
   struct Task {
@@ -54,7 +56,10 @@ class PairScheduler {
 
   const World& world_;
   PairAnswerer answerer_;
-  AnswerScratches scratches_;
+  std::vector<std::unique_ptr<AnswerScratch>> scratches_;
+  std::size_t seen_shapes_ = 0;
+  bool sweeps_ = false;
+  PreparedTree deepest_;     // of all shapes: a query that has been bound to it allocates for no other
   std::vector<Task> tasks_;  // in the order of pairs, then of parts
   std::vector<Turn> schedule_;
   std::vector<std::uint32_t> order_;  // of the tasks that run at once
@@ -67,14 +72,14 @@ std::uint64_t PairScheduler::each(std::size_t count, Use&& use) {
   const Executor& executor = world_.options.executor;
   const std::size_t jobs = executor.run == nullptr ? 1 : std::min(scratches_.size(), count / kMinPerJob + 1);
   auto one = [&](std::size_t job) {
-    AnswerScratch& scratch = scratches_[job];
+    AnswerScratch& scratch = *scratches_[job];
     scratch.work = 0;
     const std::size_t end = count * (job + 1) / jobs;
     for (std::size_t i = count * job / jobs; i < end; ++i) use(i, scratch);
   };
   run_jobs(executor, jobs, one);
   std::uint64_t work = 0;
-  for (std::size_t job = 0; job < jobs; ++job) work += scratches_[job].work;
+  for (std::size_t job = 0; job < jobs; ++job) work += scratches_[job]->work;
   return work;
 }
 

@@ -67,7 +67,7 @@ double ShapePlacements::bounds_gap(const BodyPair& pair, std::uint32_t part_a, s
 }
 
 Verdict unasked(const PartPair& pair) noexcept {
-  const SphereGap gap = sphere_gap(pair);
+  const SphereGap gap = pair.with_half_space() ? sphere_gap(pair.a, pair.b.shape->half) : sphere_gap(pair.a, pair.b);
   Verdict verdict;
   verdict.answer = gap.least > 0 ? Answer::no : Answer::maybe;
   verdict.lower_bound = std::max(0.0, gap.least);
@@ -112,7 +112,9 @@ Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& w
     narrow.refine_exactly({.work = most - work});
   }
   work += narrow.known().work;
-  return verdict_of(narrow, pair);
+  Verdict verdict = narrow.verdict();
+  make_solid(verdict, pair);
+  return verdict;
 }
 
 bool decides(const Verdict& verdict, const Verdict& than) noexcept {

@@ -86,15 +86,6 @@ inline SphereGap sphere_gap(const BoundingSphere& a, const BoundingSphere& b) no
 inline SphereGap sphere_gap(const BoundingSphere& a, const HalfSpace& half) noexcept {
   return sphere_gap(dot(half.normal, a.center) - half.offset, a.reach, a.size + std::fabs(half.offset));
 }
-inline SphereGap sphere_gap(const PartPair& pair) noexcept {
-  return pair.with_half_space() ? sphere_gap(pair.a, pair.b.shape->half) : sphere_gap(pair.a, pair.b);
-}
-// Whether the least gap is more than 0, or not quite.
-inline bool spheres_part(const BoundingSphere& a, const BoundingSphere& b) noexcept {
-  const Vec3 way = b.center - a.center;
-  const double reach = a.reach + b.reach + kPlaceRounding * (a.size + b.size), square = dot(way, way);
-  return square > reach * reach * (1 + 1e-14) && square <= std::numeric_limits<double>::max();
-}
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
 
@@ -108,13 +99,6 @@ Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& w
 
 // What is known of two trees whose surfaces have been asked about: of solid boxes these do not tell everything.
 void make_solid(Verdict& verdict, const PartPair& pair) noexcept;
-inline Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
-  make_solid(verdict, pair);
-  return verdict;
-}
-inline Verdict verdict_of(const PairQuery& narrow, const PartPair& pair) noexcept {
-  return solid_verdict(narrow.verdict(), pair);
-}
 
 // The better of what is known of two pairs of parts, for their bodies: yes before maybe before no, then the least
 // bound.

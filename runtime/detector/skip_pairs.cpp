@@ -54,7 +54,7 @@ bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
     return false;
   for (const PartRecord& p : a.parts()) {
     for (const PartRecord& q : b.parts()) {
-      if (!spheres_part(p.sphere, q.sphere)) return false;
+      if (!(sphere_gap(p.sphere, q.sphere).least > 0)) return false;
     }
   }
   return true;
