@@ -72,8 +72,8 @@ struct Detector::State {
 
   // answer_step.cpp: the pairs of a step, matched, answered and reported
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
-  void answer_within(const detail::ActivePairs& active, Step step, const detail::StepBudget::Stopwatch& watch,
-                     detail::StepBudget& budget, Frame& frame);
+  void answer_within(const detail::ActivePairs& active, Step step, double begun, detail::StepBudget& budget,
+                     Frame& frame);  // `begun`: the budget's clock when the step's answers were
   void begin_pairs(const detail::ActivePairs& active, Step step);
 };
 

@@ -32,7 +32,6 @@ BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
   Shape shape;
   shape.kind = ShapeKind::half_space, shape.half = half;
   planes_.push_back({std::move(shape), with});
-  ++alive_;
   const auto index = static_cast<BodyIndex>(kFirstHalfSpace + planes_.size() - 1);
   planes_.back().body.id = {index, 1};
   planes_.back().body.is_static = true;
@@ -43,7 +42,6 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
   Plane& plane = planes_[index - kFirstHalfSpace];
   if (plane.body.id == kNoBody) return false;
   plane.body.id = kNoBody;
-  --alive_;
   return true;
 }
 
@@ -97,7 +95,7 @@ void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Moti
 }
 
 bool HalfSpaceTimes::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {
-  if (halves_.size() == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
+  if (halves_.empty() || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
   const MotionBound& bound = bounds_[body];
   return keeps_motion_bound(bound.motion, bound.time, time, now.position, nullptr, slack_) &&
          now.radius <= bound.motion.radius;

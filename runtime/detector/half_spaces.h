@@ -15,7 +15,9 @@ class HalfSpaces {
   const Shape& shape(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].shape; }
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
-  std::size_t size() const noexcept { return alive_; }
+  bool empty() const noexcept {
+    return std::ranges::all_of(planes_, [](const Plane& plane) { return plane.body.id == kNoBody; });
+  }
   template <typename Visit>
   void each(Visit&& visit) const {  // visit(body, shape)
     for (const Plane& plane : planes_) {
@@ -30,7 +32,6 @@ class HalfSpaces {
     Body body;
   };
   std::vector<Plane> planes_;
-  std::size_t alive_ = 0;
 };
 
 // When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
@@ -44,7 +45,7 @@ class HalfSpaceTimes {
   void update_all() noexcept;                                 // a half-space is new
   void forget(BodyIndex body) { set_due(body, kNeverStep); }  // it is gone, or does not move
   // At which any body is due.
-  Step next() const noexcept { return halves_.size() > 0 ? next_ : kNeverStep; }
+  Step next() const noexcept { return halves_.empty() ? kNeverStep : next_; }
 
   // The bodies due at `now` or before, in ascending order, each of which is to be updated.
   void due(Step now, std::vector<BodyIndex>& bodies);

@@ -43,12 +43,6 @@ class PairScheduler {
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
   };
-  struct Turn {
-    std::uint8_t importance;
-    std::uint32_t waited, task;
-  };
-  void make_tasks(PairCache& records, std::span<const std::uint32_t> open);
-  void sort_tasks(const PairCache& records);
   void begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept;
   void search_one(Task& task, CachedPair& record, const Budget& most, bool is_first,
                   AnswerScratch& scratch) const noexcept;
@@ -59,10 +53,10 @@ class PairScheduler {
   std::vector<std::unique_ptr<AnswerScratch>> scratches_;
   std::size_t seen_shapes_ = 0;
   bool sweeps_ = false;
-  PreparedTree deepest_;     // of all shapes: a query that has been bound to it allocates for no other
-  std::vector<Task> tasks_;  // in the order of pairs, then of parts
-  std::vector<Turn> schedule_;
-  std::vector<std::uint32_t> order_;  // of the tasks that run at once
+  PreparedTree deepest_;                 // of all shapes: a query that has been bound to it allocates for no other
+  std::vector<Task> tasks_;              // in the order of pairs, then of parts
+  std::vector<std::uint64_t> schedule_;  // of tasks: their importance, how long they have waited, and their index
+  std::vector<std::uint32_t> order_;     // of the tasks that run at once
 };
 
 // The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.

@@ -41,10 +41,7 @@ bool PairSkipper::moved_less_than_gap(const PairCache::Known& known) const noexc
 }
 
 bool PairSkipper::sphere_above(const BodyPair& pair) const noexcept {
-  const BoundingSphereCache& a = world_.bodies.sphere_cache(pair.a);
-  const HalfSpace& half = world_.places.half_space(pair.b);
-  const double height = dot(half.normal, a.sphere.center) - half.offset - a.sphere.reach;
-  return height > kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
+  return sphere_gap(world_.bodies.sphere_cache(pair.a).sphere, world_.places.half_space(pair.b)).least > 0;
 }
 
 // Whether each part of the one is apart from each of the other: for bodies of several parts.

@@ -12,18 +12,6 @@ namespace orchard::runtime::detail {
 class StepBudget {
  public:
   using Clock = std::chrono::steady_clock;
-  // Looks at the clock only if it `runs`.
-  class Stopwatch {
-   public:
-    explicit Stopwatch(bool runs) noexcept : runs_(runs), begin_(runs ? Clock::now() : Clock::time_point{}) {}
-    double passed() const noexcept {  // ns
-      return runs_ ? std::chrono::duration<double, std::nano>(Clock::now() - begin_).count() : 0;
-    }
-
-   private:
-    bool runs_;
-    Clock::time_point begin_;
-  };
   StepBudget(const Budget& budget, const StepCut* replay) noexcept
       : left_(budget.work), limited_(budget.work != Budget{}.work), replay_(replay) {
     if (replay == nullptr &&
@@ -47,6 +35,9 @@ class StepBudget {
                   : Budget{}.time;
   }
   bool timed() const noexcept { return timed_; }
+  double clock() const noexcept {  // ns since some time; 0 if there is no limit in time
+    return timed_ ? std::chrono::duration<double, std::nano>(Clock::now().time_since_epoch()).count() : 0;
+  }
   // Sets a part of what is left aside, until it is given back. Time as well, or only time.
   struct Part {
     std::uint64_t work = 0;

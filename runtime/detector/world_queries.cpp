@@ -92,6 +92,17 @@ void WorldQueries::each_target(const World& world, const QueryFilter& filter, co
   });
 }
 
+// use(target, point) for those that are at most most() away, and where.
+template <typename Most, typename Use>
+void WorldQueries::each_near(const World& world, const QueryFilter& filter, const Vec3& to, const Most& most,
+                             const Use& use) const {
+  const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, to)); };
+  each_target(world, filter, bound, most, [&](const Target& target) {
+    const SurfacePoint near = nearest_point(target.shape, target.pose, to, most());
+    if (std::isfinite(near.distance)) use(target, near);
+  });
+}
+
 std::optional<WorldPoint> WorldQueries::cast_ray(const World& world, const Ray& ray, const QueryFilter& filter) {
   std::optional<WorldPoint> best;
   const auto most = [&] { return best ? best->distance : ray.longest; };
@@ -109,11 +120,8 @@ std::optional<WorldPoint> WorldQueries::nearest(const World& world, const Vec3& 
                                                 const QueryFilter& filter) {
   std::optional<WorldPoint> best;
   const auto most = [&] { return best ? best->distance : limit; };
-  const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, point)); };
-  each_target(world, filter, bound, most, [&](const Target& target) {
-    const SurfacePoint near = nearest_point(target.shape, target.pose, point, most());
-    if (std::isfinite(near.distance))
-      take_nearer(best, {target.body.id, target.part, near.distance, near.point, near.triangle});
+  each_near(world, filter, point, most, [&](const Target& target, const SurfacePoint& near) {
+    take_nearer(best, {target.body.id, target.part, near.distance, near.point, near.triangle});
   });
   return best;
 }
@@ -122,11 +130,8 @@ std::span<const BodyId> WorldQueries::touching_sphere(const World& world, const 
                                                       const QueryFilter& filter) {
   found_.clear();
   const auto most = [&] { return radius; };
-  const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, center)); };
-  each_target(world, filter, bound, most, [&](const Target& target) {
-    const SurfacePoint near = nearest_point(target.shape, target.pose, center, radius);
-    if (near.distance <= radius) found_.push_back(target.body.id);
-  });
+  each_near(world, filter, center, most,
+            [&](const Target& target, const SurfacePoint&) { found_.push_back(target.body.id); });
   const auto by_index = [](const BodyId& p, const BodyId& q) { return p.index < q.index; };
   std::sort(found_.begin(), found_.end(), by_index);
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());

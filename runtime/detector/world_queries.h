@@ -30,6 +30,8 @@ class WorldQueries {
   template <typename Bound, typename Most, typename Use>
   void each_target(const World& world, const QueryFilter& filter, const Bound& bound, const Most& most,
                    const Use& use) const;
+  template <typename Most, typename Use>
+  void each_near(const World& world, const QueryFilter& filter, const Vec3& to, const Most& most, const Use& use) const;
 
   Step at_ = kNotAsked;
   std::uint64_t changes_ = 0;
