@@ -97,7 +97,7 @@ Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, Answe
 
 // Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
 // know how they are turned. Whether all answers are certain.
-bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
+bool PairAnswerer::answer_others(CachedPair& record, const std::optional<Parts>& but, PartPair& pair,
                                  AnswerScratch& scratch) const noexcept {
   const BodyPair& bodies = record.bodies;
   const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
@@ -108,7 +108,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
     const BoundingSphere a = places_->sphere(bodies.a, i);
     bool placed_a = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
-      if (i == but.a && j == but.b) continue;
+      if (but == Parts{i, j}) continue;
       if (parts_b > 1) b = places_->sphere(bodies.b, j);
       ++scratch.work;
       SphereGap gap = half != nullptr ? sphere_gap(a, *half) : sphere_gap(a, b);
@@ -136,19 +136,19 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
 void PairAnswerer::answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;
-  PartIndices touched;
+  std::optional<Parts> touched;
   std::uint32_t guess = kNoTriangle;
   if (record.verdict.answer == Answer::yes) {
-    touched = {record.parts[0], record.parts[1]};
-    place(record, touched.a, touched.b, pair);
+    touched = record.parts;
+    place(record, record.parts[0], record.parts[1], pair);
     guess = nearest_triangle(record.verdict, pair);
   }
   forget_answer(record);
   bool certain = true;
-  if (touched.a != kNoPart) {
+  if (touched) {
     ++scratch.work;
     const Verdict verdict = answer_again(record, guess, pair, scratch);
-    add(record, verdict, touched.a, touched.b);
+    add(record, verdict, (*touched)[0], (*touched)[1]);
     certain = verdict.answer != Answer::maybe;
   }
   certain = answer_others(record, touched, pair, scratch) && certain && record.verdict.answer != Answer::maybe;

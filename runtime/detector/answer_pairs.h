@@ -34,11 +34,9 @@ class PairAnswerer {
                               AnswerScratch& scratch) noexcept;
   static Verdict answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept;
   void answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
-  static constexpr std::uint32_t kNoPart = 0xffffffffu;
-  struct PartIndices {
-    std::uint32_t a = kNoPart, b = kNoPart;
-  };
-  bool answer_others(CachedPair& record, const PartIndices& but, PartPair& pair, AnswerScratch& scratch) const noexcept;
+  using Parts = std::array<std::uint32_t, 2>;
+  bool answer_others(CachedPair& record, const std::optional<Parts>& but, PartPair& pair,
+                     AnswerScratch& scratch) const noexcept;
   void answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
 
   const ShapePlacements* places_;

@@ -48,6 +48,7 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       skipper(world),
       scheduler(world),
       reporter(world, skipper),
+      queries(world, sampler),
       valid(is_valid_option(wanted)) {}
 
 Detector::Detector(StateSource source, const DetectorOptions& options)

@@ -48,6 +48,8 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
 void HalfSpaceTimes::set_due(BodyIndex body, Step due) {
   while (due_.size() <= body) append(due_, kNeverStep);
   grow(bounds_, due_.size());
+  make_room(moving_, due_.size());
+  moving_known_ = moving_known_ && (due_[body] == kNeverStep) == (due == kNeverStep);
   due_[body] = due;
   if (due == 0) next_ = 0;
 }
@@ -59,13 +61,18 @@ void HalfSpaceTimes::update_all() noexcept {
 
 void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) {
   if (next() > now) return;
+  if (!std::exchange(moving_known_, true)) {
+    moving_.clear();
+    for (BodyIndex body = 0; body < due_.size(); ++body) {
+      if (due_[body] != kNeverStep) moving_.push_back(body);
+    }
+  }
   Step next = kNeverStep;
-  const std::span<const Step> all = due_;
-  for (std::size_t body = 0; body < all.size(); ++body) {
-    if (all[body] <= now)
-      bodies.push_back(static_cast<BodyIndex>(body));
+  for (const BodyIndex body : moving_) {
+    if (due_[body] <= now)
+      bodies.push_back(body);
     else
-      next = std::min(next, all[body]);
+      next = std::min(next, due_[body]);
   }
   next_ = next;
 }

@@ -57,7 +57,7 @@ class HalfSpaceTimes {
   bool motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   // Whether that is about the body's middle: see Body::relies_on_middle().
   bool relies_on_middle(BodyIndex body) const noexcept { return body < bounds_.size() && bounds_[body].by_middle; }
-  std::size_t memory_bytes() const noexcept { return bytes_of(due_, bounds_); }
+  std::size_t memory_bytes() const noexcept { return bytes_of(due_, moving_, bounds_); }
 
  private:
   struct MotionBound {
@@ -68,6 +68,8 @@ class HalfSpaceTimes {
   void set_due(BodyIndex body, Step due);
   const HalfSpaces& halves_;
   std::vector<Step> due_;            // by body; kNeverStep: it does not move
+  std::vector<BodyIndex> moving_;    // in ascending order: all but those that do not move,
+  bool moving_known_ = true;         // unless some have come or gone
   std::vector<MotionBound> bounds_;  // by body
   double slack_ = 0;
   Step next_ = kNeverStep;

@@ -45,7 +45,8 @@ void StateSampler::sample(Step step, std::span<const BodyIndex> bodies) {
 
 void StateSampler::ask_all(Step step) {
   asking_.clear();
-  for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) ask_for(i, step);
+  const std::size_t slots = world_.bodies.slots();
+  for (BodyIndex i = 0; i < slots; ++i) ask_for(i, step);
   ask_source(step);
 }
 
