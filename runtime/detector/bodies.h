@@ -29,8 +29,8 @@ struct PartPlace {
   double reach = 0;       // and its radius
   BoundingSphere sphere;  // at the pose of the body that is known
   double off = 0;         // of the center from the origin
-  bool at_origin = true;  // `local` changes nothing
   Pose local{};
+  bool at_origin = true;  // `local` changes nothing
 };
 
 struct PartRecord : PartPlace {

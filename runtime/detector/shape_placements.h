@@ -53,7 +53,9 @@ class ShapePlacements {
     if (bodies_->slots() <= kInCache) return;
     for (const BodyIndex body : {pair.a, pair.b}) {
       if (is_half_space(body)) continue;
-      prefetch_all((*bodies_)[body].state.pose), prefetch(&(*bodies_)[body]);
+      const Body& of = (*bodies_)[body];
+      prefetch_all(of.state.pose), prefetch(&of);
+      prefetch(&of.one.sphere), prefetch(&of.one.shape), prefetch(&of.changes);
       bodies_->prefetch_sphere_cache(body);
     }
   }

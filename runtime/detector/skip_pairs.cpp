@@ -47,7 +47,8 @@ bool PairSkipper::sphere_above(const BodyPair& pair) const noexcept {
 // Whether each part of the one is apart from each of the other: for bodies of several parts.
 bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
   const Body &a = world_.bodies[pair.a], &b = world_.bodies[pair.b];
-  if ((a.several.empty() && b.several.empty()) || !a.valid || !b.valid || a.is_continuous() || b.is_continuous())
+  if (!world_.any.parts || (a.several.empty() && b.several.empty()) || !a.valid || !b.valid || a.is_continuous() ||
+      b.is_continuous())
     return false;
   for (const PartRecord& p : a.parts()) {
     for (const PartRecord& q : b.parts()) {
