@@ -6,7 +6,7 @@
 
 namespace orchard::runtime::detail {
 
-bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept {
+bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept {
   if (!is_rigid(local)) return false;
   part.local = local;
   part.at_origin = local == Pose{};
@@ -35,7 +35,7 @@ bool is_valid(const BodyState& state) noexcept {
 }
 
 // Rotations are rotations to kRigidTolerance only.
-double reach_of(const PartPlace& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
+double reach_of(const PartRecord& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
 
 double reach_of(std::span<const PartRecord> parts) noexcept {
   double reach = 0;
@@ -139,13 +139,13 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   if (!body.valid || !std::isfinite(size)) invalidate(index);
 }
 
-void BodyTable::move_part(BodyIndex index, std::size_t part, const PartPlace& to, const Shape& shape) noexcept {
+void BodyTable::move_part(BodyIndex index, std::size_t part, const PartRecord& to, const Shape& shape) noexcept {
   Body& body = bodies_[index];
   PartRecord& now = body.parts()[part];
   const double rounding = 4 * kRigidTolerance * (now.local.scale + to.local.scale);
   const double way = length(to.center - now.center) + (pose_change(now.local, to.local) + rounding) * shape.reach;
   add_turn(index, way * body.state.pose.scale);
-  static_cast<PartPlace&>(now) = to;
+  now = to;
   if (body.several.empty()) return moved(index, body.state.pose);  // several have the body's origin as their middle
   now.sphere = {transform(body.state.pose, to.center), to.reach * body.state.pose.scale};
 }

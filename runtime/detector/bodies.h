@@ -23,23 +23,20 @@ struct BoundingSphere {
         size(std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius) {}
 };
 
-// Where a part is in its body's frame. What a new pose needs comes first.
-struct PartPlace {
+// A part, and where it is in its body's frame. What a new pose needs comes first.
+struct PartRecord {
   Vec3 center{};          // of a sphere around it,
   double reach = 0;       // and its radius
   BoundingSphere sphere;  // at the pose of the body that is known
   double off = 0;         // of the center from the origin
   Pose local{};
   bool at_origin = true;  // `local` changes nothing
-};
-
-struct PartRecord : PartPlace {
   ShapeId shape = kNoShape;
 };
 
 // Where it was up to a step, that one included.
 struct PartBefore {
-  PartPlace place;
+  PartRecord place;
   Step until = kNotAsked;
 };
 
@@ -138,8 +135,8 @@ static_assert(sizeof(BoundingSphereCache) == 64);
 bool is_valid(const BodyState& state) noexcept;
 // The radius of a sphere around the body's origin that has the parts in it.
 double reach_of(std::span<const PartRecord> parts) noexcept;
-double reach_of(const PartPlace& part) noexcept;
-bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
+double reach_of(const PartRecord& part) noexcept;
+bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
 
 // Which bodies there are, where they are, and what that means for pairs. Indices are the broad phase's.
 class BodyTable {
@@ -169,7 +166,7 @@ class BodyTable {
 
   // After any change of its pose or its validity.
   void moved(BodyIndex body, const Pose& before) noexcept;
-  void move_part(BodyIndex body, std::size_t part, const PartPlace& to, const Shape& shape) noexcept;
+  void move_part(BodyIndex body, std::size_t part, const PartRecord& to, const Shape& shape) noexcept;
   void invalidate(BodyIndex body) noexcept;  // what was known before says nothing of now
   // Whether either of two has been invalidated since forget_invalidated().
   bool invalidated(const BodyPair& pair) const noexcept {

@@ -169,7 +169,7 @@ bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
     if (part >= body.parts().size()) return false;
     const PartRecord& record = body.parts()[part];
     const detail::Shape& shape = s.world.shapes[record.shape];
-    detail::PartPlace place;
+    PartRecord place = record;
     if (!detail::set_local(place, shape, local)) return false;
     const double reach = detail::reach_of(place);
     const Body::Extent before = body.extent;

@@ -67,8 +67,7 @@ Detector& Detector::operator=(Detector&&) noexcept = default;
 Detector::~Detector() = default;
 
 ShapeId Detector::add_shape(const TreeView& tree) {
-  if (state_->stepping) return kNoShape;
-  return state_->world.shapes.add_tree(tree);
+  return state_->stepping ? kNoShape : state_->world.shapes.add_tree(tree);
 }
 ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
   PackedSphereTree tree;
@@ -78,12 +77,10 @@ ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
 }
 ShapeId Detector::add_sphere(double radius, const Vec3& center) { return add_capsule(center, center, radius); }
 ShapeId Detector::add_capsule(const Vec3& p, const Vec3& q, double radius) {
-  if (state_->stepping) return kNoShape;
-  return state_->world.shapes.add_round(p, q, radius);
+  return state_->stepping ? kNoShape : state_->world.shapes.add_round(p, q, radius);
 }
 ShapeId Detector::add_box(const Vec3& half_lengths) {
-  if (state_->stepping) return kNoShape;
-  return state_->world.shapes.add_box(half_lengths);
+  return state_->stepping ? kNoShape : state_->world.shapes.add_box(half_lengths);
 }
 
 void Detector::set_executor(const Executor& executor) noexcept {

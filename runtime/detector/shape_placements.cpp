@@ -4,9 +4,9 @@
 
 namespace orchard::runtime::detail {
 
-void ShapePlacements::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
+void ShapePlacements::place_at(const Pose& pose, bool rigid, const PartRecord& part,
                                PlacedPart& placed_part) const noexcept {
-  placed_part.shape = &(*shapes_)[shape];
+  placed_part.shape = &(*shapes_)[part.shape];
   placed_part.there = &pose;
   if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
   placed_part.rigid = rigid;
@@ -19,7 +19,7 @@ void ShapePlacements::place(BodyIndex body, std::uint32_t part, PlacedPart& plac
     return;
   }
   const PartRecord& record = of.parts()[part];
-  place_at(of.state.pose, of.valid, record.shape, record, placed_part);
+  place_at(of.state.pose, of.valid, record, placed_part);
   placed_part.be_in(record.sphere);
 }
 
@@ -31,8 +31,8 @@ void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
   const Pose& pose = moves ? of.before : of.state.pose;
   const PartRecord& record = of.parts()[part];
   const bool was_elsewhere = !of.parts_before.empty() && of.parts_before[part].until == now - 1;
-  const PartPlace& place = was_elsewhere ? of.parts_before[part].place : record;
-  place_at(pose, is_rigid(pose), record.shape, place, placed_part);
+  const PartRecord& place = was_elsewhere ? of.parts_before[part].place : record;
+  place_at(pose, is_rigid(pose), place, placed_part);
   placed_part.be_in({transform(pose, place.center), place.reach * pose.scale});
 }
 

@@ -63,7 +63,7 @@ class ShapePlacements {
 
  private:
   double bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept;
-  void place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part, PlacedPart& placed) const noexcept;
+  void place_at(const Pose& pose, bool rigid, const PartRecord& part, PlacedPart& placed) const noexcept;
   const ShapeTable* shapes_;
   const BodyTable* bodies_;
   const HalfSpaces* halves_;

@@ -40,10 +40,6 @@ bool PairSkipper::moved_less_than_gap(const PairCache::Known& known) const noexc
   return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 
-bool PairSkipper::sphere_above(const BodyPair& pair) const noexcept {
-  return sphere_gap(world_.bodies.sphere_cache(pair.a).sphere, world_.places.half_space(pair.b)).least > 0;
-}
-
 // Whether each part of the one is apart from each of the other: for bodies of several parts.
 bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
   const Body &a = world_.bodies[pair.a], &b = world_.bodies[pair.b];
@@ -76,7 +72,11 @@ std::size_t PairSkipper::find_near(PairCache& cache, std::size_t begin, std::siz
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) cache.prefetch_known(near[i + kAhead]);
     const BodyPair& pair = pairs[near[i]];
-    if (!cache.busy(near[i]) && (is_half_space(pair.b) ? sphere_above(pair) : parts_apart(pair))) continue;
+    const bool apart =
+        is_half_space(pair.b)
+            ? sphere_gap(world_.bodies.sphere_cache(pair.a).sphere, world_.places.half_space(pair.b)).least > 0
+            : parts_apart(pair);
+    if (apart && !cache.busy(near[i])) continue;
     auto& known = cache.known(near[i]);
     if (known.clearance.distance > 0 && moved_less_than_gap(known)) continue;
     known.clearance.distance = 0;
@@ -109,12 +109,6 @@ ActivePairs PairSkipper::find_active(PairCache& cache) {
   return {cache, world_.places, std::span(active_).first(count)};
 }
 
-// Neither has moved since the last certain answer.
-bool PairSkipper::rest(const CachedPair& pair) const noexcept {
-  const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  return pair.answered >= 0 && std::max(a.steps.moved, b.steps.moved) <= pair.answered && !pair.sweep.impact;
-}
-
 bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
   pair.turn.importance = std::max(a.options.importance, b.options.importance);
@@ -136,7 +130,8 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) co
     pair.versions.deformed = a.changes.deformed + b.changes.deformed;
     pair.trees.forget();
   }
-  return !rest(pair);
+  const bool rest = pair.answered >= 0 && std::max(a.steps.moved, b.steps.moved) <= pair.answered;
+  return !rest || pair.sweep.impact;
 }
 
 // After a certain "no". What is swept is asked at each step.
