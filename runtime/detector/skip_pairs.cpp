@@ -72,11 +72,10 @@ std::size_t PairSkipper::find_near(PairCache& cache, std::size_t begin, std::siz
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) cache.prefetch_known(near[i + kAhead]);
     const BodyPair& pair = pairs[near[i]];
-    const bool apart =
-        is_half_space(pair.b)
-            ? sphere_gap(world_.bodies.sphere_cache(pair.a).sphere, world_.places.half_space(pair.b)).least > 0
-            : parts_apart(pair);
-    if (apart && !cache.busy(near[i])) continue;
+    const BoundingSphere& sphere = world_.bodies.sphere_cache(pair.a).sphere;
+    if (!cache.busy(near[i]) &&
+        (is_half_space(pair.b) ? sphere_gap(sphere, world_.places.half_space(pair.b)).least > 0 : parts_apart(pair)))
+      continue;
     auto& known = cache.known(near[i]);
     if (known.clearance.distance > 0 && moved_less_than_gap(known)) continue;
     known.clearance.distance = 0;
