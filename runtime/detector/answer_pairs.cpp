@@ -37,7 +37,6 @@ void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::ui
                          PartPair& pair) const noexcept {
   places_->place(record.bodies.a, part_a, pair.a);
   places_->place(record.bodies.b, part_b, pair.b);
-  if (pair.b.shape == nullptr) pair.half = places_->half_space(record.bodies.b);
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
@@ -98,22 +97,23 @@ Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, Answe
 
 // Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
 // know how they are turned. Whether all answers are certain.
-bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, PartPair& pair,
+bool PairAnswerer::answer_others(CachedPair& record, const std::optional<Parts>& but, PartPair& pair,
                                  AnswerScratch& scratch) const noexcept {
   const BodyPair& bodies = record.bodies;
   const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
-  const bool half = is_half_space(bodies.b);
+  const HalfSpace* const half = is_half_space(bodies.b) ? &places_->half_space(bodies.b) : nullptr;
   bool certain = true, placed_b = false;
-  BoundingSphere b = half || parts_b > 1 ? BoundingSphere{} : places_->sphere(bodies.b, 0);
+  BoundingSphere b = half != nullptr || parts_b > 1 ? BoundingSphere{} : places_->sphere(bodies.b, 0);
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
     const BoundingSphere a = places_->sphere(bodies.a, i);
     bool placed_a = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
-      if (i == but.a && j == but.b) continue;
+      if (but == Parts{i, j}) continue;
       if (parts_b > 1) b = places_->sphere(bodies.b, j);
       ++scratch.work;
-      SphereGap gap = half ? sphere_gap(a, pair.half) : sphere_gap(a, b);
-      if (!(gap.least > 0) && !half && parts_a + parts_b > 2) gap.least = places_->bounds_gap(bodies, i, j, a, b);
+      SphereGap gap = half != nullptr ? sphere_gap(a, *half) : sphere_gap(a, b);
+      if (!(gap.least > 0) && half == nullptr && parts_a + parts_b > 2)
+        gap.least = places_->bounds_gap(bodies, i, j, a, b);
       if (gap.least > 0) {
         Verdict apart;
         apart.answer = Answer::no;
@@ -136,20 +136,19 @@ bool PairAnswerer::answer_others(CachedPair& record, const PartIndices& but, Par
 void PairAnswerer::answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;
-  if (is_half_space(record.bodies.b)) pair.half = places_->half_space(record.bodies.b);
-  PartIndices touched;
+  std::optional<Parts> touched;
   std::uint32_t guess = kNoTriangle;
   if (record.verdict.answer == Answer::yes) {
-    touched = {record.parts[0], record.parts[1]};
-    place(record, touched.a, touched.b, pair);
+    touched = record.parts;
+    place(record, record.parts[0], record.parts[1], pair);
     guess = nearest_triangle(record.verdict, pair);
   }
   forget_answer(record);
   bool certain = true;
-  if (touched.a != kNoPart) {
+  if (touched) {
     ++scratch.work;
     const Verdict verdict = answer_again(record, guess, pair, scratch);
-    add(record, verdict, touched.a, touched.b);
+    add(record, verdict, (*touched)[0], (*touched)[1]);
     certain = verdict.answer != Answer::maybe;
   }
   certain = answer_others(record, touched, pair, scratch) && certain && record.verdict.answer != Answer::maybe;
@@ -171,7 +170,6 @@ void PairAnswerer::sweep(CachedPair& record, Step now, AnswerScratch& scratch, s
   for (std::uint32_t i = 0; i < places_->parts(record.bodies.a); ++i) {
     for (std::uint32_t j = 0; j < places_->parts(record.bodies.b); ++j) {
       place(record, i, j, to);
-      from.half = to.half;
       places_->place_before(record.bodies.a, i, now, from.a);
       places_->place_before(record.bodies.b, j, now, from.b);
       Swept swept;

@@ -1,9 +1,14 @@
 #pragma once
-#include "detector/answer_scratch.h"
 #include "detector/pair_cache.h"
 #include "detector/sweep.h"
 
 namespace orchard::runtime::detail {
+
+// What a job needs while it answers pairs.
+struct AnswerScratch {
+  Workspace workspace{0};
+  std::uint64_t work = 0;
+};
 
 // What is known of a pair before anything is asked: no parts of it are near. What two of its parts add to that. And
 // where what happened between two steps is not known: "maybe", unless it touches at this one.
@@ -29,11 +34,9 @@ class PairAnswerer {
                               AnswerScratch& scratch) noexcept;
   static Verdict answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept;
   void answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
-  static constexpr std::uint32_t kNoPart = 0xffffffffu;
-  struct PartIndices {
-    std::uint32_t a = kNoPart, b = kNoPart;
-  };
-  bool answer_others(CachedPair& record, const PartIndices& but, PartPair& pair, AnswerScratch& scratch) const noexcept;
+  using Parts = std::array<std::uint32_t, 2>;
+  bool answer_others(CachedPair& record, const std::optional<Parts>& but, PartPair& pair,
+                     AnswerScratch& scratch) const noexcept;
   void answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
 
   const ShapePlacements* places_;

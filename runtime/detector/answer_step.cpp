@@ -8,7 +8,7 @@ using detail::CachedPair;
 using detail::StepBudget;
 
 void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, Frame& frame) {
-  const StepBudget::Stopwatch watch(budget.timed());
+  const double begun = budget.clock();
   matcher.gather(step, now);
   matcher.match([&](CachedPair& pair) {
     // What the filters exclude is no pair of the broad phase's any more.
@@ -21,7 +21,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   const std::uint64_t before = budget.spent();
   begin_pairs(active, step);
   if (budget.limited()) {
-    answer_within(active, step, watch, budget, frame);
+    answer_within(active, step, begun, budget, frame);
   } else {
     budget.spend(scheduler.each(active.size(), [&](std::size_t i, detail::AnswerScratch& scratch) {
       active.prefetch(i);
@@ -48,8 +48,8 @@ void Detector::State::begin_pairs(const ActivePairs& active, Step step) {
 }
 
 // With time set aside for what follows, and half of the rest for sweeps if there are any.
-void Detector::State::answer_within(const ActivePairs& active, Step step, const StepBudget::Stopwatch& watch,
-                                    StepBudget& budget, Frame& frame) {
+void Detector::State::answer_within(const ActivePairs& active, Step step, double begun, StepBudget& budget,
+                                    Frame& frame) {
   detail::PairCache& cache = matcher.cache();
   bool sweeps = false;
   open_pairs.clear();
@@ -65,16 +65,16 @@ void Detector::State::answer_within(const ActivePairs& active, Step step, const 
   const StepBudget::Part report_time{0, load_model.time_to_report(known)};
   if (budget.timed()) budget.set_aside(report_time);
   scheduler.begin_within(cache, open_pairs);
-  const double begun = watch.passed();
+  const double chooses = budget.clock();
   const StepBudget::Part for_sweeps = sweeps ? budget.part(2) : StepBudget::Part{};
   budget.set_aside(for_sweeps);
   scheduler.answer_within(cache, budget);
   budget.give_back(for_sweeps);
-  const StepBudget::Stopwatch rest(budget.timed());
+  const double answered = budget.clock();
   scheduler.fold(cache, open_pairs, step);
-  const double folded = rest.passed();
+  const double folded = budget.clock();
   scheduler.sweep_within(cache, open_pairs, step, budget);
-  const double swept = rest.passed();
+  const double swept = budget.clock();
   scheduler.each(active.size(), [&](std::size_t i, detail::AnswerScratch&) {
     active.prefetch(i);
     reporter.conclude(active, i);
@@ -82,7 +82,7 @@ void Detector::State::answer_within(const ActivePairs& active, Step step, const 
   reporter.report(active, step, frame);
   if (!budget.timed()) return;
   budget.give_back(report_time);
-  load_model.learn_times(begun, folded + rest.passed() - swept, known);
+  load_model.learn_times(chooses - begun, folded - answered + budget.clock() - swept, known);
 }
 
 }  // namespace orchard::runtime

@@ -6,7 +6,7 @@
 
 namespace orchard::runtime::detail {
 
-bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept {
+bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept {
   if (!is_rigid(local)) return false;
   part.local = local;
   part.at_origin = local == Pose{};
@@ -16,18 +16,26 @@ bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept 
   return std::isfinite(part.reach + part.off);
 }
 
+namespace {
+
+Motion motion_of(const BodyState& state, double radius) noexcept {
+  return {.position = state.pose.translation,
+          .velocity = state.velocity,
+          .radius = radius,
+          .acceleration = state.acceleration,
+          .drift = state.drift,
+          .half_space = state.half_space,
+          .expiry = state.expiry};
+}
+
+}  // namespace
+
 bool is_valid(const BodyState& state) noexcept {
-  const Motion motion{.position = state.pose.translation,
-                      .velocity = state.velocity,
-                      .acceleration = state.acceleration,
-                      .drift = state.drift,
-                      .half_space = state.half_space,
-                      .expiry = state.expiry};
-  return is_rigid(state.pose) && runtime::is_valid(motion) && state.angular_speed >= 0;
+  return is_rigid(state.pose) && runtime::is_valid(motion_of(state, 0)) && state.angular_speed >= 0;
 }
 
 // Rotations are rotations to kRigidTolerance only.
-double reach_of(const PartPlace& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
+double reach_of(const PartRecord& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
 
 double reach_of(std::span<const PartRecord> parts) noexcept {
   double reach = 0;
@@ -38,16 +46,17 @@ double reach_of(std::span<const PartRecord> parts) noexcept {
 // Around the middle of a box around the parts' spheres.
 void Body::find_middle() noexcept {
   constexpr double kWorthIt = 0.97;  // of the radius around the origin
-  Vec3 low = parts[0].center, high = low;
-  for (const PartRecord& part : parts) {
+  const std::span<const PartRecord> all = parts();
+  Vec3 low = all[0].center, high = low;
+  for (const PartRecord& part : all) {
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = std::min(low[i], part.center[i] - part.reach);
       high[i] = std::max(high[i], part.center[i] + part.reach);
     }
   }
-  const Vec3 middle = parts.size() == 1 ? parts[0].center : 0.5 * (low + high);
+  const Vec3 middle = all.size() == 1 ? all[0].center : 0.5 * (low + high);
   double reach = 0;
-  for (const PartRecord& part : parts) reach = std::max(reach, length(part.center - middle) + part.reach);
+  for (const PartRecord& part : all) reach = std::max(reach, length(part.center - middle) + part.reach);
   // As in reach_of(); the middle itself is off by what rotations are.
   reach = reach * (1 + 1e-11) + 4 * kRigidTolerance * length(middle);
   if (!(reach < kWorthIt * extent.reach)) return;
@@ -58,13 +67,7 @@ void Body::find_middle() noexcept {
 
 // The middle goes as the origin does, but for what it turns about that.
 Motion Body::motion(double time_step, bool by_middle) const noexcept {
-  Motion motion{.position = state.pose.translation,
-                .velocity = state.velocity,
-                .radius = extent.reach * state.pose.scale + options.continuous_speed * time_step,
-                .acceleration = state.acceleration,
-                .drift = state.drift,
-                .half_space = state.half_space,
-                .expiry = state.expiry};
+  Motion motion = motion_of(state, extent.reach * state.pose.scale + options.continuous_speed * time_step);
   if (by_middle) {
     motion.position = transform(state.pose, extent.middle);
     motion.radius = extent.middle_reach * state.pose.scale;
@@ -89,11 +92,10 @@ Body& BodyTable::add(BodyId id, std::size_t count) {
   invalidate(id.index);
   sphere_caches_[id.index].generation = id.generation;
   Body& body = bodies_[id.index];
-  body.parts.clear(), body.parts_before.clear();
-  body.parts.reserve(count);  // nothing throws from here on
+  body.several.resize(count > 1 ? count : 0), body.parts_before.clear();  // nothing throws from here on
   Body added;
   added.id = id;
-  added.parts.swap(body.parts), added.parts_before.swap(body.parts_before);
+  added.several.swap(body.several), added.parts_before.swap(body.parts_before);
   body = std::move(added);
   return body;
 }
@@ -122,11 +124,12 @@ void BodyTable::add_turn(BodyIndex body, double way) noexcept {
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   Body& body = bodies_[index];
   const Pose& now = body.state.pose;
-  for (PartRecord& part : body.parts) part.sphere = {transform(now, part.center), part.reach * now.scale};
+  const std::span<PartRecord> parts = body.parts();
+  for (PartRecord& part : parts) part.sphere = {transform(now, part.center), part.reach * now.scale};
   BoundingSphereCache& where = sphere_caches_[index];
-  const bool one = body.parts.size() == 1;
-  const double reach = one ? body.parts[0].reach : body.extent.reach;
-  where.sphere = one ? body.parts[0].sphere : BoundingSphere(now.translation, kInfinity);
+  const bool one = parts.size() == 1;
+  const double reach = one ? parts[0].reach : body.extent.reach;
+  where.sphere = one ? parts[0].sphere : BoundingSphere(now.translation, kInfinity);
   double size = reach * now.scale;
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.sphere.center[i]);
   where.slack = 1e-14 * size;
@@ -136,20 +139,20 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   if (!body.valid || !std::isfinite(size)) invalidate(index);
 }
 
-void BodyTable::move_part(BodyIndex index, std::size_t part, const PartPlace& to, const Shape& shape) noexcept {
+void BodyTable::move_part(BodyIndex index, std::size_t part, const PartRecord& to, const Shape& shape) noexcept {
   Body& body = bodies_[index];
-  PartRecord& now = body.parts[part];
+  PartRecord& now = body.parts()[part];
   const double rounding = 4 * kRigidTolerance * (now.local.scale + to.local.scale);
   const double way = length(to.center - now.center) + (pose_change(now.local, to.local) + rounding) * shape.reach;
   add_turn(index, way * body.state.pose.scale);
-  static_cast<PartPlace&>(now) = to;
-  if (body.parts.size() == 1) return moved(index, body.state.pose);  // several have the body's origin as their middle
+  now = to;
+  if (body.several.empty()) return moved(index, body.state.pose);  // several have the body's origin as their middle
   now.sphere = {transform(body.state.pose, to.center), to.reach * body.state.pose.scale};
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes = bytes_of(bodies_, sphere_caches_, invalidated_);
-  for (const Body& body : bodies_) bytes += bytes_of(body.parts, body.parts_before);
+  for (const Body& body : bodies_) bytes += bytes_of(body.several, body.parts_before);
   return bytes;
 }
 

@@ -23,35 +23,26 @@ struct BoundingSphere {
         size(std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius) {}
 };
 
-// Where a part is in its body's frame. What a new pose needs comes first.
-struct PartPlace {
+// A part, and where it is in its body's frame. What a new pose needs comes first.
+struct PartRecord {
   Vec3 center{};          // of a sphere around it,
-  double reach = 0;       // its radius,
-  double off = 0;         // and how far it is from the origin
+  double reach = 0;       // and its radius
   BoundingSphere sphere;  // at the pose of the body that is known
-  bool at_origin = true;  // `local` changes nothing
+  double off = 0;         // of the center from the origin
   Pose local{};
-};
-
-struct PartRecord : PartPlace {
+  bool at_origin = true;  // `local` changes nothing
   ShapeId shape = kNoShape;
 };
 
 // Where it was up to a step, that one included.
 struct PartBefore {
-  PartPlace place;
+  PartRecord place;
   Step until = kNotAsked;
 };
 
+// By lines of memory: the first five are what a new pose needs of a body of one part, as most are.
 struct alignas(64) Body {
   BodyId id = kNoBody;  // kNoBody: no body has this index now
-  BodyOptions options;  // as the application wants them
-  struct Changes {
-    std::uint32_t filters = 0;   // of its filter
-    std::uint32_t jumps = 0;     // teleports
-    std::uint32_t deformed = 0;  // of its shapes' trees
-  };
-  Changes changes;
   bool is_static = false;
   bool asleep = false;    // wanted by the application
   bool frozen = false;    // asleep, and its state is known: never asked again
@@ -59,15 +50,21 @@ struct alignas(64) Body {
   bool by_parts = false;  // its pairs with static bodies are found by PartPairs
   struct Steps {
     Step moved = -1;                // the last one at which the pose was another one than at the time asked before
-    Step stretched = kNotAsked;     // after which parts went farther out than ever before
-    Step since = 0;                 // the first one that it takes part in
     Step asked = kNotAsked;         // that `state` is of
     Step known_before = kNotAsked;  // that `before` is of
   };
   Steps steps;
+  std::vector<PartRecord> several;  // all parts, if there is more than one
 
-  BodyState state;     // as known last
-  Pose before;         // at the step asked before, once there are continuous bodies
+  BodyState state;      // as known last
+  PartRecord one;       // the part, if there is one
+  BodyOptions options;  // as the application wants them
+  struct Changes {
+    std::uint32_t filters = 0;   // of its filter
+    std::uint32_t jumps = 0;     // teleports
+    std::uint32_t deformed = 0;  // of its shapes' trees
+  };
+  Changes changes;
   struct Extent {      // at scale 1
     double reach = 0;  // around the origin: what the broad phase has been told of
     // A sphere around the parts, where they stay as they are and it is smaller than that around the origin; else its
@@ -82,11 +79,17 @@ struct alignas(64) Body {
     bool by_middle = false;
   };
   Told told;
-  std::vector<PartRecord> parts;
+  Step since = 0;                        // the first step that it takes part in
+  Step stretched = kNotAsked;            // the one after which parts went farther out than ever before
+  Pose before;                           // at the step asked before, once there are continuous bodies
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
 
+  std::span<PartRecord> parts() noexcept { return several.empty() ? std::span(&one, 1) : std::span(several); }
+  std::span<const PartRecord> parts() const noexcept {
+    return several.empty() ? std::span(&one, 1) : std::span(several);
+  }
   bool is_continuous() const noexcept { return options.continuous_speed > 0; }
-  bool is_asked() const noexcept { return id != kNoBody && !is_static && !frozen; }  // for its states
+  bool is_asked() const noexcept { return !is_static && !frozen && id != kNoBody; }  // for its states
   bool has_middle() const noexcept { return extent.middle_reach < extent.reach; }
   void find_middle() noexcept;
   void forget_middle() noexcept { extent.middle_reach = kInfinity; }
@@ -132,8 +135,8 @@ static_assert(sizeof(BoundingSphereCache) == 64);
 bool is_valid(const BodyState& state) noexcept;
 // The radius of a sphere around the body's origin that has the parts in it.
 double reach_of(std::span<const PartRecord> parts) noexcept;
-double reach_of(const PartPlace& part) noexcept;
-bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
+double reach_of(const PartRecord& part) noexcept;
+bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
 
 // Which bodies there are, where they are, and what that means for pairs. Indices are the broad phase's.
 class BodyTable {
@@ -152,13 +155,18 @@ class BodyTable {
   const Body& operator[](BodyIndex body) const noexcept { return bodies_[body]; }
   std::size_t slots() const noexcept { return bodies_.size(); }
   const BoundingSphereCache& sphere_cache(BodyIndex body) const noexcept { return sphere_caches_[body]; }
+  ORCHARD_INLINE void prefetch_pose(BodyIndex index) const noexcept {  // and what a new one changes
+    const Body& body = bodies_[index];
+    prefetch_all(body.steps), prefetch_all(body.state), prefetch_all(body.one.sphere);
+    prefetch(&sphere_caches_[index]);
+  }
   ORCHARD_INLINE void prefetch_sphere_cache(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < sphere_caches_.size()) prefetch(&sphere_caches_[body]);
   }
 
   // After any change of its pose or its validity.
   void moved(BodyIndex body, const Pose& before) noexcept;
-  void move_part(BodyIndex body, std::size_t part, const PartPlace& to, const Shape& shape) noexcept;
+  void move_part(BodyIndex body, std::size_t part, const PartRecord& to, const Shape& shape) noexcept;
   void invalidate(BodyIndex body) noexcept;  // what was known before says nothing of now
   // Whether either of two has been invalidated since forget_invalidated().
   bool invalidated(const BodyPair& pair) const noexcept {

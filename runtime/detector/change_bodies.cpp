@@ -36,13 +36,13 @@ Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const Bod
   world.any.own_filter = world.any.own_filter || detail::PartPairs::broad_filter(body) != BodyFilter{};
   world.any.parts = world.any.parts || parts.size() > 1;
   if (body.is_continuous() && !world.any.continuous) rely_on_origins();
-  for (const BodyPart& part : parts) {
-    PartRecord& added = body.parts.emplace_back();
-    added.shape = part.shape;
-    detail::set_local(added, world.shapes[part.shape], part.local);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    PartRecord& added = body.parts()[i];
+    added.shape = parts[i].shape;
+    detail::set_local(added, world.shapes[added.shape], parts[i].local);
   }
-  body.steps.since = world.answered + 1;
-  body.extent.reach = std::max(with.reach, detail::reach_of(body.parts));
+  body.since = world.answered + 1;
+  body.extent.reach = std::max(with.reach, detail::reach_of(body.parts()));
   if (!world.any.continuous && !with.suggest && !(with.reach > 0)) body.find_middle();
   return body;
 }
@@ -115,7 +115,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   if (!s.takes_changes() || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
   body.options.filter = options.filter, body.options.importance = options.importance;
-  body.steps.since = body.steps.moved = s.world.answered + 1;
+  body.since = body.steps.moved = s.world.answered + 1;
   return s.or_fail([&] {
     const BodyIndex index = s.world.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
     s.world.half_space_times.update_all();
@@ -166,10 +166,10 @@ bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
   constexpr double kStretchAhead = 1 + 0x1p-4;  // so that the broad phase need not be told of each step on the way
   State& s = *state_;
   return s.change(id, [&](Body& body) {
-    if (part >= body.parts.size()) return false;
-    const PartRecord& record = body.parts[part];
+    if (part >= body.parts().size()) return false;
+    const PartRecord& record = body.parts()[part];
     const detail::Shape& shape = s.world.shapes[record.shape];
-    detail::PartPlace place;
+    PartRecord place = record;
     if (!detail::set_local(place, shape, local)) return false;
     const double reach = detail::reach_of(place);
     const Body::Extent before = body.extent;
@@ -183,13 +183,13 @@ bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
       return false;
     }
     if (s.world.any.continuous) {
-      body.parts_before.resize(body.parts.size());
+      body.parts_before.resize(body.parts().size());
       detail::PartBefore& was = body.parts_before[part];
       if (was.until != s.world.answered) was = {record, s.world.answered};
     }
     s.world.bodies.move_part(id.index, part, place, shape);
     body.steps.moved = s.world.answered + 1;
-    if (stretches) body.steps.stretched = s.world.answered;
+    if (stretches) body.stretched = s.world.answered;
     if (body.is_static)
       ++s.world.static_changes;
     else if (grows)
@@ -215,27 +215,20 @@ bool Detector::set_filter(BodyId id, const BodyFilter& filter) {
   });
 }
 
-bool Detector::sleep(BodyId id) {
-  State& s = *state_;
-  return s.change(id, [&](Body& body) {
+bool Detector::State::set_asleep(BodyId id, bool asleep) {
+  return change(id, [&](Body& body) {
     if (body.is_static) return false;
-    if (std::exchange(body.asleep, true)) return true;
-    if (s.world.kept_states) s.world.keep_state(body, state(id));
-    s.sampler.cancel(body);
+    if (std::exchange(body.asleep, asleep) == asleep) return true;
+    if (!asleep) world.wake(body);
+    if (asleep && world.kept_states) world.keep_state(body, world.state(body));
+    sampler.cancel(body);
     return true;
   });
 }
 
-bool Detector::wake(BodyId id) {
-  State& s = *state_;
-  return s.change(id, [&](Body& body) {
-    if (body.is_static) return false;
-    if (!std::exchange(body.asleep, false)) return true;
-    s.world.wake(body);
-    s.sampler.cancel(body);
-    return true;
-  });
-}
+bool Detector::sleep(BodyId id) { return state_->set_asleep(id, true); }
+
+bool Detector::wake(BodyId id) { return state_->set_asleep(id, false); }
 
 bool Detector::asleep(BodyId id) const noexcept { return state_->contains(id) && state_->world.body(id.index).asleep; }
 
@@ -247,7 +240,7 @@ bool Detector::shape_changed(ShapeId shape) {
   for (BodyIndex i = 0; i < s.world.bodies.slots(); ++i) {
     Body& body = s.world.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
-    if (body.id == kNoBody || std::none_of(body.parts.begin(), body.parts.end(), uses)) continue;
+    if (body.id == kNoBody || std::ranges::none_of(body.parts(), uses)) continue;
     body.steps.moved = s.world.answered + 1;
     s.world.bodies.invalidate(i);
     ++body.changes.deformed;
@@ -295,9 +288,7 @@ bool Detector::set_velocity(BodyId id, const Vec3& velocity) {
 BodyState Detector::state(BodyId id) const noexcept {
   const State& s = *state_;
   if (!s.contains(id)) return {};
-  const Body& body = s.world.body(id.index);
-  return s.world.kept_states && !body.is_static ? s.world.kept_states->at(s.world.time_of_last_step(), id.index)
-                                                : body.state;
+  return s.world.state(s.world.body(id.index));
 }
 
 bool Detector::moves(BodyId id) const noexcept {

@@ -16,13 +16,11 @@ bool is_valid_option(const DetectorOptions& options) noexcept {
 
 BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
   constexpr std::size_t kMinBodies = 4096;  // fewer than elsewhere: answers leave little in the caches anyway
-  BroadPhaseOptions result;
-  result.executor = executor;
-  result.min_bodies_for_jobs = kMinBodies;
-  result.time_step = options.time_step;
-  result.start = options.start;
-  result.position_slack = options.position_slack;
-  return result;
+  return {.time_step = options.time_step,
+          .start = options.start,
+          .position_slack = options.position_slack,
+          .executor = executor,
+          .min_bodies_for_jobs = kMinBodies};
 }
 
 }  // namespace
@@ -50,6 +48,7 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       skipper(world),
       scheduler(world),
       reporter(world, skipper),
+      queries(world, sampler),
       valid(is_valid_option(wanted)) {}
 
 Detector::Detector(StateSource source, const DetectorOptions& options)
@@ -68,8 +67,7 @@ Detector& Detector::operator=(Detector&&) noexcept = default;
 Detector::~Detector() = default;
 
 ShapeId Detector::add_shape(const TreeView& tree) {
-  if (state_->stepping) return kNoShape;
-  return state_->world.shapes.add_tree(tree);
+  return state_->stepping ? kNoShape : state_->world.shapes.add_tree(tree);
 }
 ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
   PackedSphereTree tree;
@@ -79,12 +77,10 @@ ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
 }
 ShapeId Detector::add_sphere(double radius, const Vec3& center) { return add_capsule(center, center, radius); }
 ShapeId Detector::add_capsule(const Vec3& p, const Vec3& q, double radius) {
-  if (state_->stepping) return kNoShape;
-  return state_->world.shapes.add_round(p, q, radius);
+  return state_->stepping ? kNoShape : state_->world.shapes.add_round(p, q, radius);
 }
 ShapeId Detector::add_box(const Vec3& half_lengths) {
-  if (state_->stepping) return kNoShape;
-  return state_->world.shapes.add_box(half_lengths);
+  return state_->stepping ? kNoShape : state_->world.shapes.add_box(half_lengths);
 }
 
 void Detector::set_executor(const Executor& executor) noexcept {

@@ -19,13 +19,9 @@ struct Detector::State {
   // What `made()` gives. Where there is no memory for it, it is not known what has been done: nothing more is answered.
   template <typename Make>
   auto or_fail(Make&& made) {
-    struct FailsUnlessDone {
-      bool& failed;
-      bool done = false;
-      ~FailsUnlessDone() { failed = failed || !done; }
-    } until_done{failed};
+    detail::UndoUnlessDone until_done([this] { failed = true; });
     auto result = made();
-    until_done.done = true;
+    until_done.done();
     return result;
   }
   bool contains(BodyId body) const noexcept { return !failed && world.contains(body); }
@@ -34,6 +30,7 @@ struct Detector::State {
   bool takes_changes() const noexcept { return valid && !failed && !stepping; }
   bool acceptable(std::span<const BodyPart> parts, const BodyOptions& options) const noexcept;
   detail::Body& add(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
+  bool set_asleep(BodyId id, bool asleep);
   bool place_static(detail::Body& body, const Pose& pose);  // false, and as it was: too large
   // What use(body) says. False if there is no such body, or none can be changed now.
   template <typename Use>
@@ -75,8 +72,8 @@ struct Detector::State {
 
   // answer_step.cpp: the pairs of a step, matched, answered and reported
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
-  void answer_within(const detail::ActivePairs& active, Step step, const detail::StepBudget::Stopwatch& watch,
-                     detail::StepBudget& budget, Frame& frame);
+  void answer_within(const detail::ActivePairs& active, Step step, double begun, detail::StepBudget& budget,
+                     Frame& frame);  // `begun`: the budget's clock when the step's answers were
   void begin_pairs(const detail::ActivePairs& active, Step step);
 };
 

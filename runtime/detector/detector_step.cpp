@@ -115,10 +115,10 @@ Advance Detector::State::advance(Step stop, StepBudget& share) {
     Budget work;
     if (share.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
     if (share.timed()) work.time = load_model.time_for_broad(share.time_left(), matcher.cache().size());
-    const StepBudget::Stopwatch watch(share.timed());
+    const double begun = share.clock();
     now = broad.advance(time, work, share.replay() != nullptr ? share.replay()->broad : 0);
     if (share.timed() && now.incomplete_from != kNoClass)
-      load_model.learn_broad_excess(watch.passed() - static_cast<double>(work.time.count()));
+      load_model.learn_broad_excess(share.clock() - begun - static_cast<double>(work.time.count()));
     if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
   }
   share.spend((broad.motions_asked() - before) * kMotionWork);

@@ -29,8 +29,9 @@ double seconds_above(const HalfSpace& half, const Motion& motion, double height)
 
 BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
   // An index is never used again: half-spaces are few, and pairs may still name a removed one.
-  planes_.push_back({half, with, true});
-  ++alive_;
+  Shape shape;
+  shape.kind = ShapeKind::half_space, shape.half = half;
+  planes_.push_back({std::move(shape), with});
   const auto index = static_cast<BodyIndex>(kFirstHalfSpace + planes_.size() - 1);
   planes_.back().body.id = {index, 1};
   planes_.back().body.is_static = true;
@@ -39,16 +40,16 @@ BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
 
 bool HalfSpaces::remove(BodyIndex index) noexcept {
   Plane& plane = planes_[index - kFirstHalfSpace];
-  if (!plane.alive) return false;
-  plane.alive = false;
+  if (plane.body.id == kNoBody) return false;
   plane.body.id = kNoBody;
-  --alive_;
   return true;
 }
 
 void HalfSpaceTimes::set_due(BodyIndex body, Step due) {
   while (due_.size() <= body) append(due_, kNeverStep);
   grow(bounds_, due_.size());
+  make_room(moving_, due_.size());
+  moving_known_ = moving_known_ && (due_[body] == kNeverStep) == (due == kNeverStep);
   due_[body] = due;
   if (due == 0) next_ = 0;
 }
@@ -60,14 +61,20 @@ void HalfSpaceTimes::update_all() noexcept {
 
 void HalfSpaceTimes::due(Step now, std::vector<BodyIndex>& bodies) {
   if (next() > now) return;
-  next_ = kNeverStep;
-  for (BodyIndex body = 0; body < due_.size(); ++body) {
-    if (due_[body] <= now) {
-      bodies.push_back(body);
-    } else {
-      next_ = std::min(next_, due_[body]);
+  if (!std::exchange(moving_known_, true)) {
+    moving_.clear();
+    for (BodyIndex body = 0; body < due_.size(); ++body) {
+      if (due_[body] != kNeverStep) moving_.push_back(body);
     }
   }
+  Step next = kNeverStep;
+  for (const BodyIndex body : moving_) {
+    if (due_[body] <= now)
+      bodies.push_back(body);
+    else
+      next = std::min(next, due_[body]);
+  }
+  next_ = next;
 }
 
 void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Motion motion, double slack,
@@ -80,9 +87,9 @@ void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Moti
   if (is_valid(motion)) {
     double seconds = kInfinity;
     const std::size_t before = pairs.size();
-    halves_.each([&](const Body& of, const HalfSpace& half) {
-      const double height = height_over(half, motion);
-      seconds = std::min(seconds, seconds_above(half, motion, height));
+    halves_.each([&](const Body& of, const Shape& shape) {
+      const double height = height_over(shape.half, motion);
+      seconds = std::min(seconds, seconds_above(shape.half, motion, height));
       if (!(height > 0)) pairs.push_back({index, of.id.index});
     });
     const Step last = body.frozen ? kNeverStep : clock.last_before_expiry(motion.expiry);
@@ -95,7 +102,7 @@ void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Moti
 }
 
 bool HalfSpaceTimes::motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept {
-  if (halves_.size() == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
+  if (halves_.empty() || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
   const MotionBound& bound = bounds_[body];
   return keeps_motion_bound(bound.motion, bound.time, time, now.position, nullptr, slack_) &&
          now.radius <= bound.motion.radius;

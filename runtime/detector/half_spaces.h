@@ -10,28 +10,28 @@ class HalfSpaces {
   bool remove(BodyIndex index) noexcept;
   bool contains(BodyId id) const noexcept {
     return is_half_space(id.index) && id.generation == 1 && id.index - kFirstHalfSpace < planes_.size() &&
-           planes_[id.index - kFirstHalfSpace].alive;
+           body(id.index).id == id;
   }
-  const HalfSpace& half_space(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].half; }
+  const Shape& shape(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].shape; }
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
-  std::size_t size() const noexcept { return alive_; }
+  bool empty() const noexcept {
+    return std::ranges::all_of(planes_, [](const Plane& plane) { return plane.body.id == kNoBody; });
+  }
   template <typename Visit>
-  void each(Visit&& visit) const {  // visit(body, half-space)
+  void each(Visit&& visit) const {  // visit(body, shape)
     for (const Plane& plane : planes_) {
-      if (plane.alive) visit(plane.body, plane.half);
+      if (plane.body.id != kNoBody) visit(plane.body, plane.shape);
     }
   }
   std::size_t memory_bytes() const noexcept { return bytes_of(planes_); }
 
  private:
   struct Plane {
-    HalfSpace half;
+    Shape shape;
     Body body;
-    bool alive = false;
   };
   std::vector<Plane> planes_;
-  std::size_t alive_ = 0;
 };
 
 // When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
@@ -45,7 +45,7 @@ class HalfSpaceTimes {
   void update_all() noexcept;                                 // a half-space is new
   void forget(BodyIndex body) { set_due(body, kNeverStep); }  // it is gone, or does not move
   // At which any body is due.
-  Step next() const noexcept { return halves_.size() > 0 ? next_ : kNeverStep; }
+  Step next() const noexcept { return halves_.empty() ? kNeverStep : next_; }
 
   // The bodies due at `now` or before, in ascending order, each of which is to be updated.
   void due(Step now, std::vector<BodyIndex>& bodies);
@@ -57,7 +57,7 @@ class HalfSpaceTimes {
   bool motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   // Whether that is about the body's middle: see Body::relies_on_middle().
   bool relies_on_middle(BodyIndex body) const noexcept { return body < bounds_.size() && bounds_[body].by_middle; }
-  std::size_t memory_bytes() const noexcept { return bytes_of(due_, bounds_); }
+  std::size_t memory_bytes() const noexcept { return bytes_of(due_, moving_, bounds_); }
 
  private:
   struct MotionBound {
@@ -68,6 +68,8 @@ class HalfSpaceTimes {
   void set_due(BodyIndex body, Step due);
   const HalfSpaces& halves_;
   std::vector<Step> due_;            // by body; kNeverStep: it does not move
+  std::vector<BodyIndex> moving_;    // in ascending order: all but those that do not move,
+  bool moving_known_ = true;         // unless some have come or gone
   std::vector<MotionBound> bounds_;  // by body
   double slack_ = 0;
   Step next_ = kNeverStep;

@@ -3,7 +3,6 @@
 
 namespace orchard::runtime {
 
-using detail::is_half_space;
 using detail::PartPair;
 
 namespace {
@@ -34,8 +33,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   PartPair pair;
   places.place(event.a.index, event.part_a, pair.a);
   places.place(event.b.index, event.part_b, pair.b);
-  const bool half = is_half_space(event.b.index);
-  if (half) pair.half = places.half_space(event.b.index);
+  const bool half = pair.with_half_space();
   Workspace& workspace = *scheduler.workspace();
   if (!pair.simple()) {
     result = tree_contacts(workspace, pair, with);
@@ -49,7 +47,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b, 0};
   result.normal = verdict.contact.normal;
   if (half) {
-    detail::half_space_contact(*pair.a.shape, pair.a.pose(), pair.half, result);
+    detail::half_space_contact(*pair.a.shape, pair.a.pose(), pair.b.shape->half, result);
   } else if (pair.simple()) {
     result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), result.normal);
   } else {  // contacts need more memory than there is

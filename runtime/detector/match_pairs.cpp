@@ -56,11 +56,11 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
   pair.bodies = known.pair;
   const Body &a = world_.places.body(known.pair.a), &b = world_.places.body(known.pair.b);
   pair.a = a.id, pair.b = b.id;
-  pair.versions.pair_filter = world_.filter_version - 1;
+  pair.versions.filters = filter_changes(a, b) - 1;
   pair.versions.jumps = a.changes.jumps + b.changes.jumps;
   pair.versions.deformed = a.changes.deformed + b.changes.deformed;
-  if (a.parts.size() != 1 || b.parts.size() != 1) return pair;
-  const Shape &of_a = world_.shapes[a.parts[0].shape], &of_b = world_.shapes[b.parts[0].shape];
+  if (is_half_space(known.pair.b) || !a.several.empty() || !b.several.empty()) return pair;
+  const Shape &of_a = world_.shapes[a.one.shape], &of_b = world_.shapes[b.one.shape];
   pair.coherent = of_a.has_tree() && of_b.has_tree();
   if (pair.coherent) pair.trees = TreePair(of_a.prepared, of_b.prepared);
   return pair;
@@ -68,12 +68,7 @@ CachedPair& PairMatcher::cached(PairCache::Known& known) {
 
 bool PairMatcher::allowed(CachedPair& pair) const {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  if (pair.versions.pair_filter == world_.filter_version && pair.versions.filter_a == a.changes.filters &&
-      pair.versions.filter_b == b.changes.filters) {
-    return pair.versions.allowed;
-  }
-  pair.versions.pair_filter = world_.filter_version;
-  pair.versions.filter_a = a.changes.filters, pair.versions.filter_b = b.changes.filters;
+  if (std::exchange(pair.versions.filters, filter_changes(a, b)) == filter_changes(a, b)) return pair.versions.allowed;
   pair.versions.allowed = filters_allow(a, b) && (!world_.filter || world_.filter(pair.a, pair.b));
   return pair.versions.allowed;
 }

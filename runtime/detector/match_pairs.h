@@ -39,6 +39,9 @@ class PairMatcher {
   }
 
  private:
+  std::uint32_t filter_changes(const Body& a, const Body& b) const noexcept {
+    return world_.filter_version + a.changes.filters + b.changes.filters;
+  }
   void gather_half_spaces(Step step);
   void gather_left_out(Step step, const Advance& now);
   std::uint32_t generations(const BodyPair& pair) const noexcept {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broad_phase/vectors.h"
+
 namespace orchard::runtime {
 namespace {
 
@@ -30,10 +32,7 @@ double MotionMonitor::Part::min_along(const Vec3& way) const noexcept {
 }
 
 MotionMonitor::Track& MotionMonitor::track(BodyIndex body) {
-  if (body >= tracks_.size()) {
-    if (tracks_.capacity() <= body) tracks_.reserve(std::size_t{body} + body / 8 + 32);
-    tracks_.resize(std::size_t{body} + 1);
-  }
+  detail::grow(tracks_, std::size_t{body} + 1);
   return tracks_[body];
 }
 

@@ -13,8 +13,8 @@ namespace orchard::runtime::detail {
 struct CachedPair {
   BodyPair bodies{};
   BodyId a, b;
-  struct Versions {  // of what it depends on, as seen last
-    std::uint32_t filter_a = 0, filter_b = 0, pair_filter = 0;
+  struct Versions {              // of what it depends on, as seen last
+    std::uint32_t filters = 0;   // changes of those of both bodies and of the application
     std::uint32_t jumps = 0;     // teleports of both bodies
     std::uint32_t deformed = 0;  // and changes of their shapes
     bool allowed = false;        // by these filters

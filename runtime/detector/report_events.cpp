@@ -7,12 +7,11 @@ namespace {
 
 BodyPair bodies_of(const PairEvent& event) noexcept { return {event.a.index, event.b.index}; }
 
-// Of a pair that nothing is known of at this step.
-Verdict nothing_known(Answer answer) noexcept {
-  Verdict verdict;
-  verdict.answer = answer;
-  verdict.separation_bound = std::numeric_limits<double>::infinity();
-  return verdict;
+// Nothing is known of the pair at this step.
+void forget_step(CachedPair& pair) noexcept {
+  pair.verdict = unknown_verdict();
+  pair.sweep.impact = false;
+  pair.answered = -1;
 }
 
 }  // namespace
@@ -32,18 +31,15 @@ PairEvent EventReporter::describe(const CachedPair& pair, Step step, PairChange 
 }
 
 bool EventReporter::part(CachedPair& pair, bool there, bool jumped, Step step) {
-  pair.sweep.impact = false;
-  pair.answered = -1;
-  pair.verdict = nothing_known(there ? Answer::no : Answer::maybe);
+  forget_step(pair);
+  if (there) pair.verdict.answer = Answer::no;
   const bool stays = there && !jumped && pair.touching && ++pair.separated_steps < world_.options.steps_to_end;
   if (pair.touching) ended_.push_back(describe(pair, step, stays ? PairChange::stay : PairChange::end));
   return stays;
 }
 
 void EventReporter::end_by_teleport(CachedPair& pair, Step step) {
-  pair.verdict = nothing_known(Answer::maybe);
-  pair.sweep.impact = false;
-  pair.answered = -1;
+  forget_step(pair);
   ended_.push_back(describe(pair, step, PairChange::end));
   pair.touching = false;
 }

@@ -28,7 +28,7 @@ StateSampler::StateSampler(World& world, BroadPhase& broad, StateSource source)
 
 void StateSampler::ask_for(BodyIndex index, Step step) {
   Body& body = world_.bodies[index];
-  if (body.steps.asked == step || !body.is_asked()) return;
+  if (!body.is_asked() || body.steps.asked == step) return;
   body.steps.known_before = std::exchange(body.steps.asked, step);
   asking_.push_back(index);
 }
@@ -45,7 +45,8 @@ void StateSampler::sample(Step step, std::span<const BodyIndex> bodies) {
 
 void StateSampler::ask_all(Step step) {
   asking_.clear();
-  for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) ask_for(i, step);
+  const std::size_t slots = world_.bodies.slots();
+  for (BodyIndex i = 0; i < slots; ++i) ask_for(i, step);
   ask_source(step);
 }
 
@@ -63,7 +64,7 @@ void StateSampler::ask_source(Step step) {
     auto take_some = [&](std::size_t job) {
       const std::size_t end = std::min(some.size(), (job + 1) * kPerJob);
       for (std::size_t i = job * kPerJob; i < end; ++i) {
-        if (i + kAhead < end) prefetch_all(world_.bodies[some[i + kAhead]]);
+        if (i + kAhead < end) world_.bodies.prefetch_pose(some[i + kAhead]);
         take_answer(step, some[i], answers_[i]);
       }
     };

@@ -4,6 +4,7 @@
 
 #include "collision/coherent_pair.h"
 #include "collision/pair_query.h"
+#include "collision/workspace_scratch.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr std::uint64_t kFirstSlice = 1024;       // tests; each further slice is four times as large
 constexpr std::uint64_t kSearchShare = 8;         // of the budget, one part in so many is set aside for searches
 constexpr std::uint8_t kSearchesBeforeRoots = 4;  // of a pair that its roots have not told apart
+constexpr std::uint64_t kTask = 0xffffffffu;      // of a turn in the schedule
 constexpr std::size_t kAtOnce = 64;               // tasks, so that the turns depend on no number of threads
 
 }  // namespace
@@ -20,18 +22,38 @@ void PairScheduler::prepare() {
   const Executor& executor = world_.options.executor;
   const std::size_t jobs =
       executor.run == nullptr ? 1 : std::max<std::size_t>(1, executor.concurrency) * kJobsPerThread;
-  scratches_.prepare(world_.shapes, jobs, world_.any.continuous);
+  const bool more = seen_shapes_ < world_.shapes.size() || (world_.any.continuous && !sweeps_);
+  sweeps_ = sweeps_ || world_.any.continuous;
+  for (; seen_shapes_ < world_.shapes.size(); ++seen_shapes_) {
+    const Shape& shape = world_.shapes[static_cast<ShapeId>(seen_shapes_)];
+    if (deepest_.tree.blocks.empty() || deepest_.tree.triangle_tree_depth <= shape.tree.triangle_tree_depth)
+      deepest_ = shape.prepared;
+  }
+  const std::size_t before = scratches_.size();
+  while (scratches_.size() < jobs) scratches_.push_back(std::make_unique<AnswerScratch>());
+  if (deepest_.tree.blocks.empty()) return;
+  for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
+    Workspace& workspace = scratches_[i]->workspace;
+    workspace.narrow.bind(deepest_, deepest_);
+    workspace.distance.bind(deepest_, deepest_);
+    Workspace::Scratch* const scratch = sweeps_ ? workspace.scratch() : nullptr;
+    if (scratch != nullptr) scratch->timed.reserve(deepest_.tree, deepest_.tree);
+  }
 }
 
+std::size_t PairScheduler::memory_bytes() const noexcept {
+  constexpr std::size_t kStackEntry = 48;
+  const std::size_t pairs = std::size_t{kBlockWidth} * (2 * deepest_.tree.triangle_tree_depth + 1) + 1;
+  const std::size_t sweeps = sweeps_ ? sizeof(Workspace::Scratch) + pairs * sizeof(Workspace::Scratch::TimedPair) : 0;
+  return scratches_.size() * (sizeof(AnswerScratch) + 2 * pairs * kStackEntry + sweeps) +
+         bytes_of(tasks_, schedule_, order_);
+}
+
+// A task for each two parts, with what their spheres say: so much is known of every pair whatever the budget. Then
+// by importance, by who has waited longest, and in the order of tasks.
 void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open) {
-  make_tasks(records, open);
-  sort_tasks(records);
-}
-
-// A task for each two parts, with what their spheres say: so much is known of every pair whatever the budget.
-void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t> open) {
   const ShapePlacements& places = world_.places;
-  tasks_.clear();
+  tasks_.clear(), schedule_.clear();
   for (const std::uint32_t index : open) {
     CachedPair& record = records[index];
     forget_answer(record);
@@ -45,22 +67,12 @@ void PairScheduler::make_tasks(PairCache& records, std::span<const std::uint32_t
         task.simple = pair.simple();
         task.verdict = unasked(pair);
         task.done = task.verdict.answer == Answer::no;
+        const std::uint64_t waited = std::min(record.turn.waited, 255u), importance = record.turn.importance;
+        if (!task.done) schedule_.push_back(importance << 40 | (255 - waited) << 32 | (tasks_.size() - 1));
       }
     }
   }
-}
-
-// By importance, then by who has waited longest, then in the order of tasks.
-void PairScheduler::sort_tasks(const PairCache& records) {
-  schedule_.clear();
-  for (std::uint32_t i = 0; i < tasks_.size(); ++i) {
-    const CachedPair::Turn& turn = records[tasks_[i].record].turn;
-    if (!tasks_[i].done) schedule_.push_back({turn.importance, std::min(turn.waited, 255u), i});
-  }
-  const auto rank = [](const Turn& turn) {
-    return std::uint64_t{turn.importance} << 40 | std::uint64_t{255 - turn.waited} << 32 | turn.task;
-  };
-  std::sort(schedule_.begin(), schedule_.end(), [&](const Turn& p, const Turn& q) { return rank(p) < rank(q); });
+  std::sort(schedule_.begin(), schedule_.end());
 }
 
 void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
@@ -70,7 +82,7 @@ void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
   budget.give_back(for_searches);
   for (std::size_t begin = 0; begin < schedule_.size();) {
     std::size_t end = begin;
-    while (end < schedule_.size() && schedule_[end].importance == schedule_[begin].importance) ++end;
+    while (end < schedule_.size() && schedule_[end] >> 40 == schedule_[begin] >> 40) ++end;
     std::uint64_t slice = kFirstSlice;
     while (give_turns(begin, end, slice, budget, records)) slice = std::min<std::uint64_t>(4 * slice, 1ull << 32);
     begin = end;
@@ -83,8 +95,8 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
                                PairCache& records) {
   const bool alone = world_.options.executor.run == nullptr, searches = slice > 0;
   const std::uint64_t most_of_one = !searches ? kSimplePairWork : slice + kMaxOvershoot;
-  const auto is_open = [&](const Turn& turn) {
-    const Task& task = tasks_[turn.task];
+  const auto is_open = [&](std::uint64_t turn) {
+    const Task& task = tasks_[turn & kTask];
     return !task.done && records[task.record].verdict.answer != Answer::yes;
   };
   std::size_t next = begin;
@@ -92,7 +104,7 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
     const std::uint64_t left = budget.left(), most = std::min(left, slice);
     const std::size_t at_once = static_cast<std::size_t>(std::clamp<std::uint64_t>(left / most_of_one, 1, kAtOnce));
     for (order_.clear(); next < end && order_.size() < at_once; ++next) {
-      if (is_open(schedule_[next])) order_.push_back(schedule_[next].task);
+      if (is_open(schedule_[next])) order_.push_back(static_cast<std::uint32_t>(schedule_[next] & kTask));
     }
     each(order_.size(), [&](std::size_t i, AnswerScratch& scratch) {
       Task& task = tasks_[order_[i]];
@@ -130,16 +142,17 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scr
   const double bound = task.verdict.separation_bound;
   Verdict known;
   if (remembers && CoherentPair(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()).recall(known)) {
-    task.verdict = solid_verdict(known, pair);
+    task.verdict = known;
     task.done = true;
   } else {
     PairQuery& narrow = query_of(scratch.workspace.narrow);
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     narrow.start(pair.a.pose(), pair.b.pose());
-    task.verdict = verdict_of(narrow, pair);
+    task.verdict = narrow.verdict();
     task.done = narrow.finished();
     if (record.coherent) record.turn.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
   }
+  make_solid(task.verdict, pair);
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
   task.verdict.work = task.work;
 }
@@ -186,9 +199,9 @@ void PairScheduler::sweep_within(PairCache& records, std::span<const std::uint32
     if (record.sweep.unseen || (record.sweep.possible && !budget.may_sweep(swept)))
       leave_open(record);
     else if (record.sweep.possible) {
-      scratches_[0].work = 0;
-      answerer_.sweep(record, now, scratches_[0], budget.left());
-      budget.spend(scratches_[0].work);
+      scratches_[0]->work = 0;
+      answerer_.sweep(record, now, *scratches_[0], budget.left());
+      budget.spend(scratches_[0]->work);
       ++swept;
     }
   }

@@ -16,7 +16,9 @@ class PairScheduler {
  public:
   explicit PairScheduler(const World& world) noexcept : world_(world), answerer_(world.places) {}
 
-  void prepare();  // before a step: room for all shapes and threads
+  // Before a step: a scratch for each job, with room for pairs of all shapes, and for sweeps if there are any, so that
+  // no query allocates.
+  void prepare();
 
   // use(i, scratch) for i = 0 .. count - 1, by jobs. Returns the work that the scratches count.
   template <typename Use>
@@ -31,8 +33,8 @@ class PairScheduler {
   // What happened between the step before and this one, for the records that can be swept.
   void sweep_within(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
 
-  Workspace* workspace() noexcept { return scratches_.size() == 0 ? nullptr : &scratches_[0].workspace; }
-  std::size_t memory_bytes() const noexcept { return scratches_.memory_bytes() + bytes_of(tasks_, schedule_, order_); }
+  Workspace* workspace() noexcept { return scratches_.empty() ? nullptr : &scratches_[0]->workspace; }
+  std::size_t memory_bytes() const noexcept;
 
  private:
   struct Task {
@@ -41,12 +43,6 @@ class PairScheduler {
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
   };
-  struct Turn {
-    std::uint8_t importance;
-    std::uint32_t waited, task;
-  };
-  void make_tasks(PairCache& records, std::span<const std::uint32_t> open);
-  void sort_tasks(const PairCache& records);
   void begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept;
   void search_one(Task& task, CachedPair& record, const Budget& most, bool is_first,
                   AnswerScratch& scratch) const noexcept;
@@ -54,10 +50,13 @@ class PairScheduler {
 
   const World& world_;
   PairAnswerer answerer_;
-  AnswerScratches scratches_;
-  std::vector<Task> tasks_;  // in the order of pairs, then of parts
-  std::vector<Turn> schedule_;
-  std::vector<std::uint32_t> order_;  // of the tasks that run at once
+  std::vector<std::unique_ptr<AnswerScratch>> scratches_;
+  std::size_t seen_shapes_ = 0;
+  bool sweeps_ = false;
+  PreparedTree deepest_;                 // of all shapes: a query that has been bound to it allocates for no other
+  std::vector<Task> tasks_;              // in the order of pairs, then of parts
+  std::vector<std::uint64_t> schedule_;  // of tasks: their importance, how long they have waited, and their index
+  std::vector<std::uint32_t> order_;     // of the tasks that run at once
 };
 
 // The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
@@ -67,14 +66,14 @@ std::uint64_t PairScheduler::each(std::size_t count, Use&& use) {
   const Executor& executor = world_.options.executor;
   const std::size_t jobs = executor.run == nullptr ? 1 : std::min(scratches_.size(), count / kMinPerJob + 1);
   auto one = [&](std::size_t job) {
-    AnswerScratch& scratch = scratches_[job];
+    AnswerScratch& scratch = *scratches_[job];
     scratch.work = 0;
     const std::size_t end = count * (job + 1) / jobs;
     for (std::size_t i = count * job / jobs; i < end; ++i) use(i, scratch);
   };
   run_jobs(executor, jobs, one);
   std::uint64_t work = 0;
-  for (std::size_t job = 0; job < jobs; ++job) work += scratches_[job].work;
+  for (std::size_t job = 0; job < jobs; ++job) work += scratches_[job]->work;
   return work;
 }
 

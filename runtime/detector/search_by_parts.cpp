@@ -123,7 +123,7 @@ void PartPairs::choose(Step step, const PairCache& pairs) {
   for (const BodyIndex index : bodies_) {
     touching_.clear();
     append_touching(bodies[index].sphere());
-    if (bodies[index].valid && touching_.size() < kNoLonger * bodies[index].parts.size()) to_change_.push_back(index);
+    if (bodies[index].valid && touching_.size() < kNoLonger * bodies[index].parts().size()) to_change_.push_back(index);
   }
   static_pairs_.assign(bodies.slots(), 0);
   for (std::size_t place = 0; place < pairs.size(); ++place) {
@@ -131,7 +131,7 @@ void PartPairs::choose(Step step, const PairCache& pairs) {
     if (is_half_space(pair.b) || bodies[pair.a].is_static == bodies[pair.b].is_static) continue;
     const BodyIndex moving = bodies[pair.a].is_static ? pair.b : pair.a;
     const Body& body = bodies[moving];
-    if (!body.by_parts && ++static_pairs_[moving] == kWorthIt * body.parts.size() && body.parts.size() > 1 &&
+    if (!body.by_parts && ++static_pairs_[moving] == kWorthIt * body.parts().size() && !body.several.empty() &&
         body.id != kNoBody)
       to_change_.push_back(moving);
   }

@@ -4,40 +4,41 @@
 
 namespace orchard::runtime::detail {
 
-void ShapePlacements::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
+void ShapePlacements::place_at(const Pose& pose, bool rigid, const PartRecord& part,
                                PlacedPart& placed_part) const noexcept {
-  placed_part.shape = &(*shapes_)[shape];
+  placed_part.shape = &(*shapes_)[part.shape];
   placed_part.there = &pose;
   if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
   placed_part.rigid = rigid;
 }
 
 void ShapePlacements::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
-  placed_part.shape = nullptr;
-  if (is_half_space(body)) return;
-  const Body& of = (*bodies_)[body];
-  const PartRecord& record = of.parts[part];
-  place_at(of.state.pose, of.valid, record.shape, record, placed_part);
+  const Body& of = this->body(body);
+  if (is_half_space(body)) {
+    placed_part.shape = &halves_->shape(body), placed_part.there = &of.state.pose;
+    return;
+  }
+  const PartRecord& record = of.parts()[part];
+  place_at(of.state.pose, of.valid, record, placed_part);
   placed_part.be_in(record.sphere);
 }
 
 void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
                                    PlacedPart& placed_part) const noexcept {
-  placed_part.shape = nullptr;
-  if (is_half_space(body)) return;
+  if (is_half_space(body)) return place(body, part, placed_part);
   const Body& of = (*bodies_)[body];
   const bool moves = !of.is_static && of.steps.asked == now;  // one that falls asleep has come here first
   const Pose& pose = moves ? of.before : of.state.pose;
-  const PartRecord& record = of.parts[part];
+  const PartRecord& record = of.parts()[part];
   const bool was_elsewhere = !of.parts_before.empty() && of.parts_before[part].until == now - 1;
-  const PartPlace& place = was_elsewhere ? of.parts_before[part].place : record;
-  place_at(pose, is_rigid(pose), record.shape, place, placed_part);
+  const PartRecord& place = was_elsewhere ? of.parts_before[part].place : record;
+  place_at(pose, is_rigid(pose), place, placed_part);
   placed_part.be_in({transform(pose, place.center), place.reach * pose.scale});
 }
 
 double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept {
   const Body& of = (*bodies_)[body];
-  const PartRecord& record = of.parts[part];
+  const PartRecord& record = of.parts()[part];
   if (!of.valid) return 0;
   double scale = 1, size = sphere.size;
   Vec3 at = sphere.center;
@@ -66,7 +67,7 @@ double ShapePlacements::bounds_gap(const BodyPair& pair, std::uint32_t part_a, s
 }
 
 Verdict unasked(const PartPair& pair) noexcept {
-  const SphereGap gap = sphere_gap(pair);
+  const SphereGap gap = pair.with_half_space() ? sphere_gap(pair.a, pair.b.shape->half) : sphere_gap(pair.a, pair.b);
   Verdict verdict;
   verdict.answer = gap.least > 0 ? Answer::no : Answer::maybe;
   verdict.lower_bound = std::max(0.0, gap.least);
@@ -74,7 +75,7 @@ Verdict unasked(const PartPair& pair) noexcept {
   if (verdict.answer == Answer::no) return verdict;
   verdict.contact.center = pair.a.center;
   verdict.contact.radius = pair.a.reach;
-  const Vec3 way = pair.b.shape == nullptr ? -1.0 * pair.half.normal : pair.b.center - pair.a.center;
+  const Vec3 way = pair.with_half_space() ? -1.0 * pair.b.shape->half.normal : pair.b.center - pair.a.center;
   const double size = length(way);
   verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
   return verdict;
@@ -90,17 +91,16 @@ void make_solid(Verdict& verdict, const PartPair& pair) noexcept {
 }
 
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept {
-  if (verdict.answer != Answer::yes || pair.b.shape == nullptr) return kNoTriangle;
+  if (verdict.answer != Answer::yes) return kNoTriangle;
   return pair.a.shape->has_tree() ? verdict.contact.triangle_a : verdict.contact.triangle_b;
 }
 
 Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& work, std::uint64_t most,
                        std::uint32_t guess) noexcept {
-  if (!pair.a.rigid || (pair.b.shape != nullptr && !pair.b.rigid)) return unknown_verdict();
+  if (!pair.a.rigid || !pair.b.rigid) return unknown_verdict();
   if (pair.simple()) {
     work += kSimplePairWork;
-    return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose(), pair.half)
-                                   : test_simple(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), guess);
+    return test_simple(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), guess);
   }
   narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
   narrow.start(pair.a.pose(), pair.b.pose());
@@ -112,7 +112,9 @@ Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& w
     narrow.refine_exactly({.work = most - work});
   }
   work += narrow.known().work;
-  return verdict_of(narrow, pair);
+  Verdict verdict = narrow.verdict();
+  make_solid(verdict, pair);
+  return verdict;
 }
 
 bool decides(const Verdict& verdict, const Verdict& than) noexcept {

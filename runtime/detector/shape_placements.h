@@ -7,9 +7,9 @@
 
 namespace orchard::runtime::detail {
 
-// What is asked at one step about two parts, or a part and a half-space.
+// What is asked at one step about two parts, the second of which may be a half-space, which no sphere is around.
 struct PlacedPart : BoundingSphere {
-  const Shape* shape = nullptr;  // null: a half-space
+  const Shape* shape = nullptr;
   bool rigid = true;
 
   PlacedPart() noexcept : BoundingSphere({}, 0) {}
@@ -22,8 +22,8 @@ struct PlacedPart : BoundingSphere {
 
 struct PartPair {
   PlacedPart a, b;
-  HalfSpace half;  // b, where it is one
-  bool simple() const noexcept { return b.shape == nullptr || !a.shape->has_tree() || !b.shape->has_tree(); }
+  bool simple() const noexcept { return !a.shape->has_tree() || !b.shape->has_tree(); }
+  bool with_half_space() const noexcept { return b.shape->kind == ShapeKind::half_space; }
 };
 
 // Where bodies, parts and half-spaces are at the step under way.
@@ -36,11 +36,11 @@ class ShapePlacements {
     return is_half_space(index) ? halves_->body(index) : (*bodies_)[index];
   }
   std::uint32_t parts(BodyIndex index) const noexcept {
-    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts.size());
+    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts().size());
   }
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   const BoundingSphere& sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
-    return (*bodies_)[body].parts[part].sphere;
+    return (*bodies_)[body].parts()[part].sphere;
   }
   // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
   // sphere: long shapes fill little of theirs. Else at most 0.
@@ -53,15 +53,17 @@ class ShapePlacements {
     if (bodies_->slots() <= kInCache) return;
     for (const BodyIndex body : {pair.a, pair.b}) {
       if (is_half_space(body)) continue;
-      prefetch_all((*bodies_)[body].state.pose), prefetch(&(*bodies_)[body]);
+      const Body& of = (*bodies_)[body];
+      prefetch_all(of.state.pose), prefetch(&of);
+      prefetch(&of.one.sphere), prefetch(&of.one.shape), prefetch(&of.changes);
       bodies_->prefetch_sphere_cache(body);
     }
   }
-  const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->half_space(index); }
+  const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->shape(index).half; }
 
  private:
   double bounds_gap(BodyIndex body, std::uint32_t part, const BoundingSphere& sphere) const noexcept;
-  void place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part, PlacedPart& placed) const noexcept;
+  void place_at(const Pose& pose, bool rigid, const PartRecord& part, PlacedPart& placed) const noexcept;
   const ShapeTable* shapes_;
   const BodyTable* bodies_;
   const HalfSpaces* halves_;
@@ -86,18 +88,6 @@ inline SphereGap sphere_gap(const BoundingSphere& a, const BoundingSphere& b) no
 inline SphereGap sphere_gap(const BoundingSphere& a, const HalfSpace& half) noexcept {
   return sphere_gap(dot(half.normal, a.center) - half.offset, a.reach, a.size + std::fabs(half.offset));
 }
-inline SphereGap sphere_gap(const PartPair& pair) noexcept {
-  return pair.b.shape == nullptr ? sphere_gap(pair.a, pair.half) : sphere_gap(pair.a, pair.b);
-}
-// Whether the least gap is more than 0, or not quite.
-inline bool spheres_part(const BoundingSphere& a, const BoundingSphere& b) noexcept {
-  const Vec3 way = b.center - a.center;
-  const double reach = a.reach + b.reach + kPlaceRounding * (a.size + b.size), square = dot(way, way);
-  return square > reach * reach * (1 + 1e-14) && square <= std::numeric_limits<double>::max();
-}
-inline bool spheres_part(const PartPair& pair) noexcept {
-  return pair.b.shape == nullptr ? sphere_gap(pair).least > 0 : spheres_part(pair.a, pair.b);
-}
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
 
@@ -111,13 +101,6 @@ Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& w
 
 // What is known of two trees whose surfaces have been asked about: of solid boxes these do not tell everything.
 void make_solid(Verdict& verdict, const PartPair& pair) noexcept;
-inline Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
-  make_solid(verdict, pair);
-  return verdict;
-}
-inline Verdict verdict_of(const PairQuery& narrow, const PartPair& pair) noexcept {
-  return solid_verdict(narrow.verdict(), pair);
-}
 
 // The better of what is known of two pairs of parts, for their bodies: yes before maybe before no, then the least
 // bound.

@@ -66,25 +66,25 @@ ShapeId ShapeTable::add(Shape&& shape) {
   Shape& kept = shapes_.back();
   if (!kept.own.blocks.empty()) kept.tree = kept.own;
   kept.prepared = PreparedTree(kept.tree);
+  if (kept.kind == ShapeKind::tree) describe(kept);
   return static_cast<ShapeId>(shapes_.size() - 1);
 }
 
 ShapeId ShapeTable::add_tree(const TreeView& tree) {
   if (structure_fault(tree) != nullptr) return kNoShape;
   Shape shape;
-  describe(tree, shape);
+  shape.tree = tree;
   return add(std::move(shape));
 }
 
 ShapeId ShapeTable::add_tree(PackedSphereTree&& tree) {
   Shape shape;
   shape.own = std::move(tree);
-  describe(shape.own, shape);
   return add(std::move(shape));
 }
 
-void ShapeTable::describe(const TreeView& tree, Shape& shape) {
-  shape.tree = tree;
+void ShapeTable::describe(Shape& shape) {
+  const TreeView& tree = shape.tree;
   const SiblingBlock& root = tree.blocks[0];
   shape.center = Vec3{double{root.x[0]}, double{root.y[0]}, double{root.z[0]}} + tree.origin;
   // What is stored may be rounded away from the mesh, and the tree's ball holds both.

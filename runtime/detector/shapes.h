@@ -14,12 +14,20 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class ShapeKind : std::uint8_t {
   tree,
-  round,  // a sphere or a capsule: the points within `radius` of the segment from p to q
-  box     // a tree of twelve triangles, and solid
+  round,      // a sphere or a capsule: the points within `radius` of the segment from p to q
+  box,        // a tree of twelve triangles, and solid
+  half_space  // `half`, which no pose moves, and nothing below it
+};
+
+// Everything with normal . point <= offset; the normal is a unit vector.
+struct HalfSpace {
+  Vec3 normal{1, 0, 0};
+  double offset = 0;
 };
 
 struct Shape {
   ShapeKind kind = ShapeKind::tree;
+  HalfSpace half;
   PackedSphereTree own;        // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
   TreeView tree;               // the surface; of a round shape the segment, for sweeps
   PreparedTree prepared;       // the same
@@ -30,7 +38,7 @@ struct Shape {
   Vec3 box_low{}, box_high{};  // of a box around the triangles, by the shape's axes; not of round shapes
   std::vector<Vec3> pieces;    // of a tree: a vertex of each connected piece of its surface,
   std::vector<std::uint32_t> piece_vertices;  // and which these are
-  bool has_tree() const noexcept { return kind != ShapeKind::round; }
+  bool has_tree() const noexcept { return kind == ShapeKind::tree || kind == ShapeKind::box; }
 };
 
 // Shapes stay where they are.
@@ -48,19 +56,13 @@ class ShapeTable {
   std::size_t memory_bytes() const noexcept;
 
  private:
-  static void describe(const TreeView& tree, Shape& shape);
+  static void describe(Shape& shape);
   ShapeId add(Shape&& shape);
   std::deque<Shape> shapes_;
 };
 
 // How far a point in the shape's frame is from the box around it, or from the segment of a round shape less its radius.
 double distance_to_bounds(const Shape& shape, const Vec3& point) noexcept;
-
-// Everything with normal . point <= offset; the normal is a unit vector.
-struct HalfSpace {
-  Vec3 normal{1, 0, 0};
-  double offset = 0;
-};
 
 inline Vec3 nearest_of_segment(const Vec3& p, const Vec3& q, const Vec3& to) noexcept {
   const Vec3 d = q - p;

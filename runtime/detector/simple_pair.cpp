@@ -21,6 +21,7 @@ Vec3 point_of(const Vec3& p, const Vec3& q, double share) noexcept { return p + 
 
 struct Nearest {
   Vec3 on_a, on_b;
+  Vec3 way() const noexcept { return on_b - on_a; }
 };
 
 // Of two segments (Ericson 2005, 5.1.9).
@@ -64,18 +65,13 @@ Vec3 way_out(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
   return rotate(pose, way);
 }
 
-struct NearestOfBox {  // in the box's frame at scale 1
-  Vec3 on_segment, on_box;
-  double distance = 0;
-};
-
-// Of a solid box and the segment from p to q. The square of the distance along the segment is convex, and quadratic
-// between the places where a coordinate enters or leaves the box.
-NearestOfBox nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
+// Of a solid box, at on_a, and the segment from p to q, in the box's frame at scale 1. The square of the distance along
+// the segment is convex, and quadratic between the places where a coordinate enters or leaves the box.
+Nearest nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
   const Vec3 way = q - p;
   if (const double inside = enters_box(-half, half, p, way, 1); inside <= 1) {
     const Vec3 at = point_of(p, q, inside);
-    return {at, at, 0};
+    return {at, at};
   }
   const auto slope = [&](double t, double& square) {  // half of it; `square`: how fast it grows
     double sum = square = 0;
@@ -100,10 +96,9 @@ NearestOfBox nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noex
     const double middle = 0.5 * (low + high), rise = slope(middle, square);
     t = square > 0 ? std::clamp(middle - rise / square, low, high) : middle;
   }
-  NearestOfBox near;
-  near.on_segment = t == 1 ? q : point_of(p, q, t);
-  for (std::size_t i = 0; i < 3; ++i) near.on_box[i] = std::clamp(near.on_segment[i], -half[i], half[i]);
-  near.distance = length(near.on_segment - near.on_box);
+  Nearest near;
+  near.on_b = t == 1 ? q : point_of(p, q, t);
+  for (std::size_t i = 0; i < 3; ++i) near.on_a[i] = std::clamp(near.on_b[i], -half[i], half[i]);
   return near;
 }
 
@@ -128,13 +123,12 @@ Verdict no_with(double gap, double size) noexcept {
 
 Verdict of_rounds(const Round& a, const Round& b) noexcept {
   const Nearest near = nearest_of_segments(a.p, a.q, b.p, b.q);
-  const Vec3 way = near.on_b - near.on_a;
-  const double distance = length(way);
+  const double distance = length(near.way());
   if (!std::isfinite(distance)) return unknown_verdict();
   if (distance > a.radius + b.radius) {
     return no_with(distance - a.radius - b.radius, length(near.on_a) + length(near.on_b) + distance);
   }
-  const Vec3 normal = unit(way, {0, 0, 1});
+  const Vec3 normal = unit(near.way(), {0, 0, 1});
   // In the middle of what both have in common along the way.
   const double from = std::max(0.0, distance - b.radius), to = std::min(distance, a.radius);
   return yes_at(near.on_a + 0.5 * (from + to) * normal, normal);
@@ -143,14 +137,14 @@ Verdict of_rounds(const Round& a, const Round& b) noexcept {
 // The normal from the box to the round shape.
 Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept {
   const Pose back = inverse(pose);
-  const NearestOfBox near = nearest_of_box(box.p, transform(back, round.p), transform(back, round.q));
-  const double distance = near.distance * pose.scale;
+  const Nearest near = nearest_of_box(box.p, transform(back, round.p), transform(back, round.q));
+  const double distance = length(near.way()) * pose.scale;
   if (!std::isfinite(distance)) return unknown_verdict();
   if (distance > round.radius) {
     return no_with(distance - round.radius, length(round.p) + length(round.q) + length(Vec3(pose.translation)));
   }
-  const Vec3 at = transform(pose, near.on_box);
-  if (distance > 0) return yes_at(at, rotate(pose, unit(near.on_segment - near.on_box, {0, 0, 1})));
+  const Vec3 at = transform(pose, near.on_a);
+  if (distance > 0) return yes_at(at, rotate(pose, unit(near.way(), {0, 0, 1})));
   return yes_at(at, way_out(box, pose, at));
 }
 
@@ -172,6 +166,16 @@ Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::u
   return verdict;
 }
 
+// The normal into the half-space.
+Verdict of_half_space(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept {
+  const SurfacePoint lowest = lowest_point(shape, pose, half);
+  if (!std::isfinite(lowest.distance)) return unknown_verdict();
+  if (lowest.distance > 0) return no_with(lowest.distance, 0);
+  Verdict verdict = yes_at(lowest.point, -1.0 * half.normal);
+  verdict.contact.triangle_a = lowest.triangle;
+  return verdict;
+}
+
 void exchange(Contact& contact) noexcept {
   for (double& x : contact.normal) x = -x;
   std::swap(contact.triangle_a, contact.triangle_b);
@@ -187,6 +191,7 @@ Verdict unknown_verdict() noexcept {
 
 Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::uint32_t guess) noexcept {
+  if (b.kind == ShapeKind::half_space) return of_half_space(a, pose_a, b.half);
   if (!a.has_tree() && !b.has_tree()) return of_rounds(Round(a, pose_a), Round(b, pose_b));
   if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b), guess);
   Verdict verdict = of_tree(b, pose_b, Round(a, pose_a), guess);
@@ -212,17 +217,6 @@ bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& 
   return false;
 }
 
-namespace {
-
-// How far the shape reaches along a unit vector.
-double top_along(const Shape& shape, const Pose& pose, const Vec3& n) noexcept {
-  if (shape.has_tree()) return -deepest_point(shape.tree, pose, -1.0 * n, 0).distance;
-  const Round round(shape, pose);
-  return std::max(dot(n, round.p), dot(n, round.q)) + round.radius;
-}
-
-}  // namespace
-
 // Where their extents along the normal are free of each other, both are. Before that the second one is moved to where
 // it has certainly left what it touches now, again and again, and every third time to half of the rest, since many
 // surfaces may be in the way one after another. A gap lasts for as long a way back, and what is in common for a way on.
@@ -230,7 +224,8 @@ double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Po
                     const Vec3& normal) noexcept {
   constexpr int kSteps = 120;
   constexpr double kRounding = 1e-12;  // of coordinates and lengths, in what is known from others
-  const double most = std::max(0.0, top_along(a, pose_a, normal) + top_along(b, pose_b, -1.0 * normal));
+  const double most = std::max(
+      0.0, -lowest_point(a, pose_a, {-1.0 * normal, 0}).distance - lowest_point(b, pose_b, {normal, 0}).distance);
   if (!a.has_tree() && !b.has_tree()) return most;
   const bool second = a.has_tree();  // is the round one
   const Round round(second ? b : a, second ? pose_b : pose_a);

@@ -1,5 +1,6 @@
 #pragma once
 #include "detector/shapes.h"
+#include "orchard/runtime/shape_query.h"
 
 // Pairs with a simple shape: in closed form, or one walk down one tree. Correct to rounding in double, as shape_query.h
 // says. None is interrupted. A round or box-shaped body is solid.
@@ -7,13 +8,13 @@ namespace orchard::runtime::detail {
 
 Verdict unknown_verdict() noexcept;
 
-// At least one of the two is round. The poses are rigid here, and in test_half_space(). `guess`: the tree's triangle
-// that may be the nearest one, or none; it changes nothing but the time.
+// At least one of the two is round, or `b` is a half-space, into which the normal of a contact points then. The poses
+// are rigid. `guess`: the tree's triangle that may be the nearest one, or none; it changes nothing but the time.
 Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::uint32_t guess = kNoTriangle) noexcept;
 
-// `b` is the half-space; the normal of a contact points into it.
-Verdict test_half_space(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;
+// The lowest point of a shape and its height over the plane; not finite if that is not known.
+SurfacePoint lowest_point(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept;
 
 // How far the second one of a pair that touches has to move along the verdict's normal, until it does no more.
 double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,

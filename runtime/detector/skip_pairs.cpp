@@ -40,21 +40,15 @@ bool PairSkipper::moved_less_than_gap(const PairCache::Known& known) const noexc
   return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 
-bool PairSkipper::sphere_above(const BodyPair& pair) const noexcept {
-  const BoundingSphereCache& a = world_.bodies.sphere_cache(pair.a);
-  const HalfSpace& half = world_.places.half_space(pair.b);
-  const double height = dot(half.normal, a.sphere.center) - half.offset - a.sphere.reach;
-  return height > kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
-}
-
 // Whether each part of the one is apart from each of the other: for bodies of several parts.
 bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
   const Body &a = world_.bodies[pair.a], &b = world_.bodies[pair.b];
-  if (a.parts.size() + b.parts.size() == 2 || !a.valid || !b.valid || a.is_continuous() || b.is_continuous())
+  if (!world_.any.parts || (a.several.empty() && b.several.empty()) || !a.valid || !b.valid || a.is_continuous() ||
+      b.is_continuous())
     return false;
-  for (const PartRecord& p : a.parts) {
-    for (const PartRecord& q : b.parts) {
-      if (!spheres_part(p.sphere, q.sphere)) return false;
+  for (const PartRecord& p : a.parts()) {
+    for (const PartRecord& q : b.parts()) {
+      if (!(sphere_gap(p.sphere, q.sphere).least > 0)) return false;
     }
   }
   return true;
@@ -78,7 +72,10 @@ std::size_t PairSkipper::find_near(PairCache& cache, std::size_t begin, std::siz
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) cache.prefetch_known(near[i + kAhead]);
     const BodyPair& pair = pairs[near[i]];
-    if (!cache.busy(near[i]) && (is_half_space(pair.b) ? sphere_above(pair) : parts_apart(pair))) continue;
+    const BoundingSphere& sphere = world_.bodies.sphere_cache(pair.a).sphere;
+    if (!cache.busy(near[i]) &&
+        (is_half_space(pair.b) ? sphere_gap(sphere, world_.places.half_space(pair.b)).least > 0 : parts_apart(pair)))
+      continue;
     auto& known = cache.known(near[i]);
     if (known.clearance.distance > 0 && moved_less_than_gap(known)) continue;
     known.clearance.distance = 0;
@@ -111,12 +108,6 @@ ActivePairs PairSkipper::find_active(PairCache& cache) {
   return {cache, world_.places, std::span(active_).first(count)};
 }
 
-// Neither has moved since the last certain answer.
-bool PairSkipper::rest(const CachedPair& pair) const noexcept {
-  const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
-  return pair.answered >= 0 && std::max(a.steps.moved, b.steps.moved) <= pair.answered && !pair.sweep.impact;
-}
-
 bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
   pair.turn.importance = std::max(a.options.importance, b.options.importance);
@@ -129,8 +120,8 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) co
   pair.sweep.possible = continuous && pair.versions.jumps == jumps && known_before(a) && known_before(b);
   // As spheres reach as far as a step leads, a body that was not sampled at the step before had nothing near it then:
   // unless the broad phase was interrupted, or the body's parts go farther now. Nothing was between it and a new body.
-  const bool sphere_fell_short = interrupted || a.steps.stretched == step - 1 || b.steps.stretched == step - 1;
-  const bool both_before = std::max(a.steps.since, b.steps.since) < step;
+  const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
+  const bool both_before = std::max(a.since, b.since) < step;
   pair.sweep.unseen =
       continuous && pair.versions.jumps == jumps && !pair.sweep.possible && sphere_fell_short && both_before;
   pair.versions.jumps = jumps;
@@ -138,7 +129,8 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) co
     pair.versions.deformed = a.changes.deformed + b.changes.deformed;
     pair.trees.forget();
   }
-  return !rest(pair);
+  const bool rest = pair.answered >= 0 && std::max(a.steps.moved, b.steps.moved) <= pair.answered;
+  return !rest || pair.sweep.impact;
 }
 
 // After a certain "no". What is swept is asked at each step.

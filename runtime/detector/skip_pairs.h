@@ -46,8 +46,6 @@ class PairSkipper {
  private:
   RelativePlacement relative_placement(const BodyPair& pair) const noexcept;
   bool moved_less_than_gap(const PairCache::Known& known) const noexcept;
-  bool sphere_above(const BodyPair& pair) const noexcept;
-  bool rest(const CachedPair& pair) const noexcept;
   bool parts_apart(const BodyPair& pair) const noexcept;
   std::size_t find_near(PairCache& cache, std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept;
 

@@ -32,21 +32,20 @@ double enters_capsule(const Vec3& p, const Vec3& q, double radius, const Vec3& o
   return foot >= 0 && foot <= aa ? std::min(first, side) : first;
 }
 
+double enters_half_space(const HalfSpace& half, const Vec3& origin, const Vec3& way) noexcept {
+  const double height = dot(half.normal, origin) - half.offset, sinks = -dot(half.normal, way);
+  return height <= 0 ? 0 : sinks > 0 ? height / sinks : kInfinity;
+}
+
 }  // namespace
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Pose& pose, const Ray& ray) noexcept {
   if (shape.kind == ShapeKind::tree) return cast_ray(shape.tree, pose, ray.origin, ray.direction, ray.longest);
   const Pose back = inverse(pose);
   const Vec3 origin = transform(back, ray.origin), way = back.scale * Vec3(rotate(back, ray.direction));
-  const double along = shape.kind == ShapeKind::box ? enters_box(-shape.p, shape.p, origin, way, kInfinity)
-                                                    : enters_capsule(shape.p, shape.q, shape.radius, origin, way);
-  if (!(along <= ray.longest) || along == kInfinity) return std::nullopt;
-  return RayHit{along, Vec3(ray.origin) + along * Vec3(ray.direction), kNoTriangle};
-}
-
-std::optional<RayHit> cast_ray(const HalfSpace& half, const Ray& ray) noexcept {
-  const double height = dot(half.normal, ray.origin) - half.offset, sinks = -dot(half.normal, ray.direction);
-  const double along = height <= 0 ? 0 : sinks > 0 ? height / sinks : kInfinity;
+  const double along = shape.kind == ShapeKind::box     ? enters_box(-shape.p, shape.p, origin, way, kInfinity)
+                       : shape.kind == ShapeKind::round ? enters_capsule(shape.p, shape.q, shape.radius, origin, way)
+                                                        : enters_half_space(shape.half, origin, way);
   if (!(along <= ray.longest) || along == kInfinity) return std::nullopt;
   return RayHit{along, Vec3(ray.origin) + along * Vec3(ray.direction), kNoTriangle};
 }
@@ -55,25 +54,20 @@ SurfacePoint nearest_point(const Shape& shape, const Pose& pose, const Vec3& poi
   if (shape.kind == ShapeKind::tree) return nearest_point(shape.tree, pose, point, limit);
   const Vec3 at = transform(inverse(pose), point);
   Vec3 near = at;
-  if (shape.kind == ShapeKind::box) {
+  SurfacePoint result;
+  if (shape.kind == ShapeKind::half_space) {
+    result.distance = std::max(0.0, dot(shape.half.normal, at) - shape.half.offset);
+    near = at - result.distance * shape.half.normal;
+  } else if (shape.kind == ShapeKind::box) {
     for (std::size_t i = 0; i < 3; ++i) near[i] = std::clamp(at[i], -shape.p[i], shape.p[i]);
   } else {
     const Vec3 middle = nearest_of_segment(shape.p, shape.q, at), way = at - middle;
     const double size = length(way);
     if (size > shape.radius) near = middle + (shape.radius / size) * way;
   }
-  SurfacePoint result;
-  result.distance = length(at - near) * pose.scale;
+  if (shape.kind != ShapeKind::half_space) result.distance = length(at - near) * pose.scale;
   if (!(result.distance <= limit)) return {};
   result.point = result.distance == 0 ? point : Vec3(transform(pose, near));
-  return result;
-}
-
-SurfacePoint nearest_point(const HalfSpace& half, const Vec3& point, double limit) noexcept {
-  SurfacePoint result;
-  result.distance = std::max(0.0, dot(half.normal, point) - half.offset);
-  if (!(result.distance <= limit)) return {};
-  result.point = point - result.distance * half.normal;
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "detector/sphere_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 namespace orchard::runtime::detail {
@@ -18,26 +19,22 @@ void SphereTree::build(std::uint32_t leaf) {
   if (!parts_.empty()) build(0, static_cast<std::uint32_t>(parts_.size()));
 }
 
-// In half, across the axis along which the centres reach farthest.
+// Across the axis along which its box is longest, so that all leaves but one are full.
 std::uint32_t SphereTree::build(std::uint32_t begin, std::uint32_t end) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
-  Node node;
-  Vec3 low = parts_[begin].center, high = low;
-  node.low = low, node.high = high;
+  Node node{parts_[begin].center, parts_[begin].center, begin, end};
   for (std::uint32_t i = begin; i < end; ++i) {
     const Part& part = parts_[i];
     for (std::size_t d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], part.center[d]), high[d] = std::max(high[d], part.center[d]);
       node.low[d] = std::min(node.low[d], part.center[d] - part.reach);
       node.high[d] = std::max(node.high[d], part.center[d] + part.reach);
     }
   }
-  node.begin = begin, node.end = end;
   nodes_.push_back(node);
   if (end - begin <= leaf_) return index;
-  const Vec3 extent = high - low;
+  const Vec3 extent = node.high - node.low;
   const std::size_t axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
-  const std::uint32_t middle = begin + (end - begin) / 2;
+  const std::uint32_t middle = begin + std::bit_ceil(end - begin) / 2;
   const auto at = [&](std::uint32_t i) { return parts_.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(begin), at(middle), at(end), [axis](const Part& p, const Part& q) {
     return std::tie(p.center[axis], p.body, p.part) < std::tie(q.center[axis], q.body, q.part);

@@ -7,24 +7,15 @@
 
 namespace orchard::runtime::detail {
 
-// What is left of the work and the time of a step.
-class WorkLeft {
+// What is left of the work and the time of a step, and where it cuts the step short: as the clock says, or as another
+// run's clock said. For one thread.
+class StepBudget {
  public:
   using Clock = std::chrono::steady_clock;
-  // Looks at the clock only if it `runs`.
-  class Stopwatch {
-   public:
-    explicit Stopwatch(bool runs) noexcept : runs_(runs), begin_(runs ? Clock::now() : Clock::time_point{}) {}
-    double passed() const noexcept {  // ns
-      return runs_ ? std::chrono::duration<double, std::nano>(Clock::now() - begin_).count() : 0;
-    }
-
-   private:
-    bool runs_;
-    Clock::time_point begin_;
-  };
-  explicit WorkLeft(const Budget& budget) noexcept : left_(budget.work), limited_(budget.work != Budget{}.work) {
-    if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
+  StepBudget(const Budget& budget, const StepCut* replay) noexcept
+      : left_(budget.work), limited_(budget.work != Budget{}.work), replay_(replay) {
+    if (replay == nullptr &&
+        budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
       timed_ = true;
       deadline_ = Clock::now() + budget.time;
     }
@@ -44,6 +35,9 @@ class WorkLeft {
                   : Budget{}.time;
   }
   bool timed() const noexcept { return timed_; }
+  double clock() const noexcept {  // ns since some time; 0 if there is no limit in time
+    return timed_ ? std::chrono::duration<double, std::nano>(Clock::now().time_since_epoch()).count() : 0;
+  }
   // Sets a part of what is left aside, until it is given back. Time as well, or only time.
   struct Part {
     std::uint64_t work = 0;
@@ -63,28 +57,14 @@ class WorkLeft {
     deadline_ += part.time;
   }
 
- protected:
-  Budget share_of_rest(std::uint64_t among) const noexcept {  // this one first
+  bool limited() const noexcept { return limited_in_work() || timed() || replay_ != nullptr; }
+  // One of `among` equal shares of what is left.
+  StepBudget share(std::uint64_t among) const noexcept {  // this one first
     Budget part;
     if (limited_) part.work = left_ / among + (left_ % among != 0 ? 1 : 0);
     if (timed_) part.time = time_left() / static_cast<std::int64_t>(among);
-    return part;
+    return {part, replay_};
   }
-
- private:
-  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: spent when nothing was left
-  bool limited_, timed_ = false;
-  Clock::time_point deadline_{};
-};
-
-// A step's budget, and where it cuts the step short: as the clock says, or as another run's clock said. For one thread.
-class StepBudget : public WorkLeft {
- public:
-  StepBudget(const Budget& budget, const StepCut* replay) noexcept
-      : WorkLeft(replay == nullptr ? budget : Budget{.work = budget.work}), replay_(replay) {}
-  bool limited() const noexcept { return limited_in_work() || timed() || replay_ != nullptr; }
-  // One of `among` equal shares of what is left.
-  StepBudget share(std::uint64_t among) const noexcept { return {share_of_rest(among), replay_}; }
 
   const StepCut* replay() const noexcept { return replay_; }
   const StepCut& cut() const noexcept { return cut_; }
@@ -109,6 +89,9 @@ class StepBudget : public WorkLeft {
     return !stop;
   }
 
+  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: spent when nothing was left
+  bool limited_, timed_ = false;
+  Clock::time_point deadline_{};
   const StepCut* replay_;
   StepCut cut_;
   std::uint64_t begun_ = 0, refined_ = 0;

@@ -100,7 +100,8 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
                           std::uint64_t& work) noexcept {
   Swept result;
   const Travel travel = travel_of(from.a, to.a);
-  const Vec3& normal = from.half.normal;
+  const HalfSpace& half = from.b.shape->half;
+  const Vec3& normal = half.normal;
   const double speed = speed_of(travel, from.a.reach), near = kCloseness * from.a.reach;
   if (speed == 0) return result;
   const double turn = from.a.shape->kind == ShapeKind::round && from.a.shape->p == from.a.shape->q
@@ -113,7 +114,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
   for (int step = 0; step < kMaxSteps && work < most; ++step) {
     now.a.move_to(travel.at(time));
     work += kSimplePairWork;
-    const double gap = half_space_distance(*now.a.shape, now.a.pose(), now.half);
+    const double gap = half_space_distance(*now.a.shape, now.a.pose(), half);
     if (gap <= near) {
       const Verdict verdict = answer_exactly(query_of(workspace.narrow), now, work, most);
       if (verdict.answer == Answer::yes) {
@@ -143,13 +144,13 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
 
 Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept {
-  const bool half = from.b.shape == nullptr;
-  if (!can_travel(from.a, to.a) || (!half && !can_travel(from.b, to.b))) {
+  if (!can_travel(from.a, to.a) || !can_travel(from.b, to.b)) {
     Swept unknown;
     unknown.answer = Answer::maybe;
     return unknown;
   }
-  return half ? sweep_to_half_space(workspace, from, to, most, work) : sweep_trees(workspace, from, to, most, work);
+  return from.with_half_space() ? sweep_to_half_space(workspace, from, to, most, work)
+                                : sweep_trees(workspace, from, to, most, work);
 }
 
 }  // namespace orchard::runtime::detail

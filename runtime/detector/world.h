@@ -22,6 +22,9 @@ struct World {
     if (body.frozen) body.steps.asked = std::max(body.steps.asked, answered);
     body.frozen = false;
   }
+  BodyState state(const Body& body) const noexcept {  // as of the last step
+    return kept_states && !body.is_static ? kept_states->at(time_of_last_step(), body.id.index) : body.state;
+  }
   // What sleeps is at rest.
   void keep_state(const Body& body, BodyState state) {
     if (body.asleep) state.velocity = {};

@@ -25,9 +25,9 @@ void take_nearer(std::optional<WorldPoint>& best, const WorldPoint& found) noexc
 }  // namespace
 
 // Static bodies, those that the detector moves, those that the last step has asked for; the source knows the others.
-void WorldQueries::find_poses(const World& world, const StateSampler& sampler) {
-  const BodyTable& bodies = world.bodies;
-  const double time = world.time_of_last_step();
+void WorldQueries::find_poses() {
+  const BodyTable& bodies = world_.bodies;
+  const double time = world_.time_of_last_step();
   Pose nowhere;
   nowhere.rotation = {};
   poses_.assign(bodies.slots(), nowhere);
@@ -37,9 +37,9 @@ void WorldQueries::find_poses(const World& world, const StateSampler& sampler) {
     if (body.id == kNoBody) continue;
     if (body.is_static) {
       poses_[i] = body.state.pose;
-    } else if (world.kept_states) {
-      poses_[i] = world.kept_states->at(time, i).pose;
-    } else if (body.frozen || (body.steps.asked == world.answered && world.answered >= 0)) {
+    } else if (world_.kept_states) {
+      poses_[i] = world_.kept_states->at(time, i).pose;
+    } else if (body.frozen || (body.steps.asked == world_.answered && world_.answered >= 0)) {
       if (body.valid) poses_[i] = body.state.pose;
     } else {
       asked_.push_back(i);
@@ -47,44 +47,44 @@ void WorldQueries::find_poses(const World& world, const StateSampler& sampler) {
   }
   if (asked_.empty()) return;
   answers_.resize(asked_.size());
-  sampler.source()(time, asked_, answers_);
+  sampler_.source()(time, asked_, answers_);
   for (std::size_t k = 0; k < asked_.size(); ++k) {
     if (is_valid(answers_[k])) poses_[asked_[k]] = answers_[k].pose;
   }
 }
 
-void WorldQueries::update(const World& world, const StateSampler& sampler) {
-  if (at_ == world.answered && changes_ == world.changes) return;
+void WorldQueries::update() {
+  if (at_ == world_.answered && changes_ == world_.changes) return;
   at_ = kNotAsked;  // where memory runs out, all is found again
-  find_poses(world, sampler);
+  find_poses();
   tree_.clear();
   for (BodyIndex i = 0; i < poses_.size(); ++i) {
-    if (world.bodies[i].id == kNoBody || !is_rigid(poses_[i])) continue;
-    const auto& parts = world.bodies[i].parts;
+    if (world_.bodies[i].id == kNoBody || !is_rigid(poses_[i])) continue;
+    const std::span<const PartRecord> parts = world_.bodies[i].parts();
     for (std::uint32_t k = 0; k < parts.size(); ++k) {
       const BoundingSphere sphere(transform(poses_[i], parts[k].center), parts[k].reach * poses_[i].scale);
       if (std::isfinite(sphere.size)) tree_.add(sphere, i, k);
     }
   }
   tree_.build();
-  at_ = world.answered, changes_ = world.changes;
+  at_ = world_.answered, changes_ = world_.changes;
 }
 
 // use(target) for the half-spaces, and for the parts for whose boxes bound(low, high) is at most most().
 template <typename Bound, typename Most, typename Use>
-void WorldQueries::each_target(const World& world, const QueryFilter& filter, const Bound& bound, const Most& most,
-                               const Use& use) const {
-  world.halves.each([&](const Body& body, const HalfSpace& half) {
-    if (counts(body, filter)) use(Target{.body = body, .half = half});
+void WorldQueries::each_target(const QueryFilter& filter, const Bound& bound, const Most& most, const Use& use) {
+  update();
+  world_.halves.each([&](const Body& body, const Shape& shape) {
+    if (counts(body, filter)) use(Target{.body = body, .shape = shape});
   });
   const auto use_part = [&](const SphereTree::Part& part) {
-    const Body& body = world.bodies[part.body];
+    const Body& body = world_.bodies[part.body];
     if (!counts(body, filter)) return;
-    const PartRecord& record = body.parts[part.part];
+    const PartRecord& record = body.parts()[part.part];
     const Pose& pose = poses_[part.body];
     use(Target{.body = body,
                .part = part.part,
-               .shape = &world.shapes[record.shape],
+               .shape = world_.shapes[record.shape],
                .pose = record.at_origin ? pose : placed(pose, record.local)});
   };
   tree_.walk(bound, most, [&](std::uint32_t begin, std::uint32_t end) {
@@ -92,45 +92,42 @@ void WorldQueries::each_target(const World& world, const QueryFilter& filter, co
   });
 }
 
-std::optional<WorldPoint> WorldQueries::cast_ray(const World& world, const Ray& ray, const QueryFilter& filter) {
+// use(target, point) for those that are at most most() away, and where.
+template <typename Most, typename Use>
+void WorldQueries::each_near(const QueryFilter& filter, const Vec3& to, const Most& most, const Use& use) {
+  const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, to)); };
+  each_target(filter, bound, most, [&](const Target& target) {
+    const SurfacePoint near = nearest_point(target.shape, target.pose, to, most());
+    if (std::isfinite(near.distance)) use(target, near);
+  });
+}
+
+std::optional<WorldPoint> WorldQueries::cast_ray(const Ray& ray, const QueryFilter& filter) {
   std::optional<WorldPoint> best;
   const auto most = [&] { return best ? best->distance : ray.longest; };
   const auto bound = [&](const Vec3& low, const Vec3& high) {
     return enters_box(low, high, ray.origin, ray.direction, kInfinity);
   };
-  each_target(world, filter, bound, most, [&](const Target& target) {
-    const Ray within{ray.origin, ray.direction, most()};
-    const auto hit = target.shape == nullptr ? detail::cast_ray(target.half, within)
-                                             : detail::cast_ray(*target.shape, target.pose, within);
+  each_target(filter, bound, most, [&](const Target& target) {
+    const auto hit = detail::cast_ray(target.shape, target.pose, {ray.origin, ray.direction, most()});
     if (hit) take_nearer(best, {target.body.id, target.part, hit->along, hit->point, hit->triangle});
   });
   return best;
 }
 
-std::optional<WorldPoint> WorldQueries::nearest(const World& world, const Vec3& point, double limit,
-                                                const QueryFilter& filter) {
+std::optional<WorldPoint> WorldQueries::nearest(const Vec3& point, double limit, const QueryFilter& filter) {
   std::optional<WorldPoint> best;
   const auto most = [&] { return best ? best->distance : limit; };
-  const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, point)); };
-  each_target(world, filter, bound, most, [&](const Target& target) {
-    const SurfacePoint near = target.shape == nullptr ? nearest_point(target.half, point, most())
-                                                      : nearest_point(*target.shape, target.pose, point, most());
-    if (std::isfinite(near.distance))
-      take_nearer(best, {target.body.id, target.part, near.distance, near.point, near.triangle});
+  each_near(filter, point, most, [&](const Target& target, const SurfacePoint& near) {
+    take_nearer(best, {target.body.id, target.part, near.distance, near.point, near.triangle});
   });
   return best;
 }
 
-std::span<const BodyId> WorldQueries::touching_sphere(const World& world, const Vec3& center, double radius,
-                                                      const QueryFilter& filter) {
+std::span<const BodyId> WorldQueries::touching_sphere(const Vec3& center, double radius, const QueryFilter& filter) {
   found_.clear();
   const auto most = [&] { return radius; };
-  const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, center)); };
-  each_target(world, filter, bound, most, [&](const Target& target) {
-    const SurfacePoint near = target.shape == nullptr ? nearest_point(target.half, center, radius)
-                                                      : nearest_point(*target.shape, target.pose, center, radius);
-    if (near.distance <= radius) found_.push_back(target.body.id);
-  });
+  each_near(filter, center, most, [&](const Target& target, const SurfacePoint&) { found_.push_back(target.body.id); });
   const auto by_index = [](const BodyId& p, const BodyId& q) { return p.index < q.index; };
   std::sort(found_.begin(), found_.end(), by_index);
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
@@ -144,22 +141,19 @@ std::optional<WorldPoint> Detector::cast_ray(const Ray& ray, const QueryFilter& 
   if (!s.takes_changes() || !detail::is_finite(ray.origin) || !detail::is_finite(ray.direction) ||
       ray.direction == Vec3{} || !(ray.longest >= 0))
     return std::nullopt;
-  s.queries.update(s.world, s.sampler);
-  return s.queries.cast_ray(s.world, ray, filter);
+  return s.queries.cast_ray(ray, filter);
 }
 
 std::optional<WorldPoint> Detector::nearest(const Vec3& point, double limit, const QueryFilter& filter) {
   State& s = *state_;
   if (!s.takes_changes() || !detail::is_finite(point) || !(limit >= 0)) return std::nullopt;
-  s.queries.update(s.world, s.sampler);
-  return s.queries.nearest(s.world, point, limit, filter);
+  return s.queries.nearest(point, limit, filter);
 }
 
 std::span<const BodyId> Detector::touching_sphere(const Vec3& center, double radius, const QueryFilter& filter) {
   State& s = *state_;
   if (!s.takes_changes() || !detail::is_finite(center) || !(radius >= 0) || !std::isfinite(radius)) return {};
-  s.queries.update(s.world, s.sampler);
-  return s.queries.touching_sphere(s.world, center, radius, filter);
+  return s.queries.touching_sphere(center, radius, filter);
 }
 
 }  // namespace orchard::runtime

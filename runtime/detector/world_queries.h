@@ -8,30 +8,32 @@ namespace orchard::runtime::detail {
 // spheres, which is built when the first question is asked after a change.
 class WorldQueries {
  public:
-  // The world as of the last step. Nothing is built where it is still the one of the last call.
-  void update(const World& world, const StateSampler& sampler);
-  std::optional<WorldPoint> cast_ray(const World& world, const Ray& ray, const QueryFilter& filter);
-  std::optional<WorldPoint> nearest(const World& world, const Vec3& point, double limit, const QueryFilter& filter);
-  std::span<const BodyId> touching_sphere(const World& world, const Vec3& center, double radius,
-                                          const QueryFilter& filter);
+  WorldQueries(const World& world, const StateSampler& sampler) noexcept : world_(world), sampler_(sampler) {}
+
+  std::optional<WorldPoint> cast_ray(const Ray& ray, const QueryFilter& filter);
+  std::optional<WorldPoint> nearest(const Vec3& point, double limit, const QueryFilter& filter);
+  std::span<const BodyId> touching_sphere(const Vec3& center, double radius, const QueryFilter& filter);
   std::size_t memory_bytes() const noexcept {
     return tree_.memory_bytes() + bytes_of(poses_, asked_, answers_, found_);
   }
 
  private:
-  // A part of a body, or a half-space.
+  // A part of a body, or a half-space, whose pose does not matter.
   struct Target {
     const Body& body;
     std::uint32_t part = 0;
-    const Shape* shape = nullptr;  // null: a half-space
-    HalfSpace half{};
+    const Shape& shape;
     Pose pose{};
   };
-  void find_poses(const World& world, const StateSampler& sampler);
+  void find_poses();
+  void update();  // to the world as of the last step; nothing is built where it is still the one of the last call
   template <typename Bound, typename Most, typename Use>
-  void each_target(const World& world, const QueryFilter& filter, const Bound& bound, const Most& most,
-                   const Use& use) const;
+  void each_target(const QueryFilter& filter, const Bound& bound, const Most& most, const Use& use);
+  template <typename Most, typename Use>
+  void each_near(const QueryFilter& filter, const Vec3& to, const Most& most, const Use& use);
 
+  const World& world_;
+  const StateSampler& sampler_;
   Step at_ = kNotAsked;
   std::uint64_t changes_ = 0;
   SphereTree tree_;
