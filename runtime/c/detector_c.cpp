@@ -57,9 +57,19 @@ orchard_frame step(orchard_detector& detector, double time, const orchard_budget
                    const rt::StepOptions& options) {
   const rt::Frame& f = detector.frame = detector.detector.step(time, budget_of(given), options);
   const auto counts = converted<orchard_frame_counts>(static_cast<const rt::FrameCounts&>(f));
-  return {f.time,          f.next_time,    f.steps,           f.unfinished.steps_left, f.unfinished.skipped,
-          f.events.size(), counts,         f.unfinished.incomplete_from, f.unfinished.left_over,  f.refused.size(),
-          f.broken.size(), f.time_refused, f.out_of_memory};
+  return {f.time,
+          f.next_time,
+          f.steps,
+          f.unfinished.steps_left,
+          f.unfinished.skipped,
+          f.events.size(),
+          counts,
+          f.unfinished.incomplete_from,
+          f.unfinished.left_over,
+          f.refused.size(),
+          f.broken.size(),
+          f.time_refused,
+          f.out_of_memory};
 }
 
 static_assert(ORCHARD_FIRST_HALF_SPACE == rt::kFirstHalfSpace);
