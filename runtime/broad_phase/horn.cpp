@@ -111,7 +111,7 @@ ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, cons
     return Kind::motions([=](std::size_t i) ORCHARD_INLINE_LAMBDA { return motions + 2 * i + first; });
   };
   const MotionLanes<Numbers> a = every_other(0), b = every_other(1);
-  if (!precision.valid && !Kind::all(are_valid<Kind>(a) & are_valid<Kind>(b))) return false;
+  if (!precision.valid && !Kind::all(both(are_valid<Kind>(a), are_valid<Kind>(b)))) return false;
   const Numbers limit = load_lanes<Kind>(limits);
   Horns<Numbers> p;
   auto half_spaces = all_of<Kind>(0);

@@ -19,7 +19,7 @@ KineticBroadPhase::KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& op
     : state_(pool, options),
       planner_(pool, state_.options),
       pairs_(state_),
-      updates_(state_, planner_, pairs_),
+      updates_(state_, pairs_),
       budgeted_(state_, pairs_, updates_) {}
 
 void KineticBroadPhase::changed(BodyIndex body) {

@@ -128,6 +128,10 @@ template <typename Kind, typename Numbers>
 ORCHARD_INLINE Numbers most(const Numbers& a, const Numbers& b) noexcept {
   return Kind::choose(a < b, b, a);
 }
+template <typename Mask, typename Other>
+ORCHARD_INLINE Mask both(const Mask& a, const Other& b) noexcept {
+  return a & b;
+}
 template <typename Three>
 ORCHARD_INLINE auto dot_of(const Three& a, const Three& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -140,7 +144,7 @@ ORCHARD_INLINE typename Kind::Mask are_valid(const MotionLanes<typename Kind::Nu
                        dot_of(m.half_space, m.half_space) +
                        (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
   const auto lowest = least<Kind>(least<Kind>(m.radius, m.acceleration), m.drift);
-  return (squares <= all_of<Kind>(kMaxNumber * kMaxNumber)) & (all_of<Kind>(0) <= lowest);
+  return both(squares <= all_of<Kind>(kMaxNumber * kMaxNumber), all_of<Kind>(0) <= lowest);
 }
 
 }  // namespace orchard::runtime::detail

@@ -94,7 +94,7 @@ ORCHARD_INLINE typename Kind::Mask QuantizedGrid::make_some(const Row& row, cons
     const Numbers way = (of.velocity[d] - all(velocity_[d])) * per_speed;
     lower[d] = begin + least<Kind>(zero, way - wide) - radius;
     upper[d] = begin + most<Kind>(zero, way + wide) + radius;
-    inside = inside & (zero <= lower[d]) & (upper[d] <= last);
+    inside = both(inside, both(zero <= lower[d], upper[d] <= last));
   }
   for (std::size_t d = 0; d < 3; ++d) {
     Kind::truncate(Kind::choose(inside, lower[d], zero), &boxes.lower[d][first]);

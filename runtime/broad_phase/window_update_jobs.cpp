@@ -23,8 +23,8 @@ struct WindowUpdates::Shared {
   std::array<GridPart, SweptGrid::kParts> parts;
 };
 
-WindowUpdates::WindowUpdates(KineticState& state, Planner& planner, NearPairs& pairs)
-    : state_(state), planner_(planner), pairs_(pairs), chunk_(std::make_unique<Chunk>()) {}
+WindowUpdates::WindowUpdates(KineticState& state, NearPairs& pairs)
+    : state_(state), pairs_(pairs), chunk_(std::make_unique<Chunk>()) {}
 WindowUpdates::~WindowUpdates() = default;
 
 std::size_t WindowUpdates::memory_bytes() const noexcept {

@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "broad_phase/near_pairs.h"
-#include "broad_phase/planner.h"
 
 namespace orchard::runtime::detail {
 
@@ -16,7 +15,7 @@ namespace orchard::runtime::detail {
 // cache and a part of them does.
 class WindowUpdates {
  public:
-  WindowUpdates(KineticState& state, Planner& planner, NearPairs& pairs);
+  WindowUpdates(KineticState& state, NearPairs& pairs);
   ~WindowUpdates();
 
   // The bodies' windows begin at `from`, from the motions at `now`. Where it is a later step, bodies whose bounds do
@@ -57,7 +56,6 @@ class WindowUpdates {
   void run_all(std::size_t count, const Job& job);
 
   KineticState& state_;
-  Planner& planner_;
   NearPairs& pairs_;
   std::vector<Motion> motions_;     // of the block under way
   std::vector<BodyPair> near_;      // untested yet

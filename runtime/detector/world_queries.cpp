@@ -35,12 +35,10 @@ void WorldQueries::find_poses() {
   for (BodyIndex i = 0; i < bodies.slots(); ++i) {
     const Body& body = bodies[i];
     if (body.id == kNoBody) continue;
-    if (body.is_static) {
-      poses_[i] = body.state.pose;
-    } else if (world_.kept_states) {
+    if (world_.kept_states && !body.is_static) {
       poses_[i] = world_.kept_states->at(time, i).pose;
-    } else if (body.frozen || (body.steps.asked == world_.answered && world_.answered >= 0)) {
-      if (body.valid) poses_[i] = body.state.pose;
+    } else if (body.is_static || body.frozen || (body.steps.asked == world_.answered && world_.answered >= 0)) {
+      if (body.is_static || body.valid) poses_[i] = body.state.pose;
     } else {
       asked_.push_back(i);
     }

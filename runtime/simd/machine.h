@@ -51,7 +51,8 @@ struct PerMachine<kernel, base, portable> {
     const Machine chosen = machine();
     if (chosen == Machine::avx512) return avx512(arguments...);
     if (chosen == Machine::avx2) return avx2(arguments...);
-    return chosen == Machine::portable ? portable(arguments...) : base(arguments...);
+    if (chosen == Machine::portable) return portable(arguments...);
+    return base(arguments...);
   }
   ORCHARD_FOR_AVX2 static Result avx2(Arguments... arguments) noexcept { return kernel(arguments...); }
   ORCHARD_FOR_AVX512 static Result avx512(Arguments... arguments) noexcept { return kernel(arguments...); }
