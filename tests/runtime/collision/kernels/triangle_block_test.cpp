@@ -52,6 +52,12 @@ void expect_same_on_every_machine(const NodeBox& single, const ObbNodeBlock& lan
   });
 }
 
+#ifdef __MINGW32__
+TEST(Machines, OfWindowsHaveNoVectorsThatTheStackOfGccDoesNotAlign) {
+  EXPECT_EQ(best_machine(), Machine::base);
+}
+#endif
+
 TEST(NodeBox, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance) {
   int apart = 0, tight = 0;
   const std::uint64_t begin = orchard::test::first_seed();
