@@ -1,5 +1,6 @@
 #pragma once
 #include "broad_phase/budgeted_work.h"
+#include "broad_phase/planner.h"
 #include "broad_phase/sorted_spheres.h"
 
 namespace orchard::runtime::detail {
