@@ -240,7 +240,8 @@ bool Detector::shape_changed(ShapeId shape) {
   for (BodyIndex i = 0; i < s.world.bodies.slots(); ++i) {
     Body& body = s.world.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
-    if (body.id == kNoBody || std::ranges::none_of(body.parts(), uses)) continue;
+    const auto parts = body.parts();
+    if (body.id == kNoBody || std::none_of(parts.begin(), parts.end(), uses)) continue;
     body.steps.moved = s.world.answered + 1;
     s.world.bodies.invalidate(i);
     ++body.changes.deformed;

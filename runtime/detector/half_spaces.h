@@ -16,7 +16,7 @@ class HalfSpaces {
   Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
   bool empty() const noexcept {
-    return std::ranges::all_of(planes_, [](const Plane& plane) { return plane.body.id == kNoBody; });
+    return std::all_of(planes_.begin(), planes_.end(), [](const Plane& plane) { return plane.body.id == kNoBody; });
   }
   template <typename Visit>
   void each(Visit&& visit) const {  // visit(body, shape)

@@ -39,6 +39,7 @@ extern PackedSphereTree other;
 extern Workspace workspace;
 extern TreePair both;
 extern std::vector<TreePair> many;
+extern std::vector<Pose> poses_a, poses_b;
 extern std::vector<PreparedTree> parts;
 extern std::vector<Pose> rest;
 extern Pose before, after, box_pose, hull_pose;

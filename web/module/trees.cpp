@@ -53,7 +53,7 @@ ORCHARD_EXPORT(tree_close) void web_tree_close(orchard_tree* tree) { orchard_tre
 
 // Radius, vertex error, branching, depth, and the numbers of nodes, vertices and triangles.
 ORCHARD_EXPORT(tree_facts) void web_tree_facts(const orchard_tree* tree, double* out) {
-  const rt::TreeView& view = tree->view;
+  const rt::TreeView& view = tree->view();
   *out++ = view.bounding_radius;
   *out++ = view.vertex_error;
   *out++ = view.branching;
@@ -66,12 +66,12 @@ ORCHARD_EXPORT(tree_facts) void web_tree_facts(const orchard_tree* tree, double*
 // How many spheres a level has; unless `out` is null, centre, radius and error of each.
 ORCHARD_EXPORT(tree_spheres) std::size_t web_tree_spheres(const orchard_tree* tree, std::uint32_t level, double* out) {
   std::size_t count = 0;
-  visit_level(tree->view, level, [&](const rt::SiblingBlock& block, std::uint32_t lane) {
+  visit_level(tree->view(), level, [&](const rt::SiblingBlock& block, std::uint32_t lane) {
     ++count;
     if (out == nullptr) return;
-    *out++ = tree->view.origin[0] + double{block.x[lane]};
-    *out++ = tree->view.origin[1] + double{block.y[lane]};
-    *out++ = tree->view.origin[2] + double{block.z[lane]};
+    *out++ = tree->view().origin[0] + double{block.x[lane]};
+    *out++ = tree->view().origin[1] + double{block.y[lane]};
+    *out++ = tree->view().origin[2] + double{block.z[lane]};
     *out++ = block.radius[lane];
     *out++ = block.error[lane];
   });
@@ -79,9 +79,9 @@ ORCHARD_EXPORT(tree_spheres) std::size_t web_tree_spheres(const orchard_tree* tr
 }
 
 ORCHARD_EXPORT(tree_mesh) void web_tree_mesh(const orchard_tree* tree, double* vertices, std::uint32_t* triangles) {
-  for (const auto& vertex : tree->view.vertices)
-    for (std::size_t i = 0; i < 3; ++i) *vertices++ = tree->view.origin[i] + double{vertex[i]};
-  for (const auto& triangle : tree->view.triangles) triangles = std::copy_n(triangle.begin(), 3, triangles);
+  for (const auto& vertex : tree->view().vertices)
+    for (std::size_t i = 0; i < 3; ++i) *vertices++ = tree->view().origin[i] + double{vertex[i]};
+  for (const auto& triangle : tree->view().triangles) triangles = std::copy_n(triangle.begin(), 3, triangles);
 }
 
 ORCHARD_EXPORT(point_tree) orchard_tree* web_point_tree(const double* point) { return orchard_point_tree(point); }
