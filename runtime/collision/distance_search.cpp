@@ -6,6 +6,7 @@
 
 #include "collision/kernels/eight.h"
 #include "collision/triangle_distance.h"
+#include "math/vector_functions.h"
 #include "tree/tree_nodes.h"
 
 // Depth first through the two trees of triangles, the nearest pair of ball slabs first, leaving out what is not nearer

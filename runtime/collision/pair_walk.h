@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "collision/node_pairs.h"
+#include "math/vector_functions.h"
 #include "orchard/runtime/packed_tree.h"
 
 // Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
