@@ -53,9 +53,7 @@ void expect_same_on_every_machine(const NodeBox& single, const ObbNodeBlock& lan
 }
 
 #ifdef __MINGW32__
-TEST(Machines, OfWindowsHaveNoVectorsThatTheStackOfGccDoesNotAlign) {
-  EXPECT_EQ(best_machine(), Machine::base);
-}
+TEST(Machines, OfWindowsHaveNoVectorsThatTheStackOfGccDoesNotAlign) { EXPECT_EQ(best_machine(), Machine::base); }
 #endif
 
 TEST(NodeBox, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance) {
