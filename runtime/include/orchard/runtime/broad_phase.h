@@ -221,11 +221,12 @@ class BroadPhase {
 
   // Processes the steps up to t_now that may have a result, and stops at the first one that has. A long interval takes
   // long, because each body is updated at least every 254 steps.
-  // A budget is one per step. The bodies and pairs of the more important classes come first; the next step continues
-  // with those that the budget left over. Any budget reaches every body and pair of a class eventually, unless a more
-  // important class uses all of it. Each reported pair was tested at this step. `replay`, if not 0, repeats a step of
-  // another run that a limit of time interrupted: the step ends after the same work instead of at budget.time. Pass the
-  // Advance::work of that run if the step was interrupted, otherwise kWholeStep.
+  // The budget is that of each step, unlimited by default. The bodies and pairs of the more important classes come
+  // first; the next step continues with those that the budget left over. Any budget reaches every body and pair of a
+  // class eventually, unless a more important class uses all of it. Each reported pair was tested at this step.
+  // `replay`, if not 0, repeats a step of another run that a limit of time interrupted: the step ends after the same
+  // work instead of at budget.time. Pass the Advance::work of that run if the step was interrupted, otherwise
+  // kWholeStep.
   Advance advance(double t_now, const Budget& budget = {}, std::uint64_t replay = 0) {
     if (!sleeps_until(t_now)) return process(t_now, budget.limited() || replay != 0 ? &budget : nullptr, replay);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
