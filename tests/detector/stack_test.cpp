@@ -271,7 +271,8 @@ TEST(BoxContacts, OfABodyWhollyInsideHaveTheWayOut) {
       least = std::min(least, half[axis] - std::fabs(local.translation[axis]) + reach);
     }
     EXPECT_GT(m.depth, 0) << seed;
-    EXPECT_LE(m.depth, least * (1 + 1e-6)) << seed;
+    const double rounding = 4 * 0x1p-24 * length(half);  // sides are rounded up to floats, as much as they are large
+    EXPECT_LE(m.depth, least * (1 + 1e-6) + rounding) << seed;
     for (const double factor : {0.97, 1 + 1e-6}) {  // moved by the depth it is free, by less it is not
       inner.pose.translation = Vec3(compose(outer.pose, local).translation) + factor * m.depth * Vec3(m.normal);
       world.set_state(b, inner);
