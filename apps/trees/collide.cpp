@@ -175,7 +175,8 @@ void collide(const CollideCommand& command) {
   const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(command.b);
   const runtime::Pose pose_a = parse_pose(command.pose_a, "--pose-a"), pose_b = parse_pose(command.pose, "--pose");
   constexpr std::size_t room = 1u << 20;  // meeting pairs a level: plenty, 25 MB
-  runtime::NarrowPhase narrow(a, b, room);
+  const runtime::PreparedTree body_a(a), body_b(b);
+  runtime::NarrowPhase narrow(body_a, body_b, room);
   const json levels = run(narrow, pose_a, pose_b);
   json inside = json::array();
   if (narrow.answer() == Answer::no) {

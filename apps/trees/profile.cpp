@@ -261,7 +261,8 @@ void profile(const ProfileCommand& command) {
   const std::vector<PosePair> poses = flight_poses(a, b, command.flights, command.seed);
   if (poses.empty()) throw InputError("no flight led to a pose; ask for more with --flights");
   constexpr std::size_t room = 1u << 20;
-  runtime::NarrowPhase pair(a, b, room);
+  const runtime::PreparedTree body_a(a), body_b(b);
+  runtime::NarrowPhase pair(body_a, body_b, room);
   std::vector<PoseProfile> profiles;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (i % 64 == 0) report_progress(progress, "poses", static_cast<double>(i) / static_cast<double>(poses.size()));

@@ -62,7 +62,8 @@ RootBall root_ball(const runtime::TreeView& tree) {
 
 std::vector<PosePair> flight_poses(const runtime::TreeView& a, const runtime::TreeView& b, unsigned flights,
                                    std::uint64_t seed) {
-  runtime::NarrowPhase pair(a, b, 1);
+  const runtime::PreparedTree body_a(a), body_b(b);
+  runtime::NarrowPhase pair(body_a, body_b, 1);
   const RootBall ball_a = root_ball(a), ball_b = root_ball(b);
   const double reach = ball_a.radius + ball_b.radius;
   std::vector<PosePair> poses;

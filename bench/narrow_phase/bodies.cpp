@@ -83,7 +83,8 @@ std::vector<Query> approaches(const TreeView& tree, std::size_t count, std::uint
   const SiblingBlock& root = tree.blocks[0];
   const double r = double{root.radius[0]};
   const test::Vec center = {tree.origin[0] + root.x[0], tree.origin[1] + root.y[0], tree.origin[2] + root.z[0]};
-  NarrowPhase pair(tree, tree, 1);
+  const PreparedTree body(tree);
+  NarrowPhase pair(body, body, 1);
   std::vector<Query> result;
   for (std::uint64_t seed = first_seed; result.size() < kClasses * count; ++seed) {
     test::Draw draw(seed);

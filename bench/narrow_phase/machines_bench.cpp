@@ -55,8 +55,9 @@ std::vector<std::pair<Machine, std::string>> machines() {
 
 void measure(const char* name, const PackedSphereTree& tree, std::size_t count) {
   const auto queries = approaches(tree, count, 0);
-  NarrowPhase pair(tree, tree);
-  DistanceQuery query(tree, tree);
+  const PreparedTree body(tree);
+  NarrowPhase pair(body, body);
+  DistanceQuery query(body, body);
   const std::vector<std::function<void(std::size_t)>> questions = {
       [&](std::size_t i) {
         pair.start(queries[i].a, queries[i].b);

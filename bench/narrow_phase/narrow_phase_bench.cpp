@@ -102,7 +102,8 @@ void print_table(const char* title, const std::vector<Query>& queries, const std
 }
 
 void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
-  NarrowPhase pair(tree, tree);
+  const PreparedTree body(tree);
+  NarrowPhase pair(body, body);
   std::vector<Engine> engines;
   engines.push_back({"orchard, exact", [&](std::size_t i) {
                        pair.start(queries[i].a, queries[i].b);
@@ -142,7 +143,8 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
 }
 
 void distance(const PackedSphereTree& tree, const std::vector<Query>& queries) {
-  DistanceQuery query(tree, tree);
+  const PreparedTree body(tree);
+  DistanceQuery query(body, body);
   std::vector<Engine> engines;
   engines.push_back({"orchard, exact", [&](std::size_t i) {
                        query.start(queries[i].a, queries[i].b, {.relative = 0});

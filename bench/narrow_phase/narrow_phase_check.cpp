@@ -44,7 +44,8 @@ struct Options {
 // nothing to do with it.
 void add_places(const TreeView& tree, std::uint64_t seed, bool near_only, std::vector<Place>& places) {
   orchard::runtime::test::Draw draw(seed);
-  NarrowPhase pair(tree, tree, 1);
+  const PreparedTree body(tree);
+  NarrowPhase pair(body, body, 1);
   const double r = double{tree.blocks[0].radius[0]};
   const auto way = draw.direction();
   const Pose a = draw.pose(0), b = draw.pose(0);
@@ -66,7 +67,8 @@ struct Count {
 
 Count compare(const TreeView& tree, PairRival& rival, const Options& options) {
   const std::size_t poses = options.poses;
-  NarrowPhase pair(tree, tree, 1);
+  const PreparedTree body(tree);
+  NarrowPhase pair(body, body, 1);
   const double step = 1e-6 * double{tree.blocks[0].radius[0]};
   Count count;
   for (std::uint64_t seed = options.seed; count.poses < poses;) {
@@ -84,7 +86,8 @@ Count compare(const TreeView& tree, PairRival& rival, const Options& options) {
       bool near = touches(pair, query.a, shifted(query.b, way, step)) == theirs ||
                   touches(pair, query.a, shifted(query.b, way, -step)) == theirs;
       if (!near && !ours) {
-        DistanceQuery distance(tree, tree);
+        const PreparedTree body(tree);
+        DistanceQuery distance(body, body);
         distance.start(query.a, query.b);
         distance.refine();
         near = distance.upper() <= step;

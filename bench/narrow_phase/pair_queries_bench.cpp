@@ -124,8 +124,9 @@ void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>&
     if (motion.first[i]) pair.forget();
     const Query& q = motion.queries[i];
     Verdict verdict;
-    const bool known = CoherentPair::recall(bodies.workspace, pair, q.a, q.b, verdict);
-    if (!known) verdict = CoherentPair::search(bodies.workspace, pair, q.a, q.b);
+    CoherentPair coherent(bodies.workspace, pair, q.a, q.b);
+    const bool known = coherent.recall(verdict);
+    if (!known) verdict = coherent.search();
     const std::size_t way = (verdict.answer == Answer::yes ? 2u : 0u) + (known ? 0u : 1u);
     ++count[way];
     time[way] += times[i];

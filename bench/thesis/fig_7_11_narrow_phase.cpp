@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -80,7 +81,11 @@ struct Tree {
 // All engines at the same call, in turn.
 void measure(const std::vector<Query>& calls, std::vector<Tree>& trees, std::vector<Engine>& engines) {
   std::vector<std::unique_ptr<NarrowPhase>> pairs;
-  for (const Tree& tree : trees) pairs.push_back(std::make_unique<NarrowPhase>(tree.packed, tree.packed, 1u << 20));
+  std::deque<PreparedTree> bodies;  // stay where they are
+  for (const Tree& tree : trees) {
+    const PreparedTree& body = bodies.emplace_back(tree.packed);
+    pairs.push_back(std::make_unique<NarrowPhase>(body, body, 1u << 20));
+  }
   for (Engine& engine : engines) engine.rival->place(calls);
   for (std::size_t i = 0; i < calls.size(); ++i) {
     for (Engine& engine : engines) {

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "orchard/runtime/motion_filter.h"
+#include "broad_phase_methods/motion_filter.h"
 #include "orchard/runtime/motion_helpers.h"
 #include "svg_plot.h"
 #include "worlds.h"
@@ -27,6 +27,7 @@
 namespace {
 
 using namespace orchard::runtime;
+using orchard::broad_phase_methods::MotionFilter;
 using orchard::plot::Plot;
 using orchard::plot::Series;
 

@@ -14,7 +14,8 @@ int main(int argc, char** argv) try {
   std::printf("%u medial vertices, %u spheres, certified: %s\n", build.medial->axis.size(), build.packed.node_count,
               build.certificate.ok() ? "yes" : "no");
 
-  orchard::runtime::NarrowPhase query(build.packed, build.packed);
+  const orchard::runtime::PreparedTree body(build.packed);
+  orchard::runtime::NarrowPhase query(body, body);
   query.start({}, *orchard::runtime::pose_from_quaternion({1, 0, 0, 0}, {3 * surface.bounding_radius(), 0, 0}));
   query.refine({});
   const bool apart = query.answer() == orchard::runtime::Answer::no;

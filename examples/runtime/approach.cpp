@@ -12,15 +12,16 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: approach body.orchard\n");
     return 2;
   }
-  PackedSphereTree body;
-  if (const LoadStatus status = load_file(argv[1], body); status != LoadStatus::ok) {
+  PackedSphereTree tree;
+  if (const LoadStatus status = load_file(argv[1], tree); status != LoadStatus::ok) {
     std::fprintf(stderr, "%s: %s\n", argv[1], message(status));
     return 2;
   }
-  std::printf("%u spheres on %u levels, %zu triangles\n", body.node_count, body.depth + 1, body.triangles.size());
+  std::printf("%u spheres on %u levels, %zu triangles\n", tree.node_count, tree.depth + 1, tree.triangles.size());
 
+  const PreparedTree body(tree);  // once per tree
   NarrowPhase query(body, body);  // once per pair of bodies: later queries reuse its memory
-  const double radius = body.bounding_radius;
+  const double radius = tree.bounding_radius;
   for (int step = 0; step <= 25; ++step) {
     const Pose still;
     const auto turned = pose_from_quaternion({1, 0.3, 0, 0}, {(2.5 - 0.1 * step) * radius, 0, 0});

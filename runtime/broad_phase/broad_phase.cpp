@@ -12,8 +12,7 @@ using detail::Step;
 
 MotionSource values_of(const std::vector<Motion>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
-    Motion none;  // refused
-    none.radius = -1;
+    const Motion none{.radius = -1};  // refused
     for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
   };
 }
@@ -79,9 +78,7 @@ bool BroadPhase::may_change() const noexcept { return valid() && !state_->busy; 
 
 Advance BroadPhase::process(double t_now, const Budget* budget, std::uint64_t replay) {
   if (!(std::fabs(t_now) <= max_time_) || state_->busy) {
-    Advance refused{next_time_, {}};
-    refused.time_refused = true;
-    return refused;
+    return {.time = next_time_, .time_refused = true};
   }
   // A step that is left half-way cannot be taken up again: what is reported after it would be wrong.
   const auto fail = [this] {

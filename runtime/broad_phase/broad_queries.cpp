@@ -181,9 +181,7 @@ std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& 
 
 std::span<const BodyIndex> BodyQueries::touching_sphere(const Vec3& center, double radius, const QueryFilter& filter) {
   if (!begin(fits(center) && fits(radius) && radius >= 0)) return {};
-  Motion sphere;
-  sphere.position = center;
-  sphere.radius = radius;
+  const Motion sphere{.position = center, .radius = radius};
   const Vec3 reach = {radius, radius, radius};
   return touching(center - reach, center + reach, filter,
                   [&](const Motion& motion) { return spheres_touch(sphere, motion); });

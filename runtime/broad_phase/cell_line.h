@@ -59,16 +59,15 @@ ORCHARD_INLINE std::uint64_t those_of(const CellLine& line, std::uint64_t body) 
 // 1, and it stays as it is, if it is full; else 0. Without a branch: what has no room is written where the counters
 // are, which are written again.
 ORCHARD_INLINE std::uint64_t put(CellLine& line, std::uint64_t entry) noexcept {
-  constexpr int kCountAt = std::endian::native == std::endian::little ? 0 : 32;  // among the counters' bits
   static_assert(offsetof(CellLine, count) == sizeof line.entries &&
                 offsetof(CellLine, overflow) == offsetof(CellLine, count) + 4);
   auto* const bytes = reinterpret_cast<unsigned char*>(&line);
   std::uint64_t counters;
-  std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);
-  const auto count = static_cast<std::uint32_t>(counters >> kCountAt);
+  std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);  // the count is its lower half
+  const auto count = static_cast<std::uint32_t>(counters);
   const std::uint64_t full = (count + 1) >> 3;
   std::memcpy(bytes + std::size_t{count} * sizeof entry, &entry, sizeof entry);
-  counters += (full ^ 1) << kCountAt;
+  counters += full ^ 1;
   std::memcpy(bytes + sizeof line.entries, &counters, sizeof counters);
   return full;
 }

@@ -28,21 +28,12 @@ bool is_valid(const Motion& m) noexcept {
 }
 
 Motion speed_bounded(const Vec3& position, double radius, double max_speed, double expiry) noexcept {
-  Motion motion;
-  motion.position = position;
-  motion.radius = radius;
-  motion.drift = max_speed;
-  motion.expiry = expiry;
-  return motion;
+  return {.position = position, .radius = radius, .drift = max_speed, .expiry = expiry};
 }
 
 Motion position_bounded(const Vec3& center, double reach, double radius, double expiry) noexcept {
   constexpr double outward = 1 + 0x1p-50;  // for the rounding of the sum
-  Motion motion;
-  motion.position = center;
-  motion.radius = (reach + radius) * outward;
-  motion.expiry = expiry;
-  return motion;
+  return {.position = center, .radius = (reach + radius) * outward, .expiry = expiry};
 }
 
 MotionBoundExcess motion_bound_excess(const Motion& bound, double bound_time, const Motion& given, double time,

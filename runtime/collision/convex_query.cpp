@@ -13,14 +13,6 @@ using namespace detail;
 
 namespace {
 
-double reach_along(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
-  const double cosine =
-      std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]});
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + 1e-5;  // the normal is unit to 1e-6
-  return std::min(double{block.radius[lane]},
-                  double{block.height[lane]} * cosine * (1 + 1e-5) + double{block.radius[lane]} * sine);
-}
-
 // A convex solid in a body's frame.
 class Solid {
  public:

@@ -15,11 +15,10 @@ const DistanceSearch& DistanceQuery::search() const noexcept {
 }
 DistanceSearch& search_of(DistanceQuery& query) noexcept { return query.search(); }
 
-DistanceQuery::DistanceQuery(const TreeView& a, const TreeView& b) noexcept {
+DistanceQuery::DistanceQuery() noexcept {
   static_assert(sizeof(DistanceSearch) <= kSize && alignof(DistanceSearch) <= kAlignment);
-  ::new (storage_.data()) DistanceSearch(a, b);
+  ::new (storage_.data()) DistanceSearch();
 }
-DistanceQuery::DistanceQuery() noexcept { ::new (storage_.data()) DistanceSearch(); }
 DistanceQuery::DistanceQuery(DistanceQuery&& other) noexcept {
   ::new (storage_.data()) DistanceSearch(std::move(other.search()));
 }

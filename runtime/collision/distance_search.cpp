@@ -20,20 +20,13 @@ constexpr double kSmallMargin = 0.125;       // of two leaves' radii: then most 
 
 }  // namespace
 
-DistanceSearch::DistanceSearch(const TreeView& a, const TreeView& b) noexcept {
-  trees_.bind(a, b);
-  make_room();
-}
-
 bool DistanceSearch::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   trees_.bind(a, b);
   finished_ = true;
   lower_ = 0;
   upper_ = std::numeric_limits<double>::infinity();
-  return make_room();
+  return !have_triangles(trees_) || stack_.reserve(first(), second());
 }
-
-bool DistanceSearch::make_room() noexcept { return !have_triangles(trees_) || stack_.reserve(first(), second()); }
 
 void DistanceSearch::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
   tolerance_ = tolerance;

@@ -14,8 +14,6 @@ class DistanceSearch {
  public:
   using Tolerance = DistanceQuery::Tolerance;
 
-  DistanceSearch(const TreeView& a, const TreeView& b) noexcept;
-  DistanceSearch() noexcept = default;
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
@@ -34,7 +32,6 @@ class DistanceSearch {
     float lower;  // bound on their distance
   };
 
-  bool make_room() noexcept;
   bool has_room() const noexcept { return have_triangles(trees_) && stack_.has_room(); }
   const TreeView& first() const noexcept { return trees_.first().tree; }
   const TreeView& second() const noexcept { return trees_.second().tree; }

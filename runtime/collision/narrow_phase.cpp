@@ -13,11 +13,10 @@ const PairQuery& NarrowPhase::query() const noexcept {
 }
 PairQuery& query_of(NarrowPhase& pair) noexcept { return pair.query(); }
 
-NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
+NarrowPhase::NarrowPhase(std::size_t room) noexcept {
   static_assert(sizeof(PairQuery) <= kSize && alignof(PairQuery) <= kAlignment);
-  ::new (storage_.data()) PairQuery(a, b, room);
+  ::new (storage_.data()) PairQuery(room);
 }
-NarrowPhase::NarrowPhase(std::size_t room) noexcept { ::new (storage_.data()) PairQuery(room); }
 NarrowPhase::NarrowPhase(NarrowPhase&& other) noexcept { ::new (storage_.data()) PairQuery(std::move(other.query())); }
 NarrowPhase& NarrowPhase::operator=(NarrowPhase&& other) noexcept {
   query() = std::move(other.query());

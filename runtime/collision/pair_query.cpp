@@ -19,19 +19,9 @@ PairQuery::PairQuery(std::size_t room) noexcept {
   if (room > 0) reserve(room);
 }
 
-PairQuery::PairQuery(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
-  trees_.bind(a, b);
-  start_over();
-  reserve(std::max(room, std::size_t{1}));
-}
-
+// Nothing is known of what is bound now. False if there is no memory for its stack.
 bool PairQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   trees_.bind(a, b);
-  return start_over();
-}
-
-// Nothing is known of what is bound now. False if there is no memory for its stack.
-bool PairQuery::start_over() noexcept {
   known_ = {};
   roots_pending_ = exact_started_ = false;
   spheres_.clear();

@@ -23,7 +23,6 @@ class PairQuery {
     std::uint64_t work = 0;
   };
 
-  PairQuery(const TreeView& a, const TreeView& b, std::size_t room = NarrowPhase::kDefaultRoom) noexcept;
   explicit PairQuery(std::size_t room = NarrowPhase::kDefaultRoom) noexcept;
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
   bool reserve(std::size_t pairs) noexcept { return spheres_.reserve(pairs); }
@@ -54,7 +53,6 @@ class PairQuery {
 
  private:
   friend class DirectSearch;
-  bool start_over() noexcept;
   void reset() noexcept;
   void forget() noexcept;
   Answer refine_level(PairBudget& tracker) noexcept;

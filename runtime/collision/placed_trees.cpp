@@ -81,24 +81,14 @@ bool before(const Pose& a, const Pose& b) noexcept {
 
 }  // namespace
 
-void OrderedTrees::order(const PreparedTree& a, const PreparedTree& b) noexcept {
+const PreparedTree OrderedTrees::kNone{};
+
+void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   equal_ = a.fingerprint == b.fingerprint;
   one_tree_ = equal_ && same_place(a.tree, b.tree);
   exchanged_ = !equal_ && compare(a.tree, b.tree) > 0;
-  const PreparedTree &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
-  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first.root[i], second.root[i]};
-}
-
-void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
-  order(a, b);
-  first_.at = exchanged_ ? &b : &a, second_.at = exchanged_ ? &a : &b;
-}
-
-void OrderedTrees::bind(const TreeView& a, const TreeView& b) noexcept {
-  const PreparedTree of_a(a);
-  const PreparedTree of_b = compare(a, b) == 0 ? of_a : PreparedTree(b);
-  order(of_a, of_b);
-  first_ = {exchanged_ ? of_b : of_a}, second_ = {exchanged_ ? of_a : of_b};
+  first_ = exchanged_ ? &b : &a, second_ = exchanged_ ? &a : &b;
+  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_->root[i], second_->root[i]};
 }
 
 // Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,
@@ -111,8 +101,6 @@ bool OrderedTrees::order_at(const Pose& a, const Pose& b) noexcept {
   for (auto& pair : roots_) std::swap(pair[0], pair[1]);
   return exchanged_;
 }
-
-void PlacedTrees::bind(const TreeView& a, const TreeView& b) noexcept { trees_.bind(a, b); }
 
 void PlacedTrees::find_exact_error(const Pose& of_first, const Pose& of_second) noexcept {
   exact_error_ = (of_first.scale * first().error + of_second.scale * second().error) +

@@ -11,12 +11,9 @@
 namespace orchard::runtime {
 
 // Two trees in a fixed order that does not depend on the order of the arguments: by their content or, of equal trees,
-// by their poses.
+// by their poses. Refers to them: they outlive what is asked until the next bind().
 class OrderedTrees {
  public:
-  // Keeps what it prepares of them.
-  void bind(const TreeView& a, const TreeView& b) noexcept;
-  // Refers to them: they outlive what is asked until the next bind().
   void bind(const PreparedTree& a, const PreparedTree& b) noexcept;
   // Orders equal trees by their poses. Returns whether the first tree is then that of `b`.
   bool order_at(const Pose& a, const Pose& b) noexcept;
@@ -28,14 +25,9 @@ class OrderedTrees {
   const std::array<double, 2>& roots(std::size_t i) const noexcept { return roots_[i]; }
 
  private:
-  struct Side {
-    PreparedTree own{};
-    const PreparedTree* at = nullptr;  // in the caller's place; null: its own
-    const PreparedTree& operator*() const noexcept { return at != nullptr ? *at : own; }
-  };
-  void order(const PreparedTree& a, const PreparedTree& b) noexcept;
+  static const PreparedTree kNone;  // without nodes
 
-  Side first_, second_;
+  const PreparedTree *first_ = &kNone, *second_ = &kNone;
   std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
   bool equal_ = false;                            // ordered by their poses
   bool one_tree_ = false;                         // equal, and in the same place
@@ -57,7 +49,6 @@ struct Roots {
 // rounding, in float. Everything below the roots happens in the first tree's own units.
 class PlacedTrees {
  public:
-  void bind(const TreeView& a, const TreeView& b) noexcept;
   void bind(const PreparedTree& a, const PreparedTree& b) noexcept { trees_.bind(a, b); }
 
   // Level 0, where most pairs end.

@@ -12,10 +12,23 @@ namespace orchard::runtime {
 
 using namespace detail;
 
-struct detail::RayIndexAccess {
-  static Frame frame(const RayIndex& of, const Pose& pose) noexcept { return {of.origin_, of.bounding_radius_, pose}; }
-  static Ball ball(const RayIndex& of) noexcept { return {of.middle_, of.radius_}; }
-  static BoxTree tree(const RayIndex& of) noexcept { return {of.boxes_, of.leaves_, of.sizes_}; }
+// The triangles of an index, as those of a tree: TreeTriangles.
+struct detail::IndexTriangles {
+  const RayIndex& index;
+
+  Frame frame(const Pose& pose) const noexcept { return {index.origin_, index.bounding_radius_, pose}; }
+  Ball ball() const noexcept { return {index.middle_, index.radius_}; }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    const BoxTree tree{index.boxes_, index.leaves_, index.sizes_};
+    const BoxRay ray(line.ray);
+    const std::uint32_t first = tree.boxes.size() > 1 ? 1 : 0;  // the root's children, unless it is a leaf
+    RayWalk walk(line.ray, line.begin, line.end, first);
+    for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
+      walk.end = visit(leaf, walk.end);
+    }
+  }
+  std::span<const TriangleBlock> all() const noexcept { return index.leaves_; }
 };
 
 namespace {
@@ -56,25 +69,6 @@ struct Nearest {
     steps = at, point = common, triangle = number;
     return true;
   }
-};
-
-// The same of an index.
-struct IndexTriangles {
-  const RayIndex& index;
-
-  Frame frame(const Pose& pose) const noexcept { return RayIndexAccess::frame(index, pose); }
-  Ball ball() const noexcept { return RayIndexAccess::ball(index); }
-  template <typename Visit>
-  void along(const Line& line, Visit&& visit) const noexcept {
-    const BoxTree tree = RayIndexAccess::tree(index);
-    const BoxRay ray(line.ray);
-    const std::uint32_t first = tree.boxes.size() > 1 ? 1 : 0;  // the root's children, unless it is a leaf
-    RayWalk walk(line.ray, line.begin, line.end, first);
-    for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
-      walk.end = visit(leaf, walk.end);
-    }
-  }
-  std::span<const TriangleBlock> all() const noexcept { return RayIndexAccess::tree(index).leaves; }
 };
 
 // The first triangle along rays in one body's frame.

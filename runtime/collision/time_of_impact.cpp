@@ -83,10 +83,9 @@ bool ImpactSearch::place(double time) noexcept {
 void ImpactSearch::find_closing() noexcept {
   const Pose& relative = trees_.relative();
   const Vec3 back = turned_back(relative, motion_.velocity);
-  Closing both;
-  both.speed = static_cast<float>((motion_.speed + 1e-6 * length(motion_.velocity)) * (1 + 1e-6));
-  both.rounding = trees_.placement().box_margin;
-  motion_.of_first = motion_.of_second = both;
+  motion_.of_first =
+      motion_.of_second = {.speed = static_cast<float>((motion_.speed + 1e-6 * length(motion_.velocity)) * (1 + 1e-6)),
+                           .rounding = trees_.placement().box_margin};
   for (std::size_t i = 0; i < 3; ++i) {
     motion_.of_first.velocity[i] = static_cast<float>(-motion_.velocity[i]);
     motion_.of_second.velocity[i] = static_cast<float>(back[i]);

@@ -58,12 +58,10 @@ Pose Travel::at(double time) const noexcept {
 }
 
 Travel travel_between(const Pose& from, const Pose& to, const std::array<double, 3>& center) noexcept {
-  Travel travel;
-  travel.start = from;
-  travel.center = center;
-  travel.velocity = minus(transform(to, center), transform(from, center));
-  travel.spin = rotation_vector(detail::product(to.rotation, detail::transposed(from.rotation)));
-  return travel;
+  return {.start = from,
+          .velocity = minus(transform(to, center), transform(from, center)),
+          .spin = rotation_vector(detail::product(to.rotation, detail::transposed(from.rotation))),
+          .center = center};
 }
 
 }  // namespace orchard::runtime

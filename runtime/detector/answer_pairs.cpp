@@ -13,9 +13,7 @@ constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 }  // namespace
 
 void forget_answer(CachedPair& record) noexcept {
-  record.verdict = Verdict{};
-  record.verdict.answer = Answer::no;
-  record.verdict.separation_bound = record.verdict.lower_bound = std::numeric_limits<double>::infinity();
+  record.verdict = {.answer = Answer::no, .separation_bound = kInfinity, .lower_bound = kInfinity};
   record.parts = {};
   record.sweep.impact = false;
 }
@@ -115,10 +113,7 @@ bool PairAnswerer::answer_others(CachedPair& record, const std::optional<Parts>&
       if (!(gap.least > 0) && half == nullptr && parts_a + parts_b > 2)
         gap.least = places_->bounds_gap(bodies, i, j, a, b);
       if (gap.least > 0) {
-        Verdict apart;
-        apart.answer = Answer::no;
-        apart.lower_bound = gap.least, apart.separation_bound = gap.most;
-        add(record, apart, i, j);
+        add(record, {.answer = Answer::no, .separation_bound = gap.most, .lower_bound = gap.least}, i, j);
         continue;
       }
       if (!placed_a) places_->place(bodies.a, i, pair.a);
@@ -164,8 +159,7 @@ void leave_open(CachedPair& record) noexcept {
 
 void PairAnswerer::sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept {
   PartPair from, to;
-  Swept first;
-  first.from = first.to = 2;
+  Swept first{.from = 2, .to = 2};
   double earliest = 2;
   for (std::uint32_t i = 0; i < places_->parts(record.bodies.a); ++i) {
     for (std::uint32_t j = 0; j < places_->parts(record.bodies.b); ++j) {

@@ -2,8 +2,10 @@
 
 #include "collision/kernels/triangle_block.h"
 #include "collision/outermost_points.h"
+#include "collision/triangle_cut.h"
 #include "detector/simple_pair.h"
 #include "math/vector_functions.h"
+#include "tree/tree_nodes.h"
 
 // Shapes against half-spaces: the least height of a shape over the plane decides.
 namespace orchard::runtime::detail {
@@ -17,14 +19,6 @@ SurfacePoint lowest_point(const Shape& shape, const Pose& pose, const HalfSpace&
 }
 
 namespace {
-
-// How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at most.
-double reach_of(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
-  const Vec3 normal = {double{block.nx[lane]}, double{block.ny[lane]}, double{block.nz[lane]}};
-  const double radius = double{block.radius[lane]}, cosine = std::fabs(dot(n, normal));
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + 1e-5;  // the normal is unit to 1e-6
-  return std::min(radius, double{block.height[lane]} * cosine * (1 + 1e-5) + radius * sine);
-}
 
 // Of a tree's surface what is in the plane n . x + offset = 0, in the tree's frame and relative to its origin: calls
 // visit(place, triangle) for the ends of the lines in which triangles cut the plane, and for corners in it. `below`:
@@ -60,16 +54,10 @@ void each_cut_point(const TreeView& tree, const Vec3& n, double offset, bool bel
     const ObbNodeBlock& block = tree.obb_nodes[child];
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       const double height = dot(n, Vec3{block.x[lane], block.y[lane], block.z[lane]}) + offset;
-      const double reach = reach_of(block, lane, n) * (1 + 1e-12) + slack;
+      const double reach = reach_along(block, lane, n) * (1 + 1e-12) + slack;
       if (height <= reach && (below || height >= -reach)) stack[size++] = block.child[lane];
     }
   }
-}
-
-// Two unit vectors across a unit vector and each other.
-std::array<Vec3, 2> axes_across(const Vec3& n) noexcept {
-  const Vec3 across = cross(n, least_axis(n)), e = (1 / length(across)) * across;
-  return {e, cross(n, e)};
 }
 
 struct CutPoint {
@@ -97,10 +85,10 @@ std::uint32_t cut_points(const Shape& shape, const Pose& pose, const HalfSpace& 
   const double offset = dot(normal, origin) + (dot(half.normal, Vec3(pose.translation)) - half.offset) / pose.scale;
   bool any = false;
   each_cut_point(shape.tree, normal, offset, false, [&any](const Vec3&, std::uint32_t) { any = true; });
-  const std::array<Vec3, 2> across = axes_across(normal);
+  const Way way(normal);
   const auto each = [&](auto&& visit) {
     each_cut_point(shape.tree, normal, offset, !any, [&](const Vec3& place, std::uint32_t triangle) {
-      visit({dot(across[0], place), dot(across[1], place)}, CutPoint{place, triangle});
+      visit({dot(way.e, place), dot(way.f, place)}, CutPoint{place, triangle});
     });
   };
   const std::uint32_t count = outermost_points(each, points);

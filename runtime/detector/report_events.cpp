@@ -18,12 +18,7 @@ void forget_step(CachedPair& pair) noexcept {
 
 PairEvent EventReporter::describe(const CachedPair& pair, Step step, PairChange change) const noexcept {
   const Clock& clock = world_.clock;
-  PairEvent event;
-  event.change = change;
-  event.a = pair.a, event.b = pair.b;
-  event.part_a = pair.parts[0], event.part_b = pair.parts[1];
-  event.time = clock.time(step);
-  event.verdict = pair.verdict;
+  PairEvent event{change, pair.a, pair.b, pair.parts[0], pair.parts[1], clock.time(step), pair.verdict};
   if (!pair.sweep.impact) return event;
   event.impact_from = event.time + (pair.sweep.impact_from - 1) * clock.time_step;
   event.impact_to = event.time + (pair.sweep.impact_to - 1) * clock.time_step;

@@ -6,8 +6,7 @@ namespace orchard::runtime {
 
 StateSource states_of(const std::vector<BodyState>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
-    BodyState none;  // refused
-    none.pose.rotation = {};
+    const BodyState none{.pose = {.rotation = {}}};  // refused
     for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
   };
 }

@@ -148,9 +148,7 @@ Pose placed(const Pose& body, const Pose& local) noexcept {
   const Pose pose = compose(body, local);
   if (is_rigid(pose) || !is_rigid(body) || !is_rigid(local)) {
     if (is_rigid(body)) return pose;
-    Pose nothing;  // two wrongs, mirrors for one, can make a right
-    nothing.rotation = {};
-    return nothing;
+    return {.rotation = {}};  // two wrongs, mirrors for one, can make a right
   }
   return made_rigid(pose).value_or(pose);
 }

@@ -103,22 +103,15 @@ Nearest nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept 
 }
 
 Verdict yes_at(const Vec3& center, const Vec3& normal) noexcept {
-  Verdict verdict;
-  verdict.answer = Answer::yes;
-  verdict.level = 1;
-  verdict.contact.center = center;
-  verdict.contact.normal = normal;
-  return verdict;
+  return {.answer = Answer::yes, .contact = {.center = center, .normal = normal}, .level = 1};
 }
 
 // Known is a gap less what computing it may have added, from coordinates of that size.
 Verdict no_with(double gap, double size) noexcept {
-  Verdict verdict;
-  verdict.answer = Answer::no;
-  verdict.level = 1;
-  verdict.separation_bound = gap;
-  verdict.lower_bound = std::max(0.0, gap - kSimpleRounding * size);
-  return verdict;
+  return {.answer = Answer::no,
+          .separation_bound = gap,
+          .lower_bound = std::max(0.0, gap - kSimpleRounding * size),
+          .level = 1};
 }
 
 Verdict of_rounds(const Round& a, const Round& b) noexcept {
@@ -183,11 +176,7 @@ void exchange(Contact& contact) noexcept {
 
 }  // namespace
 
-Verdict unknown_verdict() noexcept {
-  Verdict verdict;
-  verdict.separation_bound = kInfinity;
-  return verdict;
-}
+Verdict unknown_verdict() noexcept { return {.separation_bound = kInfinity}; }
 
 Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::uint32_t guess) noexcept {

@@ -43,14 +43,11 @@ Verdict touch_at(Workspace& workspace, const PartPair& pair, const Impact& impac
   // Rounding, or the end of the budget: what the search knows of the place.
   const Vec3 way = Vec3(impact.on_b) - Vec3(impact.on_a);
   const double size = length(way);
-  verdict = {};
-  verdict.answer = Answer::yes;
-  verdict.separation_bound = 0;
-  verdict.contact.center = impact.on_a;
-  verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
-  verdict.contact.triangle_a = impact.triangle_a;
-  verdict.contact.triangle_b = impact.triangle_b;
-  return verdict;
+  return {.answer = Answer::yes,
+          .contact = {.center = impact.on_a,
+                      .normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1},
+                      .triangle_a = impact.triangle_a,
+                      .triangle_b = impact.triangle_b}};
 }
 
 // Two shapes that have, or are around, trees.
@@ -145,9 +142,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
 Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept {
   if (!can_travel(from.a, to.a) || !can_travel(from.b, to.b)) {
-    Swept unknown;
-    unknown.answer = Answer::maybe;
-    return unknown;
+    return {.answer = Answer::maybe};
   }
   return from.with_half_space() ? sweep_to_half_space(workspace, from, to, most, work)
                                 : sweep_trees(workspace, from, to, most, work);

@@ -7,7 +7,7 @@ namespace orchard::runtime::detail {
 struct Swept {
   Answer answer = Answer::no;  // of whether they touch between the two poses; maybe: not known from `from` on
   double from = 0, to = 1;     // certified: they do not touch before `from`; yes: they do at `to`
-  Verdict verdict;             // at `to`
+  Verdict verdict{};           // at `to`
 };
 
 // What happens while both move from one pose to the other in one unit of time, as travel_between() says with the

@@ -28,9 +28,7 @@ void take_nearer(std::optional<WorldPoint>& best, const WorldPoint& found) noexc
 void WorldQueries::find_poses() {
   const BodyTable& bodies = world_.bodies;
   const double time = world_.time_of_last_step();
-  Pose nowhere;
-  nowhere.rotation = {};
-  poses_.assign(bodies.slots(), nowhere);
+  poses_.assign(bodies.slots(), {.rotation = {}});  // nowhere
   asked_.clear();
   for (BodyIndex i = 0; i < bodies.slots(); ++i) {
     const Body& body = bodies[i];

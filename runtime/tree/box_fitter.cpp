@@ -122,11 +122,7 @@ ObbNode BoxFitter::obb_node_across(const Range& part, const Vec3& middle, const 
     const double h = dot(normal, minus(p, middle));
     low = std::min(low, h), high = std::max(high, h);
   });
-  ObbNode slab{};
-  slab.normal = normal;
-  slab.center = along(middle, normal, (low + high) / 2);
-  slab.height = (high - low) / 2;
-  return slab;
+  return {.center = along(middle, normal, (low + high) / 2), .normal = normal, .radius = 0, .height = (high - low) / 2};
 }
 
 // The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean

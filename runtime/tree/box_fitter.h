@@ -33,8 +33,8 @@ struct Triangle {
 struct ObbNode {
   Vec3 center, normal;
   double radius, height;
-  Vec3 second, third;  // normals of the box
-  double width, length;
+  Vec3 second{}, third{};  // normals of the box
+  double width = 0, length = 0;
 };
 
 inline Vec3 as_doubles(const std::array<float, 3>& p) noexcept { return {double{p[0]}, double{p[1]}, double{p[2]}}; }

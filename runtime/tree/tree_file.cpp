@@ -46,34 +46,8 @@ static_assert(sizeof(Header) == 320 && offsetof(Header, origin) == 48 && offseto
 
 constexpr std::uint64_t aligned(std::uint64_t size) noexcept { return (size + kAlignment - 1) & ~(kAlignment - 1); }
 
-template <typename T>
-T from_little_endian(T value) noexcept {
-  if constexpr (std::endian::native == std::endian::big) {
-    auto bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
-    std::reverse(bytes.begin(), bytes.end());
-    return std::bit_cast<T>(bytes);
-  }
-  return value;
-}
-
-// Its own inverse.
-Header from_little_endian(Header h) noexcept {
-  const auto convert = [](auto&... numbers) { ((numbers = from_little_endian(numbers)), ...); };
-  convert(h.preamble.version, h.preamble.header_size, h.preamble.checksum, h.preamble.file_size, h.branching, h.depth,
-          h.node_count, h.section_count);
-  convert(h.origin[0], h.origin[1], h.origin[2], h.bounding_radius, h.vertex_error, h.triangle_tree_depth, h.reserved);
-  for (Header::Section& s : h.sections) convert(s.number, s.element_size, s.offset, s.count);
-  return h;
-}
-
-// Every element of every section is made of 32-bit words, so one copy serves them all.
-void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
-  if (bytes == 0) return;
-  std::memcpy(to, from, bytes);
-  if constexpr (std::endian::native == std::endian::big) {
-    for (std::size_t i = 0; i < bytes; i += 4) std::reverse(to + i, to + i + 4);
-  }
-}
+// Files hold what is in memory. Big-endian machines would need copies, which no machine here can test.
+static_assert(std::endian::native == std::endian::little, "orchard runs on little-endian machines");
 
 // A step is a bijection of the state for a given word and of the word for a given state: a change within one
 // eight-byte word is always noticed, any other with probability 1 - 2^-64. `size` is a multiple of 8.
@@ -83,7 +57,7 @@ std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
     if (i == offsetof(Header::Preamble, checksum)) continue;
     std::uint64_t word;
     std::memcpy(&word, file + i, sizeof word);
-    state = (state ^ from_little_endian(word)) * 0x9e3779b97f4a7c15u;
+    state = (state ^ word) * 0x9e3779b97f4a7c15u;
     state ^= state >> 32;
   }
   return state;
@@ -111,7 +85,6 @@ LoadStatus check_preamble(std::span<const std::byte> file, Header& header) noexc
   std::memcpy(&header, file.data(), std::min(file.size(), sizeof header));
   if (std::memcmp(&header, kMagic.data(), std::min(file.size(), kMagic.size())) != 0) return LoadStatus::bad_magic;
   if (file.size() < sizeof(Header::Preamble)) return LoadStatus::truncated;
-  header = from_little_endian(header);
   if (header.preamble.version == kVersion) return LoadStatus::ok;
   return header.preamble.version > kVersion ? LoadStatus::version_newer : LoadStatus::version_older;
 }
@@ -212,17 +185,11 @@ std::vector<std::byte> serialize(const TreeView& tree) {
   });
   std::vector<std::byte> file(header.preamble.file_size);
   each_section(tree, [&](std::size_t i, const auto& elements) {
-    static_assert(sizeof elements[0] % 4 == 0);
-    copy_words(&file[header.sections[i].offset], reinterpret_cast<const std::byte*>(elements.data()),
-               elements.size_bytes());
+    if (!elements.empty()) std::memcpy(&file[header.sections[i].offset], elements.data(), elements.size_bytes());
   });
-  const auto put_header = [&] {
-    const Header stored = from_little_endian(header);
-    std::memcpy(file.data(), &stored, sizeof stored);
-  };
-  put_header();
+  std::memcpy(file.data(), &header, sizeof header);
   header.preamble.checksum = checksum(file.data(), file.size());
-  put_header();
+  std::memcpy(file.data(), &header, sizeof header);
   return file;
 }
 
@@ -232,8 +199,7 @@ LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept
   return detail::made_or(LoadStatus::out_of_memory, [&] {
     return fill(header, out, [file](auto& elements, const Header::Section& section) {
       elements.resize(static_cast<std::size_t>(section.count));
-      copy_words(reinterpret_cast<std::byte*>(elements.data()), file.data() + section.offset,
-                 section.end() - section.offset);
+      if (!elements.empty()) std::memcpy(elements.data(), &file[section.offset], section.end() - section.offset);
     });
   });
 }
@@ -241,10 +207,7 @@ LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept
 LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept {
   Header header;
   if (const LoadStatus status = check_file(file, header); status != LoadStatus::ok) return status;
-  if (std::endian::native != std::endian::little ||
-      reinterpret_cast<std::uintptr_t>(file.data()) % kViewAlignment != 0) {
-    return LoadStatus::cannot_map;
-  }
+  if (reinterpret_cast<std::uintptr_t>(file.data()) % kViewAlignment != 0) return LoadStatus::cannot_map;
   return fill(header, out, [file](auto& elements, const Header::Section& section) {
     using Element = typename std::remove_reference_t<decltype(elements)>::element_type;
     // The bytes hold exactly such objects: implicit-lifetime types of 32-bit words, written by serialize().

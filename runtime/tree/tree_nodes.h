@@ -42,6 +42,14 @@ inline Vec3 center_of(const TreeView& tree, std::uint32_t node) noexcept {
   return {block.x[lane], block.y[lane], block.z[lane]};
 }
 
+// How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at most.
+inline double reach_along(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+  const Vec3 normal = {double{block.nx[lane]}, double{block.ny[lane]}, double{block.nz[lane]}};
+  const double radius = double{block.radius[lane]}, cosine = std::fabs(dot(n, normal));
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + 1e-5;  // the normal is unit to 1e-6
+  return std::min(radius, double{block.height[lane]} * cosine * (1 + 1e-5) + radius * sine);
+}
+
 struct Group {  // consecutive nodes: the children of a node, or one leaf
   std::uint32_t first, count;
 };

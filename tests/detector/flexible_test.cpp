@@ -8,6 +8,7 @@
 #include "orchard/runtime/flexible_tree.h"
 #include "runtime/allocation.h"
 #include "support.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -61,8 +62,8 @@ TEST(FlexibleTree, TellsWhoTouchesAfterEveryDeformation) {
       const Moves moves = random_moves(draw, rest, draw.uniform(0.02, 1), round % 3 == 0 ? 0.3 : 0.1);
       ASSERT_TRUE(flexible.move(moves.vertices, moves.places));
       ASSERT_EQ(structure_fault(flexible.view()), nullptr);
-      NarrowPhase pair(flexible.view(), other);
-      DistanceQuery distance(flexible.view(), other);
+      test::OwnNarrowPhase pair(flexible.view(), other);
+      test::OwnDistanceQuery distance(flexible.view(), other);
       for (int i = 0; i < 4; ++i) {
         const Pose a, b = draw.pose(draw.uniform(0.8, 2.4));
         const auto p = test::placed_triangles(copy_of(flexible.view()), a);

@@ -6,6 +6,7 @@
 #include "orchard/runtime/detector.h"
 #include "support.h"
 #include "support/effort.h"
+#include "support/query_of_trees.h"
 
 // Boxes, spheres and capsules whose lengths are no floats, closer to each other than floats tell.
 namespace orchard::runtime {
@@ -107,7 +108,7 @@ TEST(SimpleShapes, OfABoxNothingThatTouchesIsMissed) {
     Pose pose;
     pose.translation = {draw.uniform(-4, 4), draw.uniform(-4, 4), 0.3125 + half[2] + tiny_gap(draw)};
     const long double gap = static_cast<long double>(pose.translation[2]) - half[2] - 0.3125L;
-    NarrowPhase narrow(ground, shapes[shapes.add_box(half)].tree);
+    test::OwnNarrowPhase narrow(ground, shapes[shapes.add_box(half)].tree);
     narrow.start({}, pose);
     while (!narrow.finished()) narrow.refine_exactly();
     if (gap <= 0) {

@@ -24,6 +24,7 @@ extern PackedSphereTree tree, tree_a, tree_b;
 extern Pose pose, pose_a, pose_b, integrated;
 extern NarrowPhase pair;
 extern DistanceQuery query;
+extern PreparedTree lamp, faucet;
 extern std::span<const std::byte> bytes;
 extern std::vector<Verdict> verdicts;
 extern std::array<double, 3> center, p, q, origin, direction, point;

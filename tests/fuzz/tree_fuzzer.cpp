@@ -11,6 +11,7 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
+#include "support/query_of_trees.h"
 
 namespace {
 
@@ -21,8 +22,8 @@ void require(bool condition) {
 }
 
 void query(const TreeView& tree) {
-  NarrowPhase pair(tree, tree);
-  DistanceQuery distance(tree, tree);
+  test::OwnNarrowPhase pair(tree, tree);
+  test::OwnDistanceQuery distance(tree, tree);
   const double size = tree.bounding_radius;
   const std::array<Pose, 3> poses = {Pose{}, Pose{.translation = {size, 0, 0}},
                                      *pose_from_quaternion({1, 2, 3, 4}, {0, 0.5 * size, 0})};

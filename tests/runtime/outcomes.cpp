@@ -8,6 +8,7 @@
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/time_of_impact.h"
 #include "support/effort.h"
+#include "support/query_of_trees.h"
 
 namespace {
 
@@ -53,8 +54,8 @@ int main() {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i; j < all.size(); ++j) {
       const PackedSphereTree &a = all[i].tree, &b = all[j].tree;
-      NarrowPhase query(a, b);
-      DistanceQuery distance(a, b);
+      test::OwnNarrowPhase query(a, b);
+      test::OwnDistanceQuery distance(a, b);
       const PreparedTree first(a), second(b);
       const TreePair pair(first, second);
       const RayIndex index(a);

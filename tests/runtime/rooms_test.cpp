@@ -36,7 +36,7 @@ const std::vector<Room> kRooms = {
      {"detector.h", "motion_monitor.h"}},
     {"extras",
      {"execution", "math", "tree", "collision", "broad_phase"},
-     {"flexible_tree.h", "frame_pacer.h", "motion_filter.h", "motion_helpers.h", "self_collision.h"}},
+     {"flexible_tree.h", "frame_pacer.h", "motion_helpers.h", "self_collision.h"}},
     {"c",
      {"execution", "math", "tree", "collision", "broad_phase", "detector", "extras"},
      {"orchard.h", "orchard_broad_phase.h", "orchard_detector.h"}},

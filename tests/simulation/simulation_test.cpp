@@ -8,6 +8,7 @@
 
 #include "paraview.h"
 #include "runtime/support.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::simulation {
 namespace {
@@ -34,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(kSceneNames),
 // all the time it wants says yes to.
 TEST_P(EveryScene, FindsWhatBruteForceFindsAtEveryStep) {
   const auto world = make_world(GetParam(), shapes(), few(GetParam()), 1);
-  runtime::NarrowPhase pair(tree(), tree());
+  runtime::test::OwnNarrowPhase pair(tree(), tree());
   std::size_t overlaps = 0;
   for (int step = 0; step < 100; ++step) {
     world->time = step * world->scene.step;

@@ -9,6 +9,7 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/tree_file.h"
 #include "support.h"
+#include "support/query_of_trees.h"
 
 namespace orchard {
 namespace {
@@ -76,7 +77,7 @@ double gap_between(const std::vector<Sphere>& a, const std::vector<Sphere>& b, c
 TEST(PackBalls, AnswersAsAllPairsOfBallsDo) {
   const std::vector<Sphere> a = random_balls(60, 11), b = random_balls(45, 12);
   const BallTree tree_a = pack_balls(a), tree_b = pack_balls(b);
-  runtime::NarrowPhase narrow(tree_a.packed, tree_b.packed, 1u << 16);
+  runtime::test::OwnNarrowPhase narrow(tree_a.packed, tree_b.packed, 1u << 16);
   Index apart = 0, touching = 0;
   for (Index i = 0; i < 400; ++i) {
     Random random(5, i);

@@ -18,6 +18,7 @@
 #include "orchard/spheretree/verify.h"
 #include "support.h"
 #include "support/path_rule.h"
+#include "support/query_of_trees.h"
 
 namespace orchard {
 namespace {
@@ -149,7 +150,7 @@ TEST(Pack, LeavesBoundsInfiniteThatWereNotMeasured) {
 
   runtime::PackedSphereTree loaded;
   ASSERT_EQ(runtime::load(runtime::serialize(packed), loaded), runtime::LoadStatus::ok);
-  runtime::NarrowPhase query(loaded, loaded);
+  runtime::test::OwnNarrowPhase query(loaded, loaded);
   runtime::Pose beside;
   beside.rotation = {1, 0, 0, 0, 0, -1, 0, 1, 0};  // links of a chain, .3 between the two
   beside.translation = {1, 0, 0};
@@ -162,7 +163,7 @@ TEST(Pack, LeavesBoundsInfiniteThatWereNotMeasured) {
 
   measure(tree, surface);
   const auto measured = pack(tree, surface);
-  runtime::NarrowPhase known(measured, measured);
+  runtime::test::OwnNarrowPhase known(measured, measured);
   for (known.start({}, beside); !known.finished(); known.refine()) EXPECT_GE(known.separation_bound(), 0.3);
   EXPECT_LT(known.separation_bound(), 10);
 }

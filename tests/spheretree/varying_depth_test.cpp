@@ -16,6 +16,7 @@
 #include "orchard/spheretree/tree_io.h"
 #include "orchard/spheretree/verify.h"
 #include "support.h"
+#include "support/query_of_trees.h"
 
 // Trees that go deeper in one place than in another, on their way from the builders to the run-time.
 namespace orchard {
@@ -80,7 +81,7 @@ TEST(VaryingDepth, KeepsItsTextFileItsCertificateAndTheAnswersInTheRunTime) {
     runtime::PackedSphereTree loaded;
     ASSERT_EQ(runtime::load(runtime::serialize(pack(tree, surface)), loaded), runtime::LoadStatus::ok) << name;
     EXPECT_TRUE(verify(surface, loaded).ok()) << name;
-    runtime::NarrowPhase pair(loaded, loaded);
+    runtime::test::OwnNarrowPhase pair(loaded, loaded);
     int yes = 0, no = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
       Random random(seed, 77);

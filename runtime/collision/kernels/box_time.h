@@ -18,7 +18,7 @@ struct Closing {
   std::array<float, 3> velocity{};  // of the eight ones' centre less the single one's
   float speed = 0;                  // by which they may come closer besides, in any direction
   float rounding = 0;               // of places
-  Turning single, lanes;
+  Turning single{}, lanes{};
 };
 
 struct BoxTimes {

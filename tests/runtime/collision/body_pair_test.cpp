@@ -10,6 +10,7 @@
 #include "improper_poses.h"
 #include "orchard/runtime/self_collision.h"
 #include "support/effort.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -48,14 +49,14 @@ TEST(TreePair, IsSmallAndAnswersAsANarrowPhaseOfItsOwn) {
   Workspace workspace;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const PairCase c = random_case(all, seed);
-    NarrowPhase own(all[c.a].tree, all[c.b].tree);
+    test::OwnNarrowPhase own(all[c.a].tree, all[c.b].tree);
     const Budget budget = {.work = seed % 3 == 0 ? 200 : Budget{}.work};
     for (const Order order : {Order::exact_first, Order::level_by_level}) {
       ASSERT_TRUE(same_verdict(collide(workspace, TreePair(trees[c.a], trees[c.b]), c.at_a, c.at_b, budget, order),
                                collide(own, c.at_a, c.at_b, budget, order)))
           << seed;
     }
-    DistanceQuery measure(all[c.a].tree, all[c.b].tree);
+    test::OwnDistanceQuery measure(all[c.a].tree, all[c.b].tree);
     measure.start(c.at_a, c.at_b);
     measure.refine();
     const Distance shared = distance(workspace, TreePair(trees[c.a], trees[c.b]), c.at_a, c.at_b);
@@ -111,7 +112,7 @@ TEST(Budget, DecidesAtOnceWhatIsEasyToDecideExactly) {
   int first = 0, levels = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const PairCase c = random_case(all, seed);
-    NarrowPhase pair(all[c.a].tree, all[c.b].tree);
+    test::OwnNarrowPhase pair(all[c.a].tree, all[c.b].tree);
     const Budget budget = {.work = 500};
     first += collide(pair, c.at_a, c.at_b, budget).answer != Answer::maybe;
     levels += collide(pair, c.at_a, c.at_b, budget, Order::level_by_level).answer != Answer::maybe;

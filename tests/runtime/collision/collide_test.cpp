@@ -7,6 +7,7 @@
 
 #include "bodies.h"
 #include "collision/coherent_pair.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -38,12 +39,12 @@ TEST(Collide, AnswersEachPoseWithinTheBudgetWhateverWasAskedBefore) {
   const auto all = bodies();
   const Body &a = all[2], &b = all[5];
   const auto poses = poses_of(a, b, 200);
-  NarrowPhase pair(a.tree, b.tree);
+  test::OwnNarrowPhase pair(a.tree, b.tree);
   for (const std::uint64_t tests : {std::uint64_t{1}, std::uint64_t{100}, std::uint64_t{1} << 40, Budget{}.work}) {
     int answers[3] = {0, 0, 0};
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const Verdict verdict = collide(pair, poses[i].a, poses[i].b, {.work = tests});
-      NarrowPhase single(a.tree, b.tree, 1);
+      test::OwnNarrowPhase single(a.tree, b.tree, 1);
       ASSERT_TRUE(same(verdict, collide(single, poses[i].a, poses[i].b, {.work = tests}))) << i;
       ASSERT_TRUE(tests > 1000 || verdict.work < tests + kLeafPairTests * kTriangleTestCost);
       ++answers[static_cast<int>(verdict.answer)];
@@ -56,7 +57,7 @@ TEST(Collide, AnswersEachPoseWithinTheBudgetWhateverWasAskedBefore) {
 TEST(Collide, EndsAtTheFirstLookAtTheClockThatTheTimeIsOver) {
   constexpr std::uint64_t kStep = std::uint64_t{kLeafPairTests} * kTriangleTestCost + 2 * kBlockWidth;
   const auto all = bodies();
-  NarrowPhase pair(all[2].tree, all[5].tree);
+  test::OwnNarrowPhase pair(all[2].tree, all[5].tree);
   int longer = 0;
   for (const auto& [a, b] : poses_of(all[2], all[5], 100)) {
     longer += collide(pair, a, b).work > kClockInterval + kStep;
@@ -88,7 +89,7 @@ TEST(CoherentPair, RepeatsATimedSearchFromItsWork) {
 TEST(Collide, RepeatsATimedRunFromItsWork) {
   const auto all = bodies();
   const auto poses = poses_of(all[2], all[5], 100);
-  NarrowPhase pair(all[2].tree, all[5].tree);
+  test::OwnNarrowPhase pair(all[2].tree, all[5].tree);
   for (const auto& [a, b] : poses) {
     const Verdict timed = collide(pair, a, b, {.time = std::chrono::microseconds(2)});
     if (timed.work > 0) {
@@ -104,7 +105,7 @@ TEST(Collide, GivesEveryThreadTheSameAnswersFromSharedTrees) {
   std::vector<std::thread> threads;
   for (auto& result : results) {
     threads.emplace_back([&all, &poses, &result] {
-      NarrowPhase pair(all[2].tree, all[5].tree);
+      test::OwnNarrowPhase pair(all[2].tree, all[5].tree);
       for (std::size_t i = 0; i < poses.size(); ++i) result[i] = collide(pair, poses[i].a, poses[i].b, {.work = 5000});
     });
   }

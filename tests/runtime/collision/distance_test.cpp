@@ -13,6 +13,7 @@
 #include "every_machine.h"
 #include "simd/machine.h"
 #include "support/effort.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -42,7 +43,7 @@ TEST(Distance, ClosesInOnTheTruthFromBothSides) {
     const double truth = static_cast<double>(
         surface_distance(placed_triangles(all[s.a].tree, s.pose_a), placed_triangles(all[s.b].tree, s.pose_b)));
     const double rounding = 4e-6;  // nearly parallel edges
-    DistanceQuery query(all[s.a].tree, all[s.b].tree);
+    test::OwnDistanceQuery query(all[s.a].tree, all[s.b].tree);
     query.start(s.pose_a, s.pose_b, {.relative = seed % 2 == 0 ? 0.01 : 0.0});
     double lower = query.lower(), upper = query.upper();
     for (;;) {
@@ -70,7 +71,7 @@ TEST(Distance, IsTheSameHoweverItIsCutAndWhicheverBodyComesFirst) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const DistanceScene s = random_scene(all, seed, 1.5);
-    DistanceQuery whole(all[s.a].tree, all[s.b].tree), back(all[s.b].tree, all[s.a].tree);
+    test::OwnDistanceQuery whole(all[s.a].tree, all[s.b].tree), back(all[s.b].tree, all[s.a].tree);
     whole.start(s.pose_a, s.pose_b), back.start(s.pose_b, s.pose_a);
     const std::size_t before = allocations;
     whole.refine();
@@ -86,7 +87,7 @@ TEST(Distance, IsTheSameHoweverItIsCutAndWhicheverBodyComesFirst) {
 
 TEST(Distance, WithoutTrianglesKeepsToTheRoots) {
   const auto none = build_tree(Mesh{}), cube = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  DistanceQuery query(none, cube);
+  test::OwnDistanceQuery query(none, cube);
   query.start({}, Pose{.translation = {5, 0, 0}});
   EXPECT_TRUE(query.finished());
   EXPECT_GT(query.lower(), 3);
@@ -95,7 +96,7 @@ TEST(Distance, WithoutTrianglesKeepsToTheRoots) {
 
 TEST(Distance, OfTouchingBodiesIsZero) {
   const auto cube = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  DistanceQuery query(cube, cube);
+  test::OwnDistanceQuery query(cube, cube);
   query.start({}, Pose{.translation = {0.5, 0.25, 1}});
   query.refine();
   EXPECT_TRUE(query.finished());

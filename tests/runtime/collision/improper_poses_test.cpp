@@ -6,6 +6,7 @@
 #include "orchard/runtime/collide.h"
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/shape_query.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -31,8 +32,8 @@ TEST(ImproperPose, IsAnsweredByMaybeAndNothingElse) {
     SCOPED_TRACE(seed);
     Draw draw(seed);
     const PackedSphereTree &a = all[draw.bits() % all.size()].tree, &b = all[draw.bits() % all.size()].tree;
-    NarrowPhase query(a, b, 64);
-    DistanceQuery distance(a, b);
+    test::OwnNarrowPhase query(a, b, 64);
+    test::OwnDistanceQuery distance(a, b);
     const Pose proper = centered(a, draw.pose(0)), at = centered(b, draw.pose(draw.uniform(0, 5)));
     for (const auto& [name, pose] : improper_poses(at)) {
       SCOPED_TRACE(name);
@@ -103,14 +104,14 @@ TEST(ImproperPose, MakesNobodyMissAShape) {
 // The bodies are so far apart, or so different in size, that no float could say how.
 TEST(NarrowPhase, RefusesBodiesBeyondTheRangeOfFloatsAndNeverSaysNoThere) {
   PackedSphereTree cube = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  NarrowPhase query(cube, cube, 64);
+  test::OwnNarrowPhase query(cube, cube, 64);
   Pose small, large;
   large.scale = 0x1p50, large.translation = {-0x1p49, -0x1p49, -0x1p49};  // around the small one
   EXPECT_EQ(query.start(small, large), Answer::maybe);
   EXPECT_TRUE(query.refused());
   cube.origin = {1e18, 0, 0};  // and its instance as far the other way, by a pose and by an origin
   PackedSphereTree other = build_tree(box({0, 0, 0}, {1, 1, 1}));
-  NarrowPhase far(cube, other, 64);
+  test::OwnNarrowPhase far(cube, other, 64);
   Pose near;
   near.translation = {1e18, 0, 0};
   far.start({}, near);

@@ -8,6 +8,7 @@
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/tree_file.h"
 #include "support.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -16,7 +17,7 @@ using namespace orchard::runtime::test;
 
 TEST(Memory, IsNotAllocatedByAQuery) {
   const auto tree = build_tree(torus(16, 8, 1, 0.3));
-  NarrowPhase query(tree, tree);
+  test::OwnNarrowPhase query(tree, tree);
   Draw draw(1);
   const Pose pose = draw.pose(0.7);
   const std::size_t before = allocations;
@@ -56,7 +57,7 @@ TEST(Memory, WithoutRoomForALevelTheTrianglesDecide) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     Draw draw(seed);
     const Pose pose = draw.pose(0.7 + 0.03 * static_cast<double>(seed));
-    NarrowPhase whole(tree, tree), narrow(tree, tree, 1);
+    test::OwnNarrowPhase whole(tree, tree), narrow(tree, tree, 1);
     whole.start({}, pose), narrow.start({}, pose);
     while (!whole.finished()) whole.refine();
     while (!narrow.finished()) narrow.refine();
@@ -70,7 +71,7 @@ TEST(Memory, WithoutRoomForALevelTheTrianglesDecide) {
 TEST(Memory, WhenThereIsNoneQueriesStayValid) {
   const auto tree = build_tree(torus(16, 8, 1, 0.3));
   allocation_fails = true;
-  NarrowPhase query(tree, tree);
+  test::OwnNarrowPhase query(tree, tree);
   allocation_fails = false;
   query.start({}, Draw(1).pose(0.7));
   for (int i = 0; i < 10 && !query.finished(); ++i) query.refine();
@@ -84,8 +85,8 @@ TEST(Memory, WhenThereIsNoneQueriesStayValid) {
 TEST(Memory, WithoutAStackForTheTrianglesTwoLeavesStayUndecided) {
   const auto tree = build_tree(box({0, 0, 0}, {1, 1, 1}), {.leaf_triangles = 12});
   allocation_fails = true;
-  NarrowPhase query(tree, tree);
-  DistanceQuery distance(tree, tree);
+  test::OwnNarrowPhase query(tree, tree);
+  test::OwnDistanceQuery distance(tree, tree);
   allocation_fails = false;
   ASSERT_TRUE(query.reserve(64));
   for (const bool exactly : {false, true}) {

@@ -7,6 +7,7 @@
 
 #include "orchard/runtime/narrow_phase.h"
 #include "support.h"
+#include "support/query_of_trees.h"
 
 // The sphere levels alone, on trees without triangles.
 namespace orchard::runtime {
@@ -28,7 +29,7 @@ TEST(NarrowPhase, CountsTouchingBallsAsMeeting) {
   const std::array<double, 3> ways[] = {{1, 0, 0}, {0, -1, 0}, {0.6, 0, 0.8}, {2 / 3., -2 / 3., 1 / 3.}};
   for (const auto& way : ways) {
     const auto at = [&way](double d) { return Pose{.translation = {d * way[0], d * way[1], d * way[2]}}; };
-    NarrowPhase query(one, half);
+    test::OwnNarrowPhase query(one, half);
     EXPECT_EQ(query.start({}, at(1.5)), Answer::maybe);
     EXPECT_TRUE(query.finished());  // there is nothing deeper, so "maybe" is final
     EXPECT_EQ(query.start({}, at(1.5 + 1e-9)), Answer::no);
@@ -52,7 +53,7 @@ TEST(NarrowPhase, CountsTouchingChildrenAsMeeting) {
   children.link[1] = kEmptyLeaf;
   pair.blocks.push_back(children);
   ASSERT_EQ(structure_fault(pair), nullptr);
-  NarrowPhase query(pair, pair);
+  test::OwnNarrowPhase query(pair, pair);
   const double touch = 1 + std::sqrt(3.0);  // |(1, 0) - (touch, 1)| = 2
   const auto quarter = pose_from_quaternion({std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, {touch, 0, 0});
   EXPECT_EQ(query.start({}, *quarter), Answer::maybe);
@@ -104,7 +105,7 @@ TEST(NarrowPhase, KeepsBallsThatTouchByLessThanFloatsCanTell) {
     const auto place = [&](double gap) {
       for (std::size_t i = 0; i < 3; ++i) pose_b.translation[i] = from[i] + (reach + gap) * way[i] - to[i];
     };
-    NarrowPhase query(a, b);
+    test::OwnNarrowPhase query(a, b);
     place(-1e-13);
     query.start(pose_a, pose_b);
     ASSERT_EQ(query.refine(), Answer::maybe) << seed;
@@ -142,7 +143,7 @@ TEST(NarrowPhase, MeetsExactlyTheBallsThatMeetAndReportsTheLeastBoundOfThem) {
         bound = std::min(bound, std::max(0.0, std::min(errors, distance + depths)));
       }
     }
-    NarrowPhase query(a, b);
+    test::OwnNarrowPhase query(a, b);
     query.start({}, pose);
     query.refine();
     ASSERT_EQ(query.progress().pairs, meeting) << seed;

@@ -6,6 +6,7 @@
 #include "bodies.h"
 #include "math/triangle_pair.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "support/query_of_trees.h"
 
 // Ten thousand poses, random and around the first contact, against every pair of triangles.
 namespace orchard::runtime {
@@ -68,7 +69,7 @@ TEST(NarrowPhase, AgreesWithEveryPairOfTrianglesAtTenThousandPoses) {
   for (std::uint64_t seed = 0; poses < 10000; ++seed) {
     Draw draw(seed);
     const std::size_t i = draw.bits() % trees.size(), j = draw.bits() % trees.size();
-    NarrowPhase query(trees[i], trees[j]);
+    test::OwnNarrowPhase query(trees[i], trees[j]);
     const double reach = trees[i].bounding_radius + trees[j].bounding_radius;
     const Vec way = draw.direction();
     Pose pose = draw.pose(0);

@@ -6,6 +6,7 @@
 
 #include "bodies.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "support/query_of_trees.h"
 
 // The narrow phase against brute force.
 namespace orchard::runtime {
@@ -51,7 +52,7 @@ Truth truth_of(const Body& a, const Body& b, const Pose& pose_a, const Pose& pos
 
 // Everything that must hold at every moment of a query, level by level.
 void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& pose_b, const Truth& truth) {
-  NarrowPhase query(a.tree, b.tree);
+  test::OwnNarrowPhase query(a.tree, b.tree);
   const double tolerance = 1e-12 * (1 + std::fabs(pose_a.translation[0]));
   double bound = std::numeric_limits<double>::infinity();
   Answer answer = query.start(pose_a, pose_b);
@@ -80,7 +81,7 @@ void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& p
     ASSERT_LE(point_distance(center, ta), 1e-8);
     ASSERT_LE(point_distance(center, tb), 1e-8);
   }
-  NarrowPhase direct(a.tree, b.tree);
+  test::OwnNarrowPhase direct(a.tree, b.tree);
   direct.start(pose_a, pose_b);
   ASSERT_EQ(direct.refine_exactly(), answer);
   ASSERT_TRUE(direct.finished());

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bodies.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -67,7 +68,7 @@ TEST(NarrowPhase, GivesTheSameAnswersAtEveryLevelWhenTheBodiesAreExchanged) {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     const PosedBodies s = random_scene(all, seed);
-    NarrowPhase there(all[s.a].tree, all[s.b].tree), back(copies[s.b].tree, all[s.a].tree);
+    test::OwnNarrowPhase there(all[s.a].tree, all[s.b].tree), back(copies[s.b].tree, all[s.a].tree);
     there.start(s.pose_a, s.pose_b);
     back.start(s.pose_b, s.pose_a);
     for (;;) {
@@ -85,7 +86,7 @@ TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
   for (std::uint64_t seed = 0; seed < 600; ++seed) {
     SCOPED_TRACE(seed);
     const PosedBodies s = random_scene(all, seed);
-    NarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
+    test::OwnNarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
     whole.start(s.pose_a, s.pose_b);
     while (!whole.finished()) whole.refine();
     Draw draw(seed);
@@ -111,7 +112,7 @@ TEST(NarrowPhase, StopsSoonAfterItsTimeAndResumes) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     const PosedBodies s = random_scene(all, seed);
-    NarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
+    test::OwnNarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
     whole.start(s.pose_a, s.pose_b);
     while (!whole.finished()) whole.refine();
     sliced.start(s.pose_a, s.pose_b);
@@ -128,7 +129,7 @@ TEST(NarrowPhase, ReplaysATimedRunFromItsCount) {
   const auto all = bodies();
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const PosedBodies s = random_scene(all, seed);
-    NarrowPhase timed(all[s.a].tree, all[s.b].tree), replayed(all[s.a].tree, all[s.b].tree);
+    test::OwnNarrowPhase timed(all[s.a].tree, all[s.b].tree), replayed(all[s.a].tree, all[s.b].tree);
     timed.start(s.pose_a, s.pose_b);
     for (std::uint64_t calls = seed % 9; calls > 0; --calls) {
       timed.refine({.time = std::chrono::nanoseconds(seed % 3 * 500)});
@@ -150,7 +151,7 @@ TEST(NarrowPhase, TreatsAScaledInstanceAsTheScaledBody) {
       const Pose plain = draw.pose(0), at = draw.pose(draw.uniform(0.5, 1) * (1 + scale));
       Pose instance = plain;
       instance.scale = scale;
-      NarrowPhase by_pose(tree, other), by_tree(scaled_tree, other);
+      test::OwnNarrowPhase by_pose(tree, other), by_tree(scaled_tree, other);
       by_pose.start(instance, at), by_tree.start(plain, at);
       while (!by_pose.finished()) by_pose.refine();
       while (!by_tree.finished()) by_tree.refine();
@@ -165,11 +166,11 @@ TEST(NarrowPhase, TreatsAScaledInstanceAsTheScaledBody) {
 
 TEST(NarrowPhase, CanBeUsedAgainAfterAnyInterruption) {
   const auto all = bodies();
-  NarrowPhase reused(all[2].tree, all[5].tree);
+  test::OwnNarrowPhase reused(all[2].tree, all[5].tree);
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Draw draw(seed);
     const Pose pose_a = draw.pose(0), pose_b = draw.pose(draw.uniform(0, 2));
-    NarrowPhase fresh(all[2].tree, all[5].tree);
+    test::OwnNarrowPhase fresh(all[2].tree, all[5].tree);
     reused.start(pose_a, pose_b);
     fresh.start(pose_a, pose_b);
     for (std::uint64_t steps = draw.bits() % 8; steps > 0; --steps) {
@@ -183,7 +184,7 @@ TEST(NarrowPhase, CanBeUsedAgainAfterAnyInterruption) {
 
 TEST(NarrowPhase, NeverSaysNoForPosesThatAreNotNumbers) {
   const auto all = bodies();
-  NarrowPhase query(all[2].tree, all[5].tree);
+  test::OwnNarrowPhase query(all[2].tree, all[5].tree);
   Pose broken;
   broken.rotation[4] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(query.start({}, broken), Answer::maybe);
@@ -209,7 +210,7 @@ TEST(NarrowPhase, FindsContactsThatAreExactInFloats) {
   };
   for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
-    NarrowPhase query(cube.tree, cube.tree);
+    test::OwnNarrowPhase query(cube.tree, cube.tree);
     query.start({}, Pose{.translation = c.at});
     while (!query.finished()) query.refine();
     EXPECT_EQ(query.answer(), c.answer);
@@ -218,7 +219,7 @@ TEST(NarrowPhase, FindsContactsThatAreExactInFloats) {
 
 TEST(NarrowPhase, SaysNoForASolidInsideAnother) {
   const auto inner = build_tree(box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})), outer = build_tree(uv_sphere(16, 12, 1));
-  NarrowPhase query(inner, outer);
+  test::OwnNarrowPhase query(inner, outer);
   query.start({}, {});
   while (!query.finished()) query.refine();
   EXPECT_EQ(query.answer(), Answer::no);  // the surfaces do not touch
@@ -233,11 +234,11 @@ TEST(NarrowPhase, ScalesExactlyByPowersOfTwo) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
       Draw draw(seed);
       Pose pose_a = draw.pose(0), pose_b = draw.pose(draw.uniform(0.5, 2));
-      NarrowPhase query(tree_a, tree_b);
+      test::OwnNarrowPhase query(tree_a, tree_b);
       query.start(pose_a, pose_b);
       while (!query.finished()) query.refine();
       for (double& x : pose_b.translation) x *= scale;
-      NarrowPhase large(scaled_a, scaled_b);
+      test::OwnNarrowPhase large(scaled_a, scaled_b);
       large.start(pose_a, pose_b);
       while (!large.finished()) large.refine();
       ASSERT_EQ(query.answer(), large.answer());

@@ -6,6 +6,7 @@
 #include "lattice_scene.h"
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/shape_query.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -24,7 +25,7 @@ TEST(Scale, DistancesHoldAtEveryPowerOfTwoOfTheRange) {
         const PackedSphereTree large_a = tree_of(s.a, power), large_b = tree_of(s.b, power);
         Pose at = pose;
         for (double& x : at.translation) x = std::ldexp(x, power);
-        DistanceQuery query(large_a, large_b);
+        test::OwnDistanceQuery query(large_a, large_b);
         query.start({}, at);
         query.refine();
         ASSERT_TRUE(query.finished());

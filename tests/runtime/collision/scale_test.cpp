@@ -7,6 +7,7 @@
 
 #include "lattice_scene.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "support/query_of_trees.h"
 
 namespace orchard::runtime {
 namespace {
@@ -27,7 +28,7 @@ TEST(Scale, TouchingIsDecidedExactlyAtEveryPowerOfTwoOfTheRange) {
     for (int power = kMinPower; power <= kMaxPower; ++power) {
       const PackedSphereTree a = tree_of(s.a, power), b = tree_of(s.b, power);
       ASSERT_EQ(structure_fault(a), nullptr) << seed << " 2^" << power;
-      NarrowPhase query(a, b, 64);
+      test::OwnNarrowPhase query(a, b, 64);
       for (const bool by_levels : {false, true}) {
         ASSERT_EQ(answer_of(query, {}, pose_of(s.pose, power), by_levels), s.touch ? Answer::yes : Answer::no)
             << seed << " 2^" << power;
@@ -44,7 +45,7 @@ TEST(Scale, AnswersAtAnyPoseAreTheSameAtEveryPowerOfTwoOfTheRange) {
   for (std::uint64_t seed = 100; seed < 104; ++seed) {
     const Scene s = scene(seed);
     const PackedSphereTree a = tree_of(s.a, 0), b = tree_of(s.b, 0);
-    NarrowPhase query(a, b, 64);
+    test::OwnNarrowPhase query(a, b, 64);
     std::vector<Pose> poses;
     std::vector<Answer> answers;
     Draw draw(seed);
@@ -58,7 +59,7 @@ TEST(Scale, AnswersAtAnyPoseAreTheSameAtEveryPowerOfTwoOfTheRange) {
     }
     for (int power = kMinPower; power <= kMaxPower; ++power) {
       const PackedSphereTree large_a = tree_of(s.a, power), large_b = tree_of(s.b, power);
-      NarrowPhase large(large_a, large_b, 64);
+      test::OwnNarrowPhase large(large_a, large_b, 64);
       for (std::size_t i = 0; i < poses.size(); ++i) {
         Pose pose = poses[i];
         for (double& x : pose.translation) x = std::ldexp(x, power);
@@ -74,7 +75,7 @@ TEST(Scale, OfBothPosesChangesNoAnswer) {
   for (std::uint64_t seed = 200; seed < 208; ++seed) {
     const Scene s = scene(seed);
     const PackedSphereTree a = tree_of(s.a, 0), b = tree_of(s.b, 0);
-    NarrowPhase query(a, b, 64);
+    test::OwnNarrowPhase query(a, b, 64);
     for (int power = -332; power <= 332; ++power) {
       Pose pose_a, pose_b = pose_of(s.pose, power);
       pose_a.scale = pose_b.scale = std::ldexp(1, power);
@@ -88,7 +89,7 @@ TEST(Scale, OfBothPosesChangesNoAnswer) {
 TEST(Scale, OfOneBodyOnlyNeverMakesATouchANo) {
   for (int power = -140; power <= 140; ++power) {
     const PackedSphereTree cube = tree_of(lattice_box({1, 1, 1}), 0);
-    NarrowPhase query(cube, cube, 64);
+    test::OwnNarrowPhase query(cube, cube, 64);
     for (const double step : {0.0, 0.5, 1.0, 1.5}) {
       Pose large;
       large.scale = std::ldexp(1, power);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "orchard/runtime/narrow_phase.h"
+#include "support/query_of_trees.h"
 #include "tree_file_support.h"
 
 namespace orchard::runtime {
@@ -133,7 +134,7 @@ TEST(TreeFile, IsUsedInPlaceWithoutACopy) {
   ASSERT_EQ(mapped.open(path.string().c_str()), LoadStatus::ok);
   MappedTree moved = std::move(mapped);
   EXPECT_EQ(serialize(moved.view()), file);
-  NarrowPhase by_view(moved.view(), seen), by_copy(tree, tree);
+  test::OwnNarrowPhase by_view(moved.view(), seen), by_copy(tree, tree);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Pose pose = Draw(seed).pose(1.2);
     by_view.start({}, pose), by_copy.start({}, pose);

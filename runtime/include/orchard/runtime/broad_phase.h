@@ -134,7 +134,7 @@ struct Advance {
   // With pairs, the time of the step at which they overlap. Without pairs, no spheres touch at any step before this
   // time, and calling advance() earlier is unnecessary.
   double time;
-  std::span<const BodyPair> pairs;  // In ascending order; valid until the next call of any other member.
+  std::span<const BodyPair> pairs{};  // In ascending order; valid until the next call of any other member.
   // If the step was interrupted, pairs with a body of this importance class or above may be missing; kNoClass: none is.
   unsigned incomplete_from = kNoClass;
   std::size_t left_over = 0;  // Bodies and pairs that the budget left untested; 0: nothing is missing.

@@ -30,9 +30,9 @@ class DistanceQuery {
     double absolute = 0;  // In world units.
   };
 
-  DistanceQuery(const TreeView& a, const TreeView& b) noexcept;
-  // Constructs a query without bodies, and rebinds it to a pair, as NarrowPhase::bind() does.
-  DistanceQuery() noexcept;
+  DistanceQuery() noexcept;  // Without bodies; call bind() before start().
+  DistanceQuery(const PreparedTree& a, const PreparedTree& b) noexcept : DistanceQuery() { bind(a, b); }
+  // Rebinds the query to another pair, as NarrowPhase::bind() does.
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
@@ -66,7 +66,7 @@ class DistanceQuery {
   DistanceSearch& search() noexcept;
 
   // The DistanceSearch (a private header) lies here and not on the heap, so that its construction cannot fail.
-  static constexpr std::size_t kSize = 1376, kAlignment = 32;
+  static constexpr std::size_t kSize = 832, kAlignment = 32;
   alignas(kAlignment) std::array<std::byte, kSize> storage_;
 };
 

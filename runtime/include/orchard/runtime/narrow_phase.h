@@ -44,7 +44,7 @@ struct Verdict {
   double separation_bound = 0;
   // A certified lower bound on the distance between the surfaces; 0 if none is known.
   double lower_bound = 0;
-  Contact contact;
+  Contact contact{};
   std::uint32_t level = 0;  // Completed levels below the roots.
   std::uint64_t work = 0;   // Since start(), in units of Budget::work.
 };
@@ -72,11 +72,14 @@ class NarrowPhase {
  public:
   static constexpr std::size_t kDefaultRoom = 1u << 13;
 
-  // Constructs the query of a pair; reuse the object for all poses. `room` is the number of meeting pairs per level, 24
-  // bytes each. O(nodes + vertices).
-  NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room = kDefaultRoom) noexcept;
-  // Constructs a query without bodies. Call bind() before start().
+  // Constructs a query without bodies. Call bind() before start(). `room` is the number of meeting pairs per level, 24
+  // bytes each.
   explicit NarrowPhase(std::size_t room = kDefaultRoom) noexcept;
+  // Constructs the query of a pair; reuse the object for all poses, and for other pairs by bind().
+  NarrowPhase(const PreparedTree& a, const PreparedTree& b, std::size_t room = kDefaultRoom) noexcept
+      : NarrowPhase(room) {
+    bind(a, b);
+  }
   // Rebinds the query to another pair (about 10 ns) and keeps reserved memory. The prepared trees must outlive the
   // query or its next bind(). Call start() before the next query. Allocates only if these trees are deeper than all
   // before. Returns false if there is no memory for that; "maybe" can then be final.
@@ -137,7 +140,7 @@ class NarrowPhase {
   PairQuery& query() noexcept;
 
   // The PairQuery (a private header) lies here and not on the heap, so that its construction cannot fail.
-  static constexpr std::size_t kSize = 1664, kAlignment = 32;
+  static constexpr std::size_t kSize = 1120, kAlignment = 32;
   alignas(kAlignment) std::array<std::byte, kSize> storage_;
 };
 

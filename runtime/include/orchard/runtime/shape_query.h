@@ -118,7 +118,7 @@ SignedPoint signed_nearest_point(const TreeView& solid, const Pose& pose, const 
 bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept;
 
 namespace detail {
-struct RayIndexAccess;
+struct IndexTriangles;
 }
 
 struct BoxBlock;
@@ -143,7 +143,7 @@ class RayIndex {
   std::size_t bytes() const noexcept;  // Of memory, in addition to the object itself.
 
  private:
-  friend struct detail::RayIndexAccess;
+  friend struct detail::IndexTriangles;
   std::array<double, 3> origin_{}, middle_{};  // Of the tree; the centre of a ball around the triangles.
   double radius_ = 0, bounding_radius_ = 0;    // Of that ball; of the tree.
   std::vector<BoxBlock> boxes_;                // Block 0 contains the root alone, block 1 its children.

@@ -22,7 +22,7 @@ enum class LoadStatus : std::uint8_t {
   checksum_mismatch,  // It was altered after it was written.
   invalid_structure,  // The file is intact, but its contents are not a tree that queries can walk safely.
   out_of_memory,
-  cannot_map,  // view() only: the bytes are not aligned, or this machine is big-endian.
+  cannot_map,  // view() only: the bytes are not aligned.
 };
 
 // Returns a sentence without a full stop, for people. Never null.
@@ -45,8 +45,8 @@ inline constexpr std::size_t kViewAlignment = 32;
 // Allocates nothing, and checks everything in one pass over the bytes.
 LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept;
 
-// A tree in a file that the system maps into memory (POSIX; elsewhere, and on big-endian machines, the file is read
-// instead). Pages are shared between processes.
+// A tree in a file that the system maps into memory (POSIX; elsewhere, the file is read instead). Pages are
+// shared between processes.
 // The file must not change meanwhile. If another program truncates it, the next query receives SIGBUS; if another
 // program writes to it, queries may leave their arrays. To replace the file, rename another one over it, as orchard
 // does. If other programs may write to it, use load_file(), which copies it into memory.

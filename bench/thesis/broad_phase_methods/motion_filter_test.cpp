@@ -1,4 +1,4 @@
-#include "orchard/runtime/motion_filter.h"
+#include "motion_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,10 @@
 
 #include "worlds.h"
 
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
 namespace {
+
+namespace test = runtime::test;
 
 constexpr double kSamplePeriod = 1.0 / 60, kHorizon = 0.1;
 constexpr std::size_t kFine = 12;  // parts of a step in which a path is simulated
@@ -156,4 +158,4 @@ TEST(MotionFilter, TakesNoSampleIfAnOptionIsOutOfItsRange) {
 }
 
 }  // namespace
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

@@ -1,10 +1,10 @@
-#include "orchard/runtime/motion_filter.h"
+#include "motion_filter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
 namespace {
 
 // The length, in standard deviations of a coordinate, that a normal vector of three dimensions exceeds with this
@@ -22,7 +22,7 @@ double exceeded_with(double probability) noexcept {
 
 // Numbers that are not finite are in none of the ranges.
 bool is_usable(const MotionFilterOptions& o) noexcept {
-  const auto within = [](double value, double least) { return value >= least && value <= kMaxNumber; };
+  const auto within = [](double value, double least) { return value >= least && value <= runtime::kMaxNumber; };
   return o.noise > 0 && within(o.noise, 0) && o.jerk_density > 0 && within(o.jerk_density, 0) &&
          within(o.max_speed, 0) && within(o.max_acceleration, 0) && o.confidence > 0 && o.confidence < 1;
 }
@@ -97,4 +97,4 @@ Motion MotionFilter::motion(double radius, double time, double horizon) const no
           .expiry = time + horizon};
 }
 
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

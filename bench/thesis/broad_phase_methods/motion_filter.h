@@ -4,7 +4,10 @@
 #include "orchard/runtime/motion.h"
 
 // Predicts motion bounds of tracked objects from noisy samples of their positions.
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
+
+using runtime::Motion;
+using runtime::Vec3;
 
 // The options of a MotionFilter: the error of the tracker, and a model of how the object moves. Units are those of
 // lengths and seconds.
@@ -73,4 +76,4 @@ class MotionFilter {
   bool empty_ = true;
 };
 
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods
