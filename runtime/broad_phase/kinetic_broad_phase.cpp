@@ -35,25 +35,25 @@ void KineticBroadPhase::removed(BodyIndex body) {
   state_.overlaps.mark(body, OverlapList::kUpdated);
 }
 
-void KineticBroadPhase::retire(BodyIndex body) {
-  state_.boxes.take_away(body);
-  state_.windows[body].end = kNeverStep;  // no next update, until the slot's next body
-  state_.windows.void_events(body);
-}
-
-// Those that have changed, or were added, are due; those that are gone leave.
+// Those that have changed, or were added, are due; those that are gone leave, together.
 void KineticBroadPhase::take_changes() {
   const bool all_alive = state_.pool.size() == state_.pool.slots();
-  std::size_t count = due_.bodies.size();
-  make_room(due_.bodies, count + state_.changes.size());
-  due_.bodies.resize(count + state_.changes.size());
+  std::size_t count = due_.bodies.size(), gone = count + state_.changes.size();  // these from the end on
+  make_room(due_.bodies, gone);
+  due_.bodies.resize(gone);
   const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
   state_.changes.take(load, [&](BodyIndex body) {
     const Window& window = state_.windows[body];
     if (window.bounded && window.end >= 0) planner_.note_cancelled();
-    if (!all_alive && !state_.pool.alive(body)) return retire(body);
-    due_.bodies[count++] = body;
+    if (all_alive || state_.pool.alive(body)) {
+      due_.bodies[count++] = body;
+      return;
+    }
+    due_.bodies[--gone] = body;
+    state_.windows[body].end = kNeverStep;  // no next update, until the slot's next body
+    state_.windows.void_events(body);
   });
+  state_.boxes.take_away(std::span(due_.bodies).subspan(gone));
   due_.bodies.resize(count);
 }
 

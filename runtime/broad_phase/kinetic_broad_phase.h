@@ -40,7 +40,6 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   void begin(Step now);
   void collect_due(Step now);
   void complete_due();
-  void retire(BodyIndex body);
   void take_changes();
   StepReport end(Step now, unsigned incomplete_from, const BudgetTracker& tracker);
 
