@@ -7,10 +7,10 @@
 
 namespace orchard::detail {
 
-// By what a ball is fitted. Its reach, radius + signed distance of the centre, is an upper bound on the inaccuracy for
-// every solid. It is far above the inaccuracy for a ball that contains a lot of surface on all sides of its centre,
-// such as one around a lattice or around many parts. For such a ball, the smallest radius is usually the tightest
-// choice.
+// The measure that a fit minimises. The reach of a ball, radius + signed distance of the centre, is an upper bound on
+// the inaccuracy for every solid. It is far above the inaccuracy for a ball that contains a lot of surface on all sides
+// of its centre, such as one around a lattice or around many parts. For such a ball, the smallest radius is usually the
+// tightest choice.
 enum class BallMeasure { reach, radius };
 
 // A ball with the signed distance of its centre, or 0 in place of that if balls are measured by their radius. Its
@@ -38,7 +38,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
       : surface_(surface), measure_(measure) {}
 
   // Fits a ball that contains all points, of which there must be at least one, with at most `evaluations` queries of
-  // the signed distance. If the slope of `start` is known, its distance must belong to it.
+  // the signed distance. If the slope of `start` is known, its distance must be the one at its centre.
   FittedBall fit(std::span<const Point> points, const FittedBall& start, int evaluations);
   FittedBall fit(std::span<const Point> points, const Point& start, int evaluations) {
     return fit(points, at(start), evaluations);

@@ -3,8 +3,8 @@
 
 namespace orchard::apps {
 
-// `orchard batch merge FOLDER.. -o PLACE`: batch.jsonl, batch.csv and batch-summary.json, which depend on the rows
-// alone; batch-costs.csv and batch.svg, which hold times. Throws InputError if shards are missing.
+// Runs `orchard batch merge FOLDER.. -o PLACE`. It writes batch.jsonl, batch.csv and batch-summary.json, which depend
+// only on the rows, and batch-costs.csv and batch.svg, which contain times. Throws InputError if shards are missing.
 void merge_batches(const BatchCommand& command);
 
 }  // namespace orchard::apps

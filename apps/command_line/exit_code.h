@@ -11,7 +11,7 @@ enum ExitCode : int {
   kAuditOpen = 3,       // `audit` found surface that is in no sphere
   kTooThin = 4,         // everything is written, and a measured thickness is below --fail-below
   kPromiseNotKept = 5,  // everything is written, and the result lacks a property that the command promises
-  kInterrupted = 130,   // 128 + SIGINT; interrupt.h ends with 128 + the number of any other signal
+  kInterrupted = 130,   // 128 + SIGINT; for other signals, the code is 128 + their number (interrupt.h)
 };
 
 struct ExitCodeRow {

@@ -5,7 +5,7 @@
 
 namespace orchard::apps {
 
-// Reads an .orchard file. Throws InputError, in one line that says what to do, if it is none.
+// Reads an .orchard file. If the file is not valid, throws InputError with a message of one line that says what to do.
 runtime::PackedSphereTree load_tree(const std::filesystem::path& file);
 
 }  // namespace orchard::apps

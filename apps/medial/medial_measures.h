@@ -11,30 +11,32 @@
 
 namespace orchard::apps {
 
-// What is known of how good an axis is: the metrics of any medial mesh; of one that was built here its stability; of
-// one that stands beside another how far it is from that.
+// The measures of an axis. The first three members are measured for any medial mesh. `stability` needs an axis that was
+// built here, and `distance` needs another axis to compare with.
 struct MedialJudgement {
   MedialQuality quality;
   ShapeMeasures shape = {};
   PaperMeasures paper = {};
   std::optional<MedialStability> stability = {};
   std::optional<AxisDistance> distance = {};  // in diagonals
-  StageTimes seconds = {};                    // that measuring took
+  StageTimes seconds = {};                    // the seconds that each step of measuring took
 };
 
-// What is known of any medial mesh. The counts of samples go with those of `options`.
+// Measures any medial mesh: sets `quality`, `shape` and `paper`. The number of samples for `paper` is at most
+// options.surface_samples.
 MedialJudgement judge_mesh(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options,
                            const Progress& progress = {});
 
-// One number of a judgement, by the one name and in the one unit that it has in tables, JSON, sweeps and views.
+// One number of a judgement. It has the same name and unit in tables, JSON, sweeps and views.
 struct MedialMeasure {
   const char* name;
   const char* title;                      // for people, without the unit
   const char* unit;                       // empty: a count
-  bool rates;                             // less is better; else it says what the axis is, not how good
-  double (*get)(const MedialJudgement&);  // NaN where it is not defined for the axis
+  bool rates;                             // lower values are better; if false, it describes the axis without a rating
+  double (*get)(const MedialJudgement&);  // NaN if it is not defined for the axis
 };
 
+// Returns all measures.
 const std::vector<MedialMeasure>& medial_measures();
 
 }  // namespace orchard::apps

@@ -4,30 +4,33 @@
 
 namespace orchard::runtime::detail {
 
-// The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: in
-// the grid, or by themselves where they are larger than several cells.
+// The boxes of all bodies, where other boxes and queries find them. The box of a body contains all that its motion
+// bound allows until its window ends. Boxes are in the grid, except those that are as large as several cells
+// ("oversized"), which are in a list.
 class BoxIndex {
  public:
   void make_room(std::size_t slots) { grow(places_, slots); }
   void make_room_for_boxes(std::size_t slots) { grow(boxes_, slots); }
-  const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
+  const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // for prefetching
 
-  // Empties it, and makes it for so many slots, or lines; `lines` 0: for none, until it is rebuilt.
+  // Removes all boxes, and makes room for `slots` bodies and a grid of `lines` lines. If `lines` is 0, it can have no
+  // boxes until it is rebuilt again.
   void rebuild(std::size_t slots, std::size_t lines, const Executor& executor);
   void take_away(BodyIndex body) noexcept { take_away({&body, 1}); }
   void take_away(std::span<const BodyIndex> bodies) noexcept;
-  // Takes note of bodies' boxes, which fit, and has `extent` include them. What remains is to put them into lines(),
-  // with packed(), to include the extent, and meet_oversized().
+  // Stores the boxes of bodies, which fit the grid, and extends `extent` by them. The caller then has to insert them
+  // into lines(), with packed() as the boxes, to pass the extent to include(), and to call meet_oversized().
   void note(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept;
   SweptGrid& lines() noexcept { return grid_; }
   std::span<const PackedAabb> packed() const noexcept { return boxes_; }
   void include(const QuantizedAabb& extent) noexcept { extent_.include(extent); }
+  // Appends the pairs of these bodies, which are in the grid, with the oversized boxes that they meet.
   void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) const;
-  // All of that for one body, whether or not its box fits.
+  // Does all of that for one body, whether its box fits the grid or not, and appends its pairs.
   void insert_one(BodyIndex body, const QuantizedAabb& box, SweptGrid::Visits& room, std::vector<BodyPair>& pairs,
                   GridCounts& counts);
 
-  // As in BroadPhaseAlgorithm, with the quantized grid of the step.
+  // These are the queries of BroadPhaseAlgorithm. `grid` is the quantized grid of the step.
   Near near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
   bool along(const QuantizedGrid& grid, const Vec3& origin, const Vec3& way, double length,
              std::vector<BodyIndex>& portion, const VisitPortion& visit) const;
@@ -39,17 +42,17 @@ class BoxIndex {
   void append_in_cells(const QuantizedAabb& box, std::vector<BodyIndex>& bodies) const;
   bool walk_slabs(const QuantizedGrid& grid, const GridRay& ray, std::vector<BodyIndex>& portion,
                   const VisitPortion& visit) const;
-  std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
+  std::size_t fewest_cells() const noexcept;  // if a query would read more cells than this, it reads all boxes instead
 
   std::vector<Place> places_;      // by body
-  std::vector<PackedAabb> boxes_;  // of those in the grid
+  std::vector<PackedAabb> boxes_;  // by body; set for those in the grid
   struct Oversized {
     BodyIndex body;
     QuantizedAabb box;
   };
   std::vector<Oversized> oversized_;
   SweptGrid grid_;
-  QuantizedAabb extent_ = kNoBox;  // around all boxes that are in the grid, or have been since it was rebuilt
+  QuantizedAabb extent_ = kNoBox;  // contains all boxes that have been in the grid since it was rebuilt
 };
 
 }  // namespace orchard::runtime::detail

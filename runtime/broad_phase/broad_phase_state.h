@@ -10,11 +10,12 @@ struct BroadPhase::State {
   std::unique_ptr<detail::BroadPhaseAlgorithm> method;
   detail::Step next = detail::kNeverStep;  // the next step with anything to do
   detail::Step validated = -1;             // the last step at which all bodies were asked for, to check their bounds
-  bool woken = false;                      // for a change, since the last step
+  bool woken = false;                      // a change since the last step requires another one
   bool busy = false;                       // a source, a filter or a listener may be running
 };
 
-// While one lives, the application's functions may run: see MotionSource.
+// Marks, while an object of it exists, that functions of the application may run, within which changes are refused: see
+// MotionSource.
 class BroadPhase::Busy {
  public:
   explicit Busy(State& state) noexcept : state_(state) { state_.busy = true; }

@@ -4,30 +4,30 @@
 
 namespace orchard::runtime::detail {
 
-// A step's work within a budget: what it leaves over is resumed at the next step where it stopped.
+// The work of steps within a budget. What a step leaves over, the next one resumes.
 //
-// In each class updates and tests get about the same share of the work, so that neither stands still for the other:
-// updates find new pairs, tests report the known ones. Bodies are updated, and pairs tested, in the order in which they
-// came to wait, so every one gets its turn. What a window update finds is tested before the class's next update: were
-// it to wait among all others, the next update of either body could make it void before its turn comes, again and
-// again.
+// In each class of importance, window updates, which find new pairs, and tests, which report known ones, each get about
+// half of the work, so that neither has to wait for the other. Bodies are updated, and pairs are tested, in the order
+// in which they came to wait, so each of them gets its turn. The pairs that a window update finds are tested before the
+// next update of the class. If they waited behind all others, the next update of one of the bodies could make them void
+// before their turn came, again and again.
 //
-// A body that waits keeps its last box in the grid. The box may be wrong, so it proves nothing, but bodies that are
-// updated later find it, the pair is tested, and what is reported is what the test says. Without this two bodies
-// would have to be within their windows at the same time to be found.
+// A body that waits keeps its last box in the grid. The box may be wrong, so it proves nothing. But bodies that are
+// updated later find it, the pair is tested, and the test decides what is reported. Otherwise, two bodies would be
+// found only if both were within their windows at the same time.
 class BudgetedWork {
  public:
   BudgetedWork(KineticState& state, NearPairs& pairs, WindowUpdates& updates)
       : state_(state), pairs_(pairs), updates_(updates) {}
 
-  // What is due waits from now on, behind what has been left over.
+  // Lets the bodies and pairs that are due wait behind those that were left over.
   void join(std::span<const BodyIndex> due, std::span<const PairEvent> events);
-  void postpone(std::span<const BodyIndex> bodies);
-  // Works until all is done, or the budget is spent: then it returns the class under way. kNoClass: all is done.
+  void postpone(std::span<const BodyIndex> bodies);  // lets them wait for an update
+  // Works until all is done or the budget is spent. Returns kNoClass if all is done; otherwise, the class that is not.
   unsigned work(Step now, BudgetTracker& tracker);
 
   void reclassified(BodyIndex body);
-  void leave(BodyIndex body) noexcept { backlog_.leave(body); }  // removed, or updated otherwise
+  void leave(BodyIndex body) noexcept { backlog_.leave(body); }  // the body was removed, or updated elsewhere
   void take_all(std::vector<BodyIndex>& bodies, std::vector<PairEvent>& pairs) { backlog_.take_all(bodies, pairs); }
   bool nothing_left() const noexcept { return backlog_.empty(); }
   std::size_t left_over() const noexcept { return std::max<std::size_t>(1, backlog_.size()); }
@@ -44,7 +44,7 @@ class BudgetedWork {
   NearPairs& pairs_;
   WindowUpdates& updates_;
   Backlog backlog_;
-  bool reclassified_ = false;  // some body, since the last step within a budget
+  bool reclassified_ = false;  // a body has another class since the last step within a budget
   std::vector<PairEvent> tests_;
   std::vector<BodyPair> unsure_;
 };

@@ -3,25 +3,26 @@
 
 namespace orchard::runtime::detail {
 
-// The bodies that are new, or gone, or whose bounds hold no longer, since the last step: each once, as they came.
+// The bodies that were added or removed, or whose bounds were cancelled, since the last step. Each occurs once, in the
+// order of the changes.
 class Changes {
  public:
   void make_room(std::size_t slots) { grow(pending_, slots); }
-  void note(BodyIndex body) {  // there is room for it
+  void note(BodyIndex body) {  // after make_room()
     if (pending_[body]) return;
     changed_.push_back(body);
     pending_[body] = 1;
   }
   bool has(BodyIndex body) const noexcept { return pending_[body] != 0; }
-  const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
+  const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // for prefetching
   bool empty() const noexcept { return changed_.empty(); }
-  std::size_t size() const noexcept { return changed_.size(); }  // at most
+  std::size_t size() const noexcept { return changed_.size(); }
   void append_to(std::vector<BodyIndex>& bodies) const {
     for (const BodyIndex body : changed_) {
       if (pending_[body]) bodies.push_back(body);
     }
   }
-  // Each leaves, and is used; load(body) is called some bodies ahead.
+  // Removes all bodies, and calls use(body) for each. load(body) is called some bodies ahead, for prefetching.
   template <typename Load, typename Use>
   void take(const Load& load, const Use& use) {
     constexpr std::size_t kAhead = 16;
@@ -38,7 +39,7 @@ class Changes {
   std::size_t memory_bytes() const noexcept { return bytes_of(pending_, changed_); }
 
  private:
-  static constexpr std::size_t kKept = 1024;  // room for as many stays allocated, not what adding all bodies took
+  static constexpr std::size_t kKept = 1024;  // more room than this, as after adding all bodies, is given back
 
   std::vector<std::uint8_t> pending_;  // by body
   std::vector<BodyIndex> changed_;

@@ -4,11 +4,12 @@
 
 #include "orchard/runtime/motion.h"
 
-// When two bodies can touch, and how long they surely overlap, by the horns that their bounds allow (8.2).
+// When two bodies can touch, and how long they certainly overlap, computed from the horns of their motion bounds
+// (dissertation 8.2).
 namespace orchard::runtime::detail {
 
-// Two horns as one: the points meet when |offset + velocity t| <= radius + growth t + acceleration t^2 / 2. Of one
-// pair, or of four by coordinate.
+// The two horns of a pair, in relative coordinates: the bodies can touch at times t for which |offset + velocity t| <=
+// radius + growth t + acceleration t^2 / 2. `Numbers` has the value of one pair, or those of four.
 template <typename Numbers>
 struct Horns {
   std::array<Numbers, 3> offset, velocity;
@@ -16,32 +17,35 @@ struct Horns {
 };
 using HornPair = Horns<double>;
 
-// The first such t in [0, limit], never late and less than `resolution` early; infinity if there is none.
+// Returns the first such t in [0, limit], never too late and less than `resolution` too early; infinity if there is
+// none.
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept;
 
 inline constexpr std::size_t kPairsAtOnce = 16;
 
 struct PairTimes {
   std::array<bool, kPairsAtOnce> touching;  // spheres_touch()
-  // Of those that touch, how long they surely go on to overlap, as the bounds do not let them get apart sooner; of the
-  // others earliest_contact(); until their limits.
+  // For pairs that touch: how long they certainly overlap, because the bounds do not let them part sooner. For the
+  // others: earliest_contact(). Both are searched up to the limits.
   std::array<double, kPairsAtOnce> seconds;
 };
 
 struct PairPrecision {
-  double resolution, slack;  // as of earliest_contact()
+  double resolution, slack;  // the parameters of earliest_contact() with these names
   bool valid = false;        // whether all motions are known to be valid
 };
 
-// Pair i, of at most kPairsAtOnce, is that of motions[2 i] and motions[2 i + 1], and has limits[i] seconds. Returns
-// false if a motion may not be valid: nothing has been found then. The same bits on every machine.
+// Computes the times of at most kPairsAtOnce pairs. Pair i has the motions 2 i and 2 i + 1 and is searched for
+// limits[i] seconds. Returns false, without results, if a motion may be invalid. The results have the same bits on
+// every machine.
 bool find_pair_times(std::span<const Motion> motions, std::span<const double> limits, const PairPrecision& precision,
                      PairTimes& times) noexcept;
 
-// Squares of less vanish: spheres_touch() takes it for 0.
+// Squares of smaller lengths underflow, so spheres_touch() treats them as 0.
 inline constexpr double kMinLength = 1e-150;
 
-// What to add to a sum of radii for the rounding of everything that follows, and the application's.
+// Returns what is added to the sum of two radii, to allow for rounding in all further computations and in the
+// application.
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept;
 
 }  // namespace orchard::runtime::detail

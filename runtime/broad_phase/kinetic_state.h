@@ -7,7 +7,7 @@
 
 namespace orchard::runtime::detail {
 
-// What the parts of the kinetic broad phase share: what is known of its bodies, and which of them overlap.
+// The state that the classes of the kinetic broad phase share: what is known of the bodies, and which of them overlap.
 struct KineticState {
   KineticState(BodyPool& all, const BroadPhaseOptions& given) : pool(all), options(given), windows(all, given.window) {}
 
@@ -15,7 +15,7 @@ struct KineticState {
     boxes.make_room(slots);
     changes.make_room(slots);
     overlaps.make_room(slots);
-    windows.make_room(slots);  // last: its size says that there is room in all of them
+    windows.make_room(slots);  // last, because windows.size() shows that there is room in all of them
   }
   // Takes a body whose motion is not valid out of all pairs until its motion has been asked for again.
   void refuse(BodyIndex body);
@@ -28,9 +28,9 @@ struct KineticState {
   const BroadPhaseOptions options;
   Changes changes;
   Windows windows;
-  QuantizedGrid grid;  // in which the boxes are; it moves with the bodies
+  QuantizedGrid grid;  // the coordinates of the boxes; it moves with the bodies
   BoxIndex boxes;
-  GridCounts counts;  // of their insertions, for the plan
+  GridCounts counts;  // of the insertions into `boxes`, for the planner
   TimingWheel wheel;
   OverlapList overlaps;
 };

@@ -5,8 +5,8 @@
 #include "orchard/runtime/motion.h"
 #include "simd/machine.h"
 
-// The motion of one body, or of four at once by coordinate: the kinds that the inner loops are compiled for. Both give
-// the same bits.
+// The inner loops are compiled for two kinds of numbers: OneDouble handles one body at a time, and FourDoubles handles
+// four, with a vector for each coordinate. Both give the same bits.
 namespace orchard::runtime::detail {
 
 template <typename Number>
@@ -16,6 +16,7 @@ struct MotionLanes {
   Number radius, acceleration, drift;
 };
 
+// One body at a time.
 struct OneDouble {
   using Numbers = double;
   using Mask = bool;
@@ -37,6 +38,7 @@ struct OneDouble {
 };
 
 #ifdef ORCHARD_VECTORS
+// Four bodies at a time.
 struct FourDoubles {
   using Numbers __attribute__((vector_size(32))) = double;
   using Mask __attribute__((vector_size(32))) = std::int64_t;
@@ -76,7 +78,7 @@ struct FourDoubles {
   }
 
  private:
-  // Four numbers of each motion, from the one at `from` on.
+  // Returns the numbers from `from` to from + 3 of four motions: result[k] has the number from + k of each motion.
   template <typename Which>
   ORCHARD_INLINE static std::array<Numbers, 4> transposed(const Which& which, std::size_t from) noexcept {
     const auto row = [&](std::size_t i) ORCHARD_INLINE_LAMBDA {
@@ -93,8 +95,8 @@ struct FourDoubles {
 };
 #endif
 
-// work.template operator()<Kind>() for the kind that suits the machine. Without wide vectors a choice among four
-// numbers takes longer than four choices.
+// Calls work.template operator()<Kind>() with the kind that suits the machine. On a machine without wide vectors that
+// is OneDouble, because there a choice among vectors of four numbers takes longer than four choices.
 template <typename Work>
 void with_best_lanes(const Work& work) {
 #ifdef ORCHARD_VECTORS
@@ -137,7 +139,8 @@ ORCHARD_INLINE auto dot_of(const Three& a, const Three& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// As is_valid() of a motion says, but for the expiry and for what its second look finds; NaN fails.
+// Returns whether the motions are valid, like is_valid(), but without looking at the expiry and with one sum for all
+// numbers. So it may be false for a valid motion, but never true for one with NaN.
 template <typename Kind>
 ORCHARD_INLINE typename Kind::Mask are_valid(const MotionLanes<typename Kind::Numbers>& m) noexcept {
   const auto squares = dot_of(m.position, m.position) + dot_of(m.velocity, m.velocity) +

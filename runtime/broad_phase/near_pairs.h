@@ -4,22 +4,24 @@
 
 namespace orchard::runtime::detail {
 
-// Tests pairs that are near: they overlap, for a while or for sure up to a step, or get an event at the first step at
-// which they can.
+// Tests near pairs. A pair that overlaps goes into the list of overlaps, with an event at the first step at which it
+// can have parted. Any other pair gets an event at the first step at which it can overlap.
 class NearPairs {
  public:
   static constexpr std::size_t kTestsAtOnce = kPairsAtOnce;
 
   explicit NearPairs(KineticState& state) : state_(state), spheres_(state.options.position_slack) {}
 
-  // ahead: for the next step, from the motions of this one. within_budget: what overlaps may be doubted.
+  // Within a budget, an overlap is doubtful if one of its bodies is updated again before the step ends.
   void begin_step(bool within_budget);
+  // `ahead`: further tests are for the next step, from the motions of this one.
   void work_ahead(bool ahead) noexcept { ahead_ = ahead; }
-  void test(Step now, std::span<PairEvent> events);  // which may change their order
-  // Pairs that window updates of this round have found, and the filters have let pass.
+  // Tests pairs whose events are due, and may change the order of `events`.
+  void test(Step now, std::span<PairEvent> events);
+  // Tests pairs that the window updates of this round have found and that the filters allow.
   void test_near(Step now, std::span<const BodyPair> pairs);
-  // What becomes of pairs that are tested. It counts once it has been taken over, so that jobs that run at once may
-  // have one each.
+  // The results of tests. They have no effect before take(), so that each of the jobs that run at the same time can
+  // have an outcome of its own.
   struct Outcome {
     struct Later {
       PairEvent event;
@@ -30,7 +32,7 @@ class NearPairs {
     std::vector<PairEvent> doubtful;
     std::vector<BodyIndex> refused;
     std::uint64_t asked = 0;
-    std::vector<PairEvent> tests;  // and what the tests work with
+    std::vector<PairEvent> tests;  // this and the members below are scratch
     std::vector<Motion> motions;
     MotionQueries::Answers answers;
     std::size_t memory_bytes() const noexcept {
@@ -38,22 +40,25 @@ class NearPairs {
     }
   };
   void test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const;
-  void take(Outcome& outcome);
-  // What was found to overlap a step ahead: it does, unless a body has been updated since.
+  void take(Outcome& outcome);  // applies the outcome to the state, and empties it
+  // Adds the pairs that were found ahead for this step to the overlaps, unless a body has been updated since.
   void take_overlaps_ahead();
+  // Appends them to the events to test instead.
   void take_overlaps_ahead(std::vector<PairEvent>& events);
-  void keep_doubtful();  // at the end of a step within a budget
+  // Ends a step within a budget. Overlaps that are still doubtful are dropped at the next step, unless they are found
+  // again.
+  void keep_doubtful();
 
-  SphereNotes& spheres() noexcept { return spheres_; }  // what a window update takes note of
+  SphereNotes& spheres() noexcept { return spheres_; }  // window updates add the spheres of bodies
 
   void forget_all() noexcept;
   std::size_t memory_bytes() const noexcept;
 
  private:
   bool settle_by_spheres(Step now, const BodyPair& pair, Outcome& outcome) const;
-  struct Horizon {
-    Step left, safe;  // steps until the next update of one of the bodies, and for which both bounds hold
-    Step whole;       // up to which both are known
+  struct Horizon {    // how many steps a test can look ahead
+    Step left, safe;  // the steps until the next update of one of the bodies, and those for which both bounds hold
+    Step whole;       // the steps before `left` for which both bounds hold; at least 0
   };
   void find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b, Horizon& horizon) const noexcept;
   static std::size_t refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, Outcome& outcome);
@@ -66,10 +71,10 @@ class NearPairs {
   KineticState& state_;
   bool ahead_ = false, within_budget_ = false;
   SphereNotes spheres_;
-  std::vector<BodyPair> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch,
-  Round ahead_round_ = 0;                 // in this round
-  std::vector<PairEvent> doubtful_;  // reported within a budget, before another update that may not have found them yet
-  Outcome own_;                      // of what no job tests; kept for its memory
+  std::vector<BodyPair> overlaps_ahead_;  // pairs that were tested ahead and certainly touch at the next step
+  Round ahead_round_ = 0;                 // the round of those tests
+  std::vector<PairEvent> doubtful_;       // overlaps within a budget; a later update may not have found them again yet
+  Outcome own_;                           // of the tests that are not jobs; a member to reuse its memory
   std::vector<BodyPair> sure_;
 };
 

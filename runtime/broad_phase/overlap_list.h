@@ -3,20 +3,20 @@
 
 namespace orchard::runtime::detail {
 
-// The pairs that overlap at the step processed last, in ascending order, as they are reported. It lasts from step to
-// step: a step says which pairs it has tested and which of these touch, and pairs that were not tested stay.
+// The list of the pairs that overlap at the last processed step, in ascending order, as it is reported. It is kept from
+// step to step: a step adds and drops pairs that it has tested, and all other pairs stay.
 class OverlapList {
  public:
-  // What a step does to a body's pairs.
-  static constexpr std::uint8_t kUpdated = 1;  // all that are in the list are void: those that still touch are added
-  static constexpr std::uint8_t kRefused = 2;  // it is in no pair, whatever was added
+  // Marks of a body, which change all of its pairs.
+  static constexpr std::uint8_t kUpdated = 1;  // its pairs leave the list, except those that the step adds
+  static constexpr std::uint8_t kRefused = 2;  // all its pairs leave the list, even those that the step adds
 
   std::span<const BodyPair> pairs() const noexcept { return pairs_; }
 
-  // Of the step under way, in any order, any number of times.
-  void add(const BodyPair& pair) { append(from_scratch_ ? pairs_ : added_, pair); }  // it touches
-  void drop(const BodyPair& pair) { dropped_.push_back(pair); }  // it does not, unless it is added, too
-  void make_room(std::size_t slots) { grow(marks_, slots); }     // bodies that are marked are below
+  // The changes of the step under way, in any order and with repetitions. A pair that is added and dropped stays.
+  void add(const BodyPair& pair) { append(from_scratch_ ? pairs_ : added_, pair); }
+  void drop(const BodyPair& pair) { dropped_.push_back(pair); }
+  void make_room(std::size_t slots) { grow(marks_, slots); }  // for marks of bodies below `slots`
   void mark(BodyIndex body, std::uint8_t what) noexcept {
     if (from_scratch_ && what == kUpdated) return;
     marks_[body] |= what;
@@ -34,9 +34,10 @@ class OverlapList {
     }
     first_marked_ = first, last_marked_ = last;
   }
-  // Until the end of the step nothing counts but these, in any order, and what is added from now on.
+  // Replaces the list by these pairs, in any order. Until the end of the step, pairs can be added, and kUpdated and
+  // drop() have no effect.
   void start_over(std::span<const BodyPair> pairs = {});
-  // Moves the pairs for which it holds out of the list, at once.
+  // Moves the pairs for which leaves(pair) is true from the list to `taken`, immediately.
   template <typename Leaves>
   void take_out(const Leaves& leaves, std::vector<BodyPair>& taken) {
     std::erase_if(pairs_, [&](const BodyPair& pair) {
@@ -45,8 +46,8 @@ class OverlapList {
       return out;
     });
   }
-  // Ends the step, with so many slots of bodies: all that was said since the last end becomes the list. O(what was
-  // said), and O(pairs) if that changes anything.
+  // Ends the step: applies all changes since the last call to the list. `slots` is above all indices of bodies.
+  // O(changes), and O(pairs) if there are any.
   void update(std::size_t slots);
   void clear() noexcept;
   std::size_t memory_bytes() const noexcept;
@@ -63,8 +64,8 @@ class OverlapList {
   std::vector<std::uint8_t> marks_;  // by body
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool from_scratch_ = false, refuses_ = false;
-  std::vector<std::uint32_t> begins_;  // by body, while many pairs are sorted
-  std::vector<BodyPair> room_;         // while some are; changes
+  std::vector<std::uint32_t> begins_;  // by body: scratch for sorting many pairs
+  std::vector<BodyPair> room_;         // scratch for sorting the changes
 };
 
 }  // namespace orchard::runtime::detail

@@ -3,31 +3,35 @@
 
 namespace orchard::runtime::detail {
 
-// So few bodies say little of how often bounds are cancelled: a step or two in which all were may be all there is.
+// With at most this number of bodies, one or two steps do not show how often bounds are cancelled: it may be by chance
+// that all of them were.
 inline constexpr std::size_t kFewBodies = 192;
 
-// Decides, at updates of all windows, how long windows and how large cells are from then on: by the density and the
-// motion of a sample of the bodies, corrected by the pairs that were seen, and by how often bounds are cancelled.
+// Chooses, when all windows are updated, the length of windows and the size of cells. It uses the density and the
+// motion of a sample of the bodies, a correction by the number of pairs that were found, and the share of the bounds
+// that are cancelled.
 class Planner {
  public:
   Planner(BodyPool& pool, const BroadPhaseOptions& options) : pool_(pool), options_(options) {}
 
   const WindowPlan& plan() const noexcept { return plan_; }
-  const Spread& spread() const noexcept { return spread_; }    // of the bodies, when the plan was made
-  const Vec3& velocity() const noexcept { return velocity_; }  // of the crowd, if all fly the same way
-  void note_cancelled() noexcept { ++cancellations_; }         // bounds, or a body removed
+  const Spread& spread() const noexcept { return spread_; }    // of the bodies when the plan was made
+  const Vec3& velocity() const noexcept { return velocity_; }  // the common velocity of most bodies, or 0
+  void note_cancelled() noexcept { ++cancellations_; }         // bounds were cancelled, or a body was removed
 
+  // Returns whether the lines of the grid are so full that smaller cells are better.
   bool crowded(const GridCounts& counts) const noexcept;
   bool many_more_bodies() const noexcept { return pool_.size() > 2 * planned_bodies_; }
   enum class Outcome : std::uint8_t {
-    interrupted,  // by a budget, which ended the survey before it was complete: it goes on at the next call
-    same,
-    rebuild
+    interrupted,  // a budget ended the survey of the bodies; the next call continues it
+    same,         // the plan has not changed
+    rebuild       // there is a new plan
   };
-  // `counts`: of the grid since the last call.
+  // Makes a new plan if the old one does not fit any more. `counts` are those of the grid since the last call.
   Outcome replan(Step now, const GridCounts& counts, BudgetTracker& tracker);
   void forget_survey() noexcept { sample_.clear(); }
-  // Of the bodies, so that two steps take the same time if so many are updated ahead.
+  // Returns the share of the bodies that is updated a step ahead of a common expiry, so that both steps take about the
+  // same time.
   double share_ahead() const noexcept;
   std::size_t memory_bytes() const noexcept { return bytes_of(sample_); }
 
@@ -42,11 +46,11 @@ class Planner {
   Vec3 velocity_{};
   double crowding_ = 1, correction_ = 1;
   std::size_t cancellations_ = 0;  // since the plan was made
-  double cancelled_ = 0;           // the share of the bodies at each step that it was made for
+  double cancelled_ = 0;           // the share of the bodies that is cancelled at each step, as the plan assumes
   Step planned_at_ = 0;
   std::size_t planned_bodies_ = 0;
   unsigned plans_ = 0;
-  std::vector<Motion> sample_;  // of a survey under way
+  std::vector<Motion> sample_;  // of the survey under way
   BodyIndex survey_next_ = 0;
 };
 

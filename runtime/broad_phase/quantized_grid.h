@@ -24,8 +24,8 @@ struct QuantizedAabb {
     }
   }
 };
-// One that takes four cells along an axis at most, in two thirds of the memory: how far each upper end lies above the
-// lower one, a byte each. Of another box nothing but its lower ends is right.
+// A box that takes at most four cells along each axis, in two thirds of the memory of a QuantizedAabb. `lengths` has a
+// byte for each axis: how far the upper end is above the lower end. For a larger box, only the lower ends are right.
 struct alignas(16) PackedAabb {
   std::array<std::uint32_t, 3> lower;
   std::uint32_t lengths;
@@ -41,24 +41,23 @@ struct alignas(16) PackedAabb {
 };
 inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
-inline constexpr QuantizedAabb kNoBox = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};  // around nothing
+inline constexpr QuantizedAabb kNoBox = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};  // empty
 
-inline constexpr std::size_t kBlock = 64;  // bodies that are worked on together, at most
-// Loops over a block go on to a multiple of eight: whole vectors.
+inline constexpr std::size_t kBlock = 64;  // the maximum number of bodies that are processed together
+// Returns `count` rounded up to a multiple of eight: loops over a block process whole vectors.
 inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
 
-// By coordinate, so that the loops over bodies become vector instructions.
+// A block of boxes, stored by coordinate so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
   std::array<std::uint32_t, kBlock> lengths;  // as in PackedAabb
-  // Of all boxes that were made together:
-  QuantizedAabb around;      // what includes them
-  std::uint32_t more_cells;  // bits of how many cells they take along an axis beyond one
+  QuantizedAabb around;                       // contains all boxes of the block
+  std::uint32_t more_cells;  // the bitwise or, over all boxes and axes, of the number of cells beyond the first one
 
   QuantizedAabb get(std::size_t i) const noexcept {
     return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
   }
-  // Box i to places[i].
+  // Writes box i to to[places[i]].
   void store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept;
   void set(std::size_t i, const QuantizedAabb& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
@@ -69,24 +68,26 @@ struct BoxBlock {
   }
 };
 
-// Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta. It may move with a crowd
-// that flies all the same way: what meets in space meets there at the same time.
+// Maps space to quanta. The map is monotone, and boxes are rounded outward, so boxes that meet in space meet in quanta.
+// The grid may move with a crowd of bodies that all fly the same way. It then maps motions relative to its own, so
+// bodies that meet in space at some time still meet in quanta.
 class QuantizedGrid {
  public:
   QuantizedGrid() = default;
-  // Made at the step `now`. slack: what positions may be wrong by.
+  // Makes a grid at the step `now`. `slack` is a bound on the error of positions.
   QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, const Clock& clock,
                 Step now) noexcept;
 
-  QuantizedGrid at(Step now) const noexcept;               // where it has moved to
-  const Vec3& origin() const noexcept { return origin_; }  // where it has moved to
+  QuantizedGrid at(Step now) const noexcept;               // returns the grid where it is at a step
+  const Vec3& origin() const noexcept { return origin_; }  // where it is now
   const Vec3& velocity() const noexcept { return velocity_; }
   bool moves() const noexcept { return velocity_ != kNoVelocity; }
-  // Where a point lies along an axis, to less than a quantum if it lies within the quantized grid.
+  // Returns the quantum of a coordinate. For points within the range of the grid, the error is less than one quantum.
   double quantum(double coordinate, std::size_t axis) const noexcept;
   double quanta(double length) const noexcept { return length * per_length_; }
-  // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a
-  // motion may not be valid, which costs next to nothing to tell here; its expiry is not looked at.
+  // Makes at most kBlock boxes. Box i contains the sphere of a body with motions[i] for durations[i] seconds from the
+  // time of the motion. Returns false if a motion may be invalid; its expiry is not looked at. The check costs next to
+  // nothing here.
   bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
 
  private:
@@ -98,13 +99,13 @@ class QuantizedGrid {
 
   void move_to(Step now) noexcept;
 
-  Vec3 first_{}, origin_{};  // where it was made, and where it is
+  Vec3 first_{}, origin_{};  // the origin when it was made, and now
   Vec3 velocity_{};
-  double per_length_ = 1;  // quanta
+  double per_length_ = 1;  // the number of quanta in a unit of length
   double time_step_ = 0;
   Step made_at_ = 0;
   double slack_ = 0;
-  double margin_ = 0;  // quanta: rounding here, and kMotionSlack
+  double margin_ = 0;  // in quanta: a bound on rounding here, on kMotionSlack and on `slack`
 };
 
 }  // namespace orchard::runtime::detail

@@ -4,30 +4,31 @@
 
 namespace orchard::runtime::detail {
 
-// The spheres of all bodies at one step, sorted by the cell that their centres are in, and which of them touch at that
-// step: a spatial hash, for worlds in which no bound lasts for longer than a step. A cell is as wide as a sphere, so
-// what touches is in the same cell or a neighbour of it. Cells far apart may share a line, as in SweptGrid, but
-// neighbours along x are neighbours in memory: half of the neighbours are five runs of spheres. A few spheres that are
-// larger than a cell are compared with all others.
+// A spatial hash of the spheres of all bodies at one step, which finds those that touch. It is for worlds in which no
+// bound lasts longer than a step. The spheres are sorted by the cell of their centre. A cell is as wide as a sphere, so
+// spheres that touch are in the same cell or in neighbouring ones. Cells that are far apart may share a line, as in
+// SweptGrid, but neighbours along x are neighbours in memory: half of the neighbours of a cell are five runs of
+// spheres. A few spheres that are larger than a cell are compared with all others.
 class SortedSpheres {
  public:
-  // Empties it, for so many bodies at most. spacing: of bodies, about; cells are not much smaller.
+  // Removes all spheres, and makes room for at most `bodies`. `spacing` is the approximate distance of neighbouring
+  // bodies; cells are not much smaller.
   void begin(std::size_t bodies, const Vec3& origin, double spacing);
-  // At most kBlock of them, with valid motions.
+  // Adds the spheres of at most kBlock bodies, with valid motions.
   void add(std::span<const BodyIndex> bodies, std::span<const Motion> motions);
-  // All pairs that touch, in any order: spheres_touch() holds. Valid until begin().
+  // Finds and returns all pairs for which spheres_touch() holds, in any order. They are valid until begin().
   std::span<const BodyPair> find();
   template <typename Goes>
-  void drop_pairs(const Goes& goes) {  // as if they did not touch
+  void drop_pairs(const Goes& goes) {  // removes the pairs for which goes(pair) is true
     std::erase_if(pairs_, goes);
   }
   std::span<const BodyPair> pairs() const noexcept { return pairs_; }
 
-  bool suits() const noexcept;  // after find(); false: too many bodies are in too few cells
-  // Appends the bodies whose spheres may meet the box, and others, unless it has more cells than there are bodies:
-  // false then.
+  bool suits() const noexcept;  // after find(): false if too many bodies are in too few cells
+  // Appends the bodies whose spheres may meet the box, and perhaps others. Returns false and appends none if the box
+  // has more cells than there are bodies.
   bool append_near(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
-  void release();  // its memory, too
+  void release();  // gives the memory back
   std::size_t memory_bytes() const noexcept;
 
  private:
@@ -55,17 +56,17 @@ class SortedSpheres {
   void compare_large();
 
   Vec3 origin_{};
-  double cell_ = 0, per_length_ = 0, spacing_ = 0;  // cell_ lasts from step to step
+  double cell_ = 0, per_length_ = 0, spacing_ = 0;  // cell_, the width of a cell, is kept from step to step
   std::uint32_t mask_ = 0;
   std::array<std::uint32_t, 3> factors_{};
-  std::vector<Sphere> spheres_;        // as they came
-  std::vector<std::uint32_t> begins_;  // by line, and two more: the first two follow the last one again
-  struct Columns {                     // the spheres in order, and room for a vector more
+  std::vector<Sphere> spheres_;        // in the order of add()
+  std::vector<std::uint32_t> begins_;  // by line; the first two lines follow once more after the last one
+  struct Columns {                     // the spheres in sorted order, with room for another vector at the end
     std::vector<double> x, y, z, radius;
     std::vector<BodyIndex> body;
   };
   Columns sorted_;
-  std::vector<std::uint32_t> large_;  // in spheres_
+  std::vector<std::uint32_t> large_;  // the indices in spheres_ of those that are larger than a cell
   std::vector<BodyPair> pairs_;
   std::uint64_t tests_ = 0;
 };

@@ -6,27 +6,29 @@
 
 namespace orchard::runtime::detail {
 
-// Tables of 2^bits lines: the line of a cell is the sum of its coordinates times these, modulo their number. Cells that
-// share one are never within three of each other along every axis.
 inline constexpr unsigned kMinLineBits = 6, kMaxLineBits = 28;
-std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept;  // the first one is 1
+// Returns the factors of a table of 2^bits lines; the first one is 1. The line of a cell is the sum of its coordinates
+// times these factors, modulo 2^bits. Two cells that share a line are at least four cells apart along some axis.
+std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept;
 
-inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
-static_assert(kMaxCellsPerAxis * kQuanta <= 256);     // the lengths of a narrow box are bytes
+inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // the most cells along an axis that a box in the grid may take
+static_assert(kMaxCellsPerAxis * kQuanta <= 256);     // the lengths of a PackedAabb are bytes
 
-// Seven boxes clipped to a cell, quantised to 5 bits a coordinate, with their bodies' ids: one cache line. All seven
-// are compared with another box in one go: per coordinate a guard bit above the 5 catches the carry of an addition.
+// Up to seven boxes, clipped to a cell and quantised to 5 bits for each coordinate, with the indices of their bodies,
+// in one cache line. All seven are compared with another box at the same time: a guard bit above each field of 5 bits
+// catches the carry of an addition.
 inline constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields; an entry that meets nothing
 inline constexpr std::uint32_t kLineRoom = 7;
 struct alignas(64) CellLine {
   std::array<std::uint64_t, kLineRoom> entries;
-  std::uint32_t count;     // entries; the others are kGuards
-  std::uint32_t overflow;  // 1 + the index of the line with more entries; 0: none. A line that has one is full
+  std::uint32_t count;     // the number of entries in use; the others are kGuards
+  std::uint32_t overflow;  // 1 + the index of the line with further entries, or 0; a line that has one is full
 };
 static_assert(sizeof(CellLine) == 64);
 inline constexpr CellLine kEmptyLine = {{kGuards, kGuards, kGuards, kGuards, kGuards, kGuards, kGuards}, 0, 0};
-inline constexpr std::uint32_t kIdShift = 36;  // of the body in an entry, above its box
+inline constexpr std::uint32_t kIdShift = 36;  // the first bit of the body's index in an entry, above the box
 
+// What insertions into the grid have counted: bodies, entries, lines that were read, and pairs that were found.
 struct GridCounts {
   std::uint64_t bodies = 0, entries = 0, lines_read = 0, pairs = 0;
 
@@ -36,7 +38,7 @@ struct GridCounts {
   }
 };
 
-// Whether a box, or all of these, take few enough cells for the grid.
+// Return whether a box, or all boxes of a block, take few enough cells for the grid.
 inline bool all_fit_grid(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }
 inline bool fits_grid(const QuantizedAabb& box) noexcept {
   bool fit = true;
@@ -46,26 +48,27 @@ inline bool fits_grid(const QuantizedAabb& box) noexcept {
   return fit;
 }
 
-// The boxes of all bodies in a hashed uniform grid: cells far apart may share a line, which costs time only. A cell's
-// line is a sum of its coordinates times a factor each, so that flat and thin worlds, too, use all lines evenly.
-// (The idea of one cache line per cell and the lower-corner rule: each pair of boxes is found in the one cell that
-// holds the lower corner of what they have in common.)
+// A hashed uniform grid of the boxes of bodies, with one cache line per cell. Cells that are far apart may share a
+// line, which costs only time. The line of a cell is a sum of its coordinates times factors, so flat and thin worlds
+// also use all lines evenly. Each pair of boxes is found once, in the cell that contains the lower corner of their
+// intersection.
 class SweptGrid {
  public:
-  // The lines are in this many parts, each with what overflows of its own: boxes can be put in by several threads.
+  // The lines are divided into this many parts, each with overflow lines of its own. Several threads can insert boxes,
+  // each into another part.
   static constexpr std::size_t kParts = 8;
-  using Steps = std::uint8_t;  // from a body's first cell, along each axis: two bits each, from the lowest ones on
+  using Steps = std::uint8_t;  // how far a cell is from the first cell of a box: two bits for each axis, x the lowest
   using Cell = std::array<std::uint32_t, 3>;
-  struct Visit {  // of a body to one of its cells
+  struct Visit {  // an entry of a body, and the cell that it goes to
     std::uint64_t entry;
     std::uint32_t line;
     Steps steps;
   };
-  // Room that is written without looking at it, once there is enough for a block.
+  // A list of visits. append() makes room for a whole block, which is then written without checks.
   class Visits {
    public:
     void clear() noexcept { end_ = 0; }
-    Visit* append(std::size_t more) {  // so many, which are written where it says
+    Visit* append(std::size_t more) {  // returns where the caller has to write `more` visits
       if (all_.size() < end_ + more) all_.resize(end_ + end_ / 8 + more);
       return all_.data() + std::exchange(end_, end_ + more);
     }
@@ -78,22 +81,25 @@ class SweptGrid {
   };
   using VisitsByPart = std::array<Visits, kParts>;
 
-  // Empties it, and makes room for at least `lines` lines, rounded up to a power of two.
+  // Removes all boxes, and makes room for about `lines` lines: a power of two near that number.
   void reset(std::size_t lines, const Executor& executor);
-  void release();  // its memory, too
+  void release();  // removes all boxes and gives the memory back
 
-  // Boxes are added in two steps. First it is encoded which visits at most kBlock bodies with the block's boxes make.
-  // No box takes more than kMaxCellsPerAxis cells along an axis.
+  // Boxes are added in two steps. The first one is encode(): it appends the visits of at most kBlock bodies with the
+  // boxes of the block. Precondition: no box takes more than kMaxCellsPerAxis cells along an axis.
   void encode(std::span<const BodyIndex> bodies, const BoxBlock& block, Visits& visits) const;
-  void split(const Visits& visits, VisitsByPart& parts) const;  // appends them to those of their parts
-  // Then these are made, and the pairs whose boxes meet are appended, of each body in the grid with every other.
-  // `boxes` is by body and has the new ones, too. With the visits to one part, by one thread for each at most.
+  // Distributes visits among the parts of the grid, so that several threads can insert them.
+  void split(const Visits& visits, VisitsByPart& parts) const;
+  // The second step writes the entries, and appends the pairs of each new body with every body in the grid whose box it
+  // meets. `boxes` is indexed by body and includes the new ones. Several threads may insert at the same time if the
+  // visits of each are to another part.
   void insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
               GridCounts& counts);
-  void prepare_removal(const PackedAabb& box) const noexcept;  // starts loading its lines
+  void prepare_removal(const PackedAabb& box) const noexcept;  // prefetches the lines of the box
   void remove(BodyIndex body, const QuantizedAabb& box) noexcept;
 
-  // Visits those that have entries in the box's cells, and in others that share their lines; a body as often as it has.
+  // Calls use(body) for each entry in the cells of the box, and in other cells that share their lines. A body may occur
+  // several times.
   template <typename Use>
   void visit_cells(const QuantizedAabb& box, const Use& use) const {
     for_each_cell(box, [&](const Cell&, std::uint32_t first) {
@@ -124,7 +130,7 @@ class SweptGrid {
   void for_each_line(const QuantizedAabb& box, const Use& use) const noexcept;
   struct Overflow {
     std::vector<CellLine> lines;
-    std::uint32_t free = 0;  // 1 + index
+    std::uint32_t free = 0;  // 1 + the index of the first free line, or 0
   };
   Visit* visit_rest(BodyIndex body, const QuantizedAabb& box, Visit* visit) const noexcept;
   struct Insertion;
@@ -139,7 +145,7 @@ class SweptGrid {
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;
   std::array<std::uint32_t, 3> factors_{};
-  std::array<std::uint32_t, 8> corner_lines_{};  // how much further the lines of a cell's neighbours are
+  std::array<std::uint32_t, 8> corner_lines_{};  // from the line of a cell to those of its upper neighbours, by axes
 };
 
 }  // namespace orchard::runtime::detail

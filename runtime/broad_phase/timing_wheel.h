@@ -8,16 +8,18 @@ namespace orchard::runtime::detail {
 inline constexpr Step kWheelSteps = 256;  // a power of two
 inline constexpr Step kLongestWindow = kWheelSteps - 1;
 
-// Rounds of updates are counted modulo 2^kRoundBits. Those compared are never as far apart as half of that.
+// The rounds of window updates are counted modulo 2^kRoundBits. Rounds that are compared are less than half of that
+// apart.
 using Round = std::uint32_t;
 inline constexpr unsigned kRoundBits = 31;
 inline constexpr Round kFarthestRound = 1u << (kRoundBits - 2);
 inline bool is_later(Round a, Round b) noexcept { return static_cast<std::int32_t>((a - b) << (32 - kRoundBits)) > 0; }
 
+// An event of a pair: at its step, the pair is tested.
 struct PairEvent {
   BodyPair pair;
-  Round created : kRoundBits = 0;  // void once either body has been updated in a later round
-  Round parting : 1 = 0;           // the pair is among those that overlap
+  Round created : kRoundBits = 0;  // the event is void once one of the bodies has been updated in a later round
+  Round parting : 1 = 0;           // the pair overlaps, and the event is for the step at which it can have parted
 
   PairEvent() = default;
   PairEvent(const BodyPair& of, Round round, bool parts = false) noexcept
@@ -25,43 +27,44 @@ struct PairEvent {
 };
 static_assert(sizeof(PairEvent) == 12);
 
-// What is due when, for less than kWheelSteps steps ahead: bodies to update again and pairs to test, in a ring of
-// lists indexed by step. The caller tells what is void.
+// A ring of lists, indexed by step, of what is due in the next kWheelSteps - 1 steps: bodies whose windows have to be
+// updated, and pairs to test. Entries may be void; the caller decides which ones are.
 class TimingWheel {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
   void set_due(BodyIndex body, Step step);
   void clear_bodies() noexcept;
   void clear_events() noexcept;
-  void clear() noexcept;  // of everything, its memory, too
+  void clear() noexcept;  // removes everything and gives the memory back
   void add(const PairEvent& event, Step step);
 
   // Moves everything due at the step to the ends of the vectors.
   void take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events);
-  // How much take() would give, void entries included.
-  std::size_t bodies_due(Step step) const noexcept;   // O(of that)
-  std::size_t events_due(Step step) const noexcept {  // of pairs that do not overlap yet
+  // Return how much take() would move, void entries included. bodies_due() costs O(its result).
+  std::size_t bodies_due(Step step) const noexcept;
+  std::size_t events_due(Step step) const noexcept {  // only of pairs that do not overlap yet
     return buckets_[bucket_of(step)].meetings;
   }
-  // Whether void entries may be much of it, with so many bodies.
+  // Returns whether a large share of the entries may be void, if there are so many bodies. Then tidy() pays.
   bool crowded(std::size_t bodies) const noexcept {
-    constexpr std::size_t kBytesPerBody = 8;  // that do not matter
+    constexpr std::size_t kBytesPerBody = 8;  // so few bytes do not matter
     return bytes_used() > std::max(kBytesPerBody * bodies, tidied_bytes_ + tidied_bytes_ / 2);
   }
-  // Drops void entries after `now`: bodies for which end_of(body), which it may write to meanwhile, is another step, or
-  // which are there twice, and events that are not valid(). Runs stay: they are short.
+  // Drops void entries after `now`: bodies for which end_of(body) is another step or that occur twice, and events for
+  // which valid(event) is false. end_of(body) returns a reference, to which it writes meanwhile. Runs of bodies stay,
+  // because they are short.
   template <typename EndOf, typename Valid>
   void tidy(Step now, const EndOf& end_of, const Valid& valid);
-  // The first step after `now` that may have something; kNeverStep if there is none.
+  // Returns the first step after `now` for which there may be entries; kNeverStep if there is none.
   Step next_after(Step now) const noexcept;
   std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  static constexpr BodyIndex kRun = kNoIndex - 1;  // bodies with successive indices, as in updates of all windows
-  struct Bodies {                                  // a part of a list: short, as a step may have one body only
+  static constexpr BodyIndex kRun = kNoIndex - 1;  // marks bodies with successive indices, as all windows give
+  struct Bodies {                                  // a part of a list; it is short, since a step may have one body only
     std::uint32_t next;
-    // kNoIndex from the first one that is missing; or a run: its first one, kRun, how many.
+    // Up to three bodies, followed by kNoIndex. Or a run of bodies: the first one, kRun, and their number.
     std::array<BodyIndex, 3> ids;
   };
   static constexpr std::uint32_t kEventsInPart = 5;
@@ -70,7 +73,7 @@ class TimingWheel {
     std::uint32_t next;
   };
   static_assert(sizeof(Events) == 64);
-  // Parts of lists. What a list gives back is used again.
+  // A pool of parts of lists. Parts that a list gives back are used again.
   template <typename Part>
   struct Pool {
     std::vector<Part> parts;
@@ -78,7 +81,7 @@ class TimingWheel {
     std::size_t used = 0;
 
     Part& operator[](std::uint32_t part) noexcept { return parts[part]; }
-    Part& put_before(std::uint32_t& head) {  // of a list, a part that is written now
+    Part& put_before(std::uint32_t& head) {  // puts a part before the head of a list; the caller fills it in
       std::uint32_t part = free;
       ++used;
       if (part == kNone) {
@@ -101,13 +104,13 @@ class TimingWheel {
   };
   struct Bucket {
     std::uint32_t bodies = kNone, events = kNone;
-    std::uint32_t in_first : 4 = kEventsInPart;  // events in the first part; as if full where there is none
-    std::uint32_t meetings : 28 = 0;             // events of pairs that do not overlap yet
+    std::uint32_t in_first : 4 = kEventsInPart;  // the number of events in the first part; kEventsInPart if none exists
+    std::uint32_t meetings : 28 = 0;             // the number of events of pairs that do not overlap yet
   };
 
   std::size_t bytes_used() const noexcept { return bodies_.used * sizeof(Bodies) + events_.used * sizeof(Events); }
   template <typename Use>
-  void for_each_busy(const Use& use) noexcept;  // bucket
+  void for_each_busy(const Use& use) noexcept;  // calls use(bucket)
   template <typename Use>
   static void for_each(const Bodies& some, const Use& use) {
     const bool run = some.ids[1] == kRun;
@@ -120,7 +123,7 @@ class TimingWheel {
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
   std::array<Bucket, kWheelSteps> buckets_{};
-  std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
+  std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit for each bucket that has entries, or has had some
   Pool<Bodies> bodies_;
   Pool<Events> events_;
   std::size_t tidied_bytes_ = 0;

@@ -21,11 +21,13 @@ void make_room(std::vector<T, Allocator>& v, std::size_t size) {
   constexpr std::size_t kMinRoom = 32;
   if (v.capacity() < size) v.reserve(std::max({kMinRoom, size, v.capacity() + v.capacity() / 8}));
 }
+// Appends one element to a vector that grows by a sixteenth.
 template <typename T>
 void append(std::vector<T>& v, const T& value) {
   if (v.size() == v.capacity()) v.reserve(std::max<std::size_t>(64, v.size() + v.size() / 16));
   v.push_back(value);
 }
+// Resizes a vector to `size` if it is smaller.
 template <typename T, typename Allocator>
 void grow(std::vector<T, Allocator>& v, std::size_t size) {
   if (v.size() >= size) return;
@@ -33,15 +35,15 @@ void grow(std::vector<T, Allocator>& v, std::size_t size) {
   v.resize(size);
 }
 
-// Whether each index is one above that before it.
+// Returns whether each index is one above the one before it.
 inline bool successive(std::span<const BodyIndex> bodies) noexcept {
   BodyIndex off = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) off |= bodies[i] ^ (bodies[0] + static_cast<BodyIndex>(i));
   return off == 0;
 }
 
-// Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is
-// built without exceptions as well.)
+// Calls undo() when it is destroyed, unless done() has been called: for the case that something throws before
+// everything is done. (There is no `catch`, because the run-time is also built without exceptions.)
 template <typename Undo>
 class UndoUnlessDone {
  public:
@@ -64,8 +66,8 @@ void give_back(std::vector<T, Allocator>& v) noexcept {
   std::vector<T, Allocator>().swap(v);
 }
 
-// Starts loading what will be written soon. Part of its caller at once: GCC takes it for a function without effects,
-// and leaves out what calls are left when it has found that.
+// Prefetches a cache line that will be written soon. It has to be inlined: GCC takes it for a function without effects,
+// and removes the calls that are not inlined by then.
 ORCHARD_INLINE void prefetch(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 1);
@@ -74,7 +76,7 @@ ORCHARD_INLINE void prefetch(const void* where) noexcept {
 #endif
 }
 
-// All lines of an object.
+// Prefetches all cache lines of an object.
 template <typename T>
 ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
   constexpr std::size_t kLine = 64;

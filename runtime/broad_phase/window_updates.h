@@ -5,27 +5,30 @@
 
 namespace orchard::runtime::detail {
 
-// Window updates: motions become boxes, boxes that meet become near pairs. Bodies come in chunks. Of a chunk first the
-// boxes are made, and it is noted which lines of the grid they go to; then they are put there, which finds the pairs.
+// Window updates make boxes from motions, and near pairs from boxes that meet. Bodies are updated in chunks. For a
+// chunk, first the boxes are made, with a list of the lines of the grid that they go to (visits); then they are
+// inserted there, which finds the pairs.
 //
-// Updates of all windows of many bodies are jobs that may run at once. Of a wave of bodies each job first places a
-// chunk; then each puts the boxes of all chunks into one part of the lines, and tests what it finds near. How that is
-// cut depends on the number of bodies alone, and everything that has an order is put together in that of the chunks, or
-// of the parts: so nothing depends on the executor. One thread gains by it, too, where all lines do not fit into its
-// cache and a part of them does.
+// If all windows of many bodies are updated, jobs do it that may run at the same time. Bodies are processed in waves,
+// each in two passes. In the first pass, each job makes the boxes of a chunk. In the second one, each job inserts the
+// boxes of all chunks into one part of the lines, and tests the near pairs that it finds. The division depends only on
+// the number of bodies, and results are put together in the order of the chunks or of the parts. So nothing depends on
+// the executor. Even one thread is faster this way, if a part of the lines fits into its cache and all of them do not.
 class WindowUpdates {
  public:
   WindowUpdates(KineticState& state, NearPairs& pairs);
   ~WindowUpdates();
 
-  // The bodies' windows begin at `from`, from the motions at `now`. Where it is a later step, bodies whose bounds do
-  // not reach it are left to it as changed ones. What is near is tested.
+  // Updates the windows of bodies with their motions at `now`, and tests the near pairs. The windows begin at the step
+  // `from`. If that is later than `now`, bodies whose bounds do not reach it are noted as changed, so that the later
+  // step updates them.
   void update(Step now, Step from, std::span<const BodyIndex> bodies);
-  // The same where all windows start over: many bodies by the executor's jobs.
+  // Does the same for all bodies of the world. If they are many, the executor's jobs do it.
   void update_all(Step now, Step from, std::span<const BodyIndex> bodies);
-  // The same as update(), untested: what is near.
+  // Does the same as update() with from = now, but returns the near pairs without testing them.
   std::span<const BodyPair> find_near(Step now, std::span<const BodyIndex> bodies);
-  // Whether at least half of the bodies, which are few, know at `now` what holds at `from`.
+  // Returns whether the motions at `now` of at least half of the bodies hold up to `from`. It is for a few bodies,
+  // whose order it changes.
   bool know_mostly(Step now, Step from, std::span<BodyIndex> bodies);
   // Asks for the motions of at most kBlock bodies, and moves those whose motions are valid to the front.
   std::span<const Motion> ask_valid(Step now, std::span<BodyIndex>& bodies);
@@ -58,31 +61,33 @@ class WindowUpdates {
   KineticState& state_;
   NearPairs& pairs_;
   std::vector<Motion> motions_;     // of the block under way
-  std::vector<BodyPair> near_;      // untested yet
+  std::vector<BodyPair> near_;      // near pairs that are not tested yet
   std::unique_ptr<Chunk> chunk_;    // of the calling thread
-  std::unique_ptr<Shared> shared_;  // null until there are many
+  std::unique_ptr<Shared> shared_;  // of the jobs; null until there are many bodies
 };
 
+// At most kBlock bodies, whose boxes are made together.
 struct WindowUpdates::Block {
-  Step now;                              // the motions are of this step,
-  Step from;                             // and count from this one
+  Step now;                              // the step of the motions
+  Step from;                             // the step at which the windows begin
   QuantizedGrid quantized_grid;          // at `now`
-  std::array<Step, kBlock> ends;         // of the bodies' windows
-  std::array<double, kBlock> durations;  // until then, of which the last step is not
+  std::array<Step, kBlock> ends;         // the ends of the windows
+  std::array<double, kBlock> durations;  // the seconds from `now` to the last step before the end
   BoxBlock boxes;
   bool by_part = false;  // whether visits are split by the grid's parts, for several threads
 };
 
+// The bodies that one job, or one call, has processed.
 struct WindowUpdates::Chunk {
   struct Left {
     BodyIndex body;
     Motion motion;
   };
-  SweptGrid::VisitsByPart visits;  // to each part, or all in the first one
+  SweptGrid::VisitsByPart visits;  // by part of the grid, or all in the first one
   SweptGrid::Visits block_visits;  // of the block under way
-  std::vector<BodyIndex> placed;   // in order
-  std::vector<BodyIndex> unknown;  // what holds from the later step on
-  std::vector<Left> left;          // not valid, or too large: placed one by one
+  std::vector<BodyIndex> placed;   // bodies whose boxes are made, in order
+  std::vector<BodyIndex> unknown;  // bodies whose bounds do not reach Block::from
+  std::vector<Left> left;          // bodies with invalid motions or too large boxes; they are processed one by one
   std::vector<Motion> motions;     // of the block under way
   QuantizedAabb extent;
   MotionQueries::Answers answers;

@@ -5,23 +5,24 @@ namespace orchard::runtime::detail {
 
 inline constexpr Step kUpdateDue = -1;  // a window's end while its body waits for a window update
 
+// The window of a body: the steps for which its box holds.
 struct Window {
   Step end = 0;          // the step of the next update
   Round updated = 0;     // the round of the last update: events of earlier rounds are void
-  bool bounded = false;  // whether bounds are relied on, which may be cancelled; not of static bodies
-  bool listed = false;   // its end was the same before: the wheel has the body there
+  bool bounded = false;  // whether it relies on bounds that may be cancelled; false for static bodies
+  bool listed = false;   // the timing wheel has the body at `end` already, from an earlier update
 };
 
-// It will never move, unless it is cancelled.
+// Returns whether a body with this motion never moves, unless its bounds are cancelled.
 inline bool rests(const Motion& motion) noexcept {
   return motion.expiry == std::numeric_limits<double>::infinity() && motion.velocity == kNoVelocity &&
          motion.acceleration == 0 && motion.drift == 0;
 }
 
-// Of each body, up to when the bounds it was asked for are relied on, and the rounds in which windows are updated.
+// The windows of all bodies, and the count of the rounds of window updates.
 class Windows {
  public:
-  // fixed: 0, or the most steps that a window has.
+  // `fixed` is the maximum number of steps of a window, or 0 if the plan chooses it.
   Windows(const BodyPool& pool, Step fixed) : pool_(pool), fixed_(fixed) {}
 
   void make_room(std::size_t slots) { grow(windows_, slots); }
@@ -31,12 +32,14 @@ class Windows {
 
   Round round() const noexcept { return round_; }
   void begin_round() noexcept { ++round_; }
-  void start_over() noexcept { rebuilt_round_ = round_; }  // all are updated in this round
+  void start_over() noexcept { rebuilt_round_ = round_; }  // all windows are updated in this round
   bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
 
-  // From now on windows have about so many steps; all_end: also those of bodies at rest, which else never end.
+  // Sets the approximate number of steps of further windows. `all_end`: the windows of bodies at rest end, too;
+  // otherwise, they never end.
   void plan(Step steps, bool all_end) noexcept { planned_ = steps, all_end_ = all_end; }
-  // The first step at which the bound of a body does not hold or which another update is due at.
+  // Returns the end of a window that begins at `from`: the first step at which the motion bound does not hold or the
+  // next update is due.
   Step end_of(Step from, BodyIndex body, const Motion& motion) const noexcept;
   void set(BodyIndex body, Step end) noexcept {
     Window& window = windows_[body];
@@ -44,6 +47,7 @@ class Windows {
     window = {end, round_, !pool_.statics.has(body), listed};
   }
 
+  // Returns whether an event is not void: neither body has been updated in a round after that of the event.
   bool valid(const PairEvent& event) const noexcept {
     const Round created = event.created;
     return !is_later(windows_[event.pair.a].updated, created) && !is_later(windows_[event.pair.b].updated, created);

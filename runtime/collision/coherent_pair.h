@@ -6,41 +6,44 @@
 
 namespace orchard::runtime {
 
-// collide_coherently() in two parts, for callers that have many pairs and not enough time: of one pair at two poses,
-// which outlive it.
+// collide_coherently() in two parts, recall() and search(), for callers that have many pairs and little time. An object
+// is for one pair at two poses, which have to outlive it.
 class CoherentPair {
  public:
   CoherentPair(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept
       : narrow_(query_of(workspace.narrow)), pair_(pair), a_(a), b_(b) {}
 
-  // Whether there is anything that recall() could tell by.
+  // Returns whether the pair remembers something that recall() can use.
   static bool remembers(const TreePair& of) noexcept { return of.memory_.clearance > 0 || of.memory_.met; }
-  // What is known without a search: that a clearance has lasted, or that the triangles that met last still do. False,
-  // and `verdict` as it was, if that does not tell. Some 100 ns.
+  // Sets `verdict` to what is known without a search: "no" if the bodies have moved less than they were apart, or "yes"
+  // if the triangles that met last still meet. Returns false, and leaves `verdict` as it is, if neither is so. Costs
+  // about 100 ns.
   bool recall(Verdict& verdict) noexcept;
-  // The rest of collide_coherently(), to be asked after recall() has told nothing: first in the leaves of the triangles
-  // that met last. "Maybe" where the budget ends it, which it exceeds by less than one pair of leaves; Verdict::work is
-  // all of the search's.
+  // Does the rest of collide_coherently(). Call it after recall() has returned false. It searches the leaves of the
+  // triangles that met last first. If the budget ends it, which it exceeds by less than the work of one pair of leaves,
+  // the answer is "maybe". Verdict::work is that of the whole search.
   Verdict search(const Budget& budget = {}) noexcept;
-  // That the workspace's NarrowPhase, bound to this very pair, has just answered for these poses: its verdict.
+  // Stores what the workspace's NarrowPhase has found for this pair at these poses, and returns its verdict.
+  // Precondition: the NarrowPhase is bound to this pair and has just answered for these poses.
   Verdict remember() noexcept;
 
  private:
-  bool find_rigid() noexcept;  // both, side by side
+  bool find_rigid() noexcept;  // whether both poses are rigid
   const Pose& find_relative() noexcept;
   bool place_for_triangles() noexcept;
-  TreePair::Witness in_order(const TreePair::Witness& w) const noexcept;  // of the bodies as of the trees, and back
+  TreePair::Witness in_order(
+      const TreePair::Witness& w) const noexcept;  // from the bodies' order to the trees', or back
   MeetingTriangles::Place last_place() const noexcept;
 
-  PairQuery& narrow_;  // the workspace's
+  PairQuery& narrow_;  // of the workspace
   DirectSearch direct_{narrow_};
   TreePair& pair_;
   const Pose &a_, &b_;
   TreePair::Memory& memory_ = pair_.memory_;
 
-  bool placed_ = false;                // the workspace's NarrowPhase is bound and placed for triangles
-  bool rigid_ = false;                 // both poses are, once that has been looked at
-  std::optional<Pose> relative_ = {};  // of b in a's frame, likewise
+  bool placed_ = false;                // narrow_ is bound and placed for triangles
+  bool rigid_ = false;                 // both poses are known to be rigid
+  std::optional<Pose> relative_ = {};  // the pose of b in the frame of a, once it has been computed
 };
 
 }  // namespace orchard::runtime

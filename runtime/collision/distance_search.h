@@ -9,7 +9,8 @@
 
 namespace orchard::runtime {
 
-// A DistanceQuery as the other queries of a pair see it: its public members are DistanceQuery's, and say the same.
+// The implementation of DistanceQuery, which other queries of a pair use, too. Its public members mean the same as
+// those of DistanceQuery.
 class DistanceSearch {
  public:
   using Tolerance = DistanceQuery::Tolerance;
@@ -29,7 +30,7 @@ class DistanceSearch {
 
  private:
   struct Apart : NodePair {
-    float lower;  // bound on their distance
+    float lower;  // a lower bound on their distance
   };
 
   bool has_room() const noexcept { return have_triangles(trees_) && stack_.has_room(); }
@@ -47,30 +48,31 @@ class DistanceSearch {
   void report() noexcept;
 
   PlacedTrees trees_;
-  detail::TreeStack<Apart> stack_;  // the nearest last
+  detail::TreeStack<Apart> stack_;  // the nearest pair last
   Tolerance tolerance_;
   struct Limit {
-    double length = std::numeric_limits<double>::infinity();  // what is farther is left out
-    double enough = 0;                                        // so near: nothing nearer is looked for
+    double length = std::numeric_limits<double>::infinity();  // pairs that are farther apart are left out
+    double enough = 0;                                        // the search ends at a distance of at most this
   };
   Limit limit_;
-  double cut_ = std::numeric_limits<double>::infinity();  // from the nearest and the limit, with the tolerance
-  bool below_nearest_ = false;                            // what is as far is not looked at, either
-  // In the first tree's units, of the stored triangles.
+  double cut_ =
+      std::numeric_limits<double>::infinity();  // pairs with a larger lower bound are left out; see find_cut()
+  bool below_nearest_ = false;                  // pairs with a lower bound of cut_ are left out, too
+  // The nearest triangles so far, as they are stored, in the first tree's units.
   struct Nearest {
-    double distance = std::numeric_limits<double>::infinity();  // the least found
+    double distance = std::numeric_limits<double>::infinity();
     Vec3 on_first{}, on_second{};
-    std::array<float, 3> direction{};  // unit, from the point on the first one to that on the second one
+    std::array<float, 3> direction{};  // a unit vector from the point on the first one to that on the second one
     std::uint32_t triangle_first = kNoTriangle, triangle_second = kNoTriangle;
   };
   Nearest nearest_;
-  double min_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
+  double min_lower_ = std::numeric_limits<double>::infinity();  // the smallest bound of all pairs not on the stack
   double lower_ = 0, upper_ = std::numeric_limits<double>::infinity();
   std::uint64_t work_ = 0;
   bool finished_ = true;
 };
 
-// The search that a DistanceQuery, or a workspace's, is a cover of.
+// Returns the implementation of a DistanceQuery.
 DistanceSearch& search_of(DistanceQuery& query) noexcept;
 
 }  // namespace orchard::runtime

@@ -12,17 +12,18 @@
 
 namespace orchard::runtime::detail {
 
-inline constexpr double kImpactRounding = 1e-12;  // of lengths in double
+inline constexpr double kImpactRounding = 1e-12;  // the relative rounding error of lengths in double
 
-// One body's motion in the first tree's frame as it is at one time.
+// The rotation of one body at one time, in the first tree's frame. The members mean the same as those of Turning
+// (kernels/box_time.h).
 struct Turn {
   Vec3 center{}, axis{};
   double spin = 0, turning = 0;
-  // How fast a point so far from the centre comes closer along u at most.
+  // Returns a bound on the speed along u of a point whose distance from the centre is at most `reach`.
   double rate(const Vec3& u, double reach) const noexcept {
     return (spin * (length(cross(axis, u)) + kImpactRounding) + turning) * reach;
   }
-  // The same seen from another frame's axes and origin.
+  // Returns the same rotation in the axes and with the origin of another frame.
   Turn from(const Pose& frame) const noexcept {
     return {turned_back(frame, minus(center, frame.translation)), turned_back(frame, axis), spin, turning};
   }
@@ -36,16 +37,16 @@ struct Turn {
   }
 };
 
-// Triangles that could meet nearly first.
+// Two triangles that could be the first to meet, or nearly so. Times count from the time under way.
 struct Critical {
-  double time;        // nothing meets before
-  double cut = time;  // what surely does not meet before is left out, and counts for `time` with what is known of it
+  double time;        // a lower bound on the time at which these triangles can meet
+  double cut = time;  // triangles that certainly do not meet before this are left out
   double distance = std::numeric_limits<double>::infinity();
-  double rate = 0;
+  double rate = 0;  // a bound on how fast they come closer
   Vec3 on_first{}, on_second{};
   std::uint32_t triangle_first = kNoTriangle, triangle_second = kNoTriangle;
-  double left_out = std::numeric_limits<double>::infinity();
-  // Whether what meets at that time at the earliest need not be looked at.
+  double left_out = std::numeric_limits<double>::infinity();  // a lower bound for everything that was left out
+  // Returns whether something that meets at `earliest` or later can be left out, and notes that time if so.
   bool leaves(double earliest) noexcept {
     if (earliest < cut) return false;
     left_out = std::min(left_out, earliest);
@@ -53,7 +54,8 @@ struct Critical {
   }
 };
 
-// The search of time_of_impact(): a time after the other, each with the triangles that could meet next.
+// The search of time_of_impact(), by conservative advancement: at each time, it finds the triangles that could meet
+// next, and goes on to the time before which nothing can meet.
 class ImpactSearch {
  public:
   ImpactSearch(Workspace& workspace, const TreePair& pair, const Travel& a, const Travel& b,
@@ -76,7 +78,7 @@ class ImpactSearch {
   void expand(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept;
   void find_closing() noexcept;
   void compare_leaves(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept;
-  struct Speeds {  // of two leaves: how fast anything comes closer, and how far they reach from where they turn about
+  struct Speeds {  // of two leaves: a bound on all speeds of approach, and their reach from their centres of rotation
     double fastest, first_reach, second_reach;
   };
   void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
@@ -90,17 +92,17 @@ class ImpactSearch {
   const TreeView& second() const noexcept { return trees_.second().tree; }
 
   Workspace& workspace_;
-  PlacedTrees& trees_;  // of the workspace's query
+  PlacedTrees& trees_;  // of the query of the workspace
   const TreePair& pair_;
   const Travel &a_, &b_;
   const ImpactOptions& options_;
   Impact result_;
 
   struct Motion {      // of both bodies at the time under way, in the first tree's units
-    Vec3 velocity{};   // of the second one's centre less the first one's
-    double speed = 0;  // and what is not known of it, at most
+    Vec3 velocity{};   // the velocity of the second one's centre relative to that of the first one
+    double speed = 0;  // a bound on the error of that
     Turn first, second;
-    // The same in float, of the first tree's nodes against one of the second's, and the other way round.
+    // The same in float, for box_times() with eight nodes of the first tree, and with eight of the second one.
     Closing of_first, of_second;
   };
   Motion motion_;
@@ -108,8 +110,8 @@ class ImpactSearch {
     double margin = 0, tolerance = 0, finest = 0, error = 0;
   };
   Limits limits_;
-  int near_ = 0;     // steps within the tolerance
-  double soon_ = 0;  // a contact may be expected by then, from the last one
+  int near_ = 0;     // the number of steps within the tolerance
+  double soon_ = 0;  // the time by which a contact may be expected, from the last step
   std::array<float, 3> direction_{};
 };
 

@@ -13,11 +13,11 @@
 #include "simd/vector_support.h"
 #include "tree/tree_nodes.h"
 
-// What the walks through the two trees of a pair share. They go depth first: a pair of nodes gives way to the pairs of
-// the larger node's children with the other node.
+// What the walks through the two trees of a pair share. They are depth first: a pair of nodes is replaced by the pairs
+// of the larger node's children with the other node.
 namespace orchard::runtime {
 
-struct NodePair {  // of the two trees of spheres, or of triangles
+struct NodePair {  // a node of each tree, of spheres or of triangles
   std::uint32_t a, b;
 };
 
@@ -27,8 +27,8 @@ namespace detail {
 template <typename Entry>
 class TreeStack {
  public:
-  // Room for two trees, where each step puts at most so many entries in the place of one, one level deeper in one of
-  // the trees. False if there is no memory.
+  // Makes room for a walk through two trees in which each step replaces an entry by at most `most` entries, one level
+  // deeper in one of the trees. Returns false if there is no memory.
   bool reserve(const TreeView& a, const TreeView& b, std::size_t most = kBlockWidth) noexcept {
     const std::size_t deepest = most * (a.triangle_tree_depth + b.triangle_tree_depth + 1) + 1;
     if (deepest <= room_) return true;
@@ -43,7 +43,7 @@ class TreeStack {
   void start(const Entry& roots) noexcept { entries_[0] = roots, size_ = 1; }
   Entry pop() noexcept { return entries_[--size_]; }
   void push(const Entry& entry) noexcept { entries_[size_++] = entry; }
-  // Puts an entry for each of these lanes, as push_farthest_first() has it.
+  // Pushes an entry for each lane of a bit mask, in the order of push_farthest_first().
   template <typename EntryOf, typename KeyOf>
   ORCHARD_INLINE void push(std::uint32_t lanes, EntryOf&& entry_of, KeyOf&& key_of) noexcept {
     size_ = push_farthest_first(entries_.get(), size_, lanes, entry_of, key_of);
@@ -54,7 +54,7 @@ class TreeStack {
   std::size_t room_ = 0, size_ = 0;
 };
 
-// Which node of a pair is opened, and its children's block.
+// The node of a pair that is opened: whether it is the second one, and the block of its children.
 struct Opened {
   bool second;
   std::uint32_t block;
@@ -92,15 +92,15 @@ struct PlacedViews {
     return slab_radius(first, pair.a) + slab_radius(second, pair.b) * placement.scale;
   }
 
-  // Calls take(lane, row) for the triangles of two leaves that may share a point until it returns true, which is
-  // returned then.
+  // Calls take(lane, row) for the triangles of two leaves that may share a point, until it returns true. Returns
+  // whether it did.
   template <typename Take>
   bool each_candidate(const NodePair& leaves, const Take& take) const noexcept {
     const NodeBox lane_box = first_box(leaves), row_box = second_box(leaves);
     return detail::each_candidate({lanes(leaves), rows(leaves), lane_box, row_box}, placement, take);
   }
 
-  // The larger node. Precondition: not both are leaves.
+  // Opens the larger node, or the one that is no leaf. Precondition: not both are leaves.
   ORCHARD_INLINE Opened open(const NodePair& pair) const noexcept {
     const std::uint32_t a = slab_child(first, pair.a), b = slab_child(second, pair.b);
     const bool opens_second =
@@ -108,8 +108,8 @@ struct PlacedViews {
         ((b & kLeafBit) == 0 && slab_radius(first, pair.a) < slab_radius(second, pair.b) * placement.scale);
     return {opens_second, opens_second ? b : a};
   }
-  // Calls test(single, lanes, scale) for the children and the other node, in the children's frame, as box_gaps() has
-  // it.
+  // Calls test(single, lanes, scale) with the other node, moved to the frame of the children, and with the children.
+  // These are the parameters of box_gaps().
   template <typename Test>
   ORCHARD_INLINE void with_children(const NodePair& pair, const Opened& opened, Test&& test) const noexcept {
     if (opened.second) {
@@ -123,7 +123,8 @@ struct PlacedViews {
                   [&](const NodeBox& single, const ObbNodeBlock& block, float scale)
                       ORCHARD_INLINE_LAMBDA { box_gaps(single, block, scale, placement.box_margin, gaps); });
   }
-  // Those that may meet it: where floats are too coarse, boxes that they do not separate are tested in double.
+  // Sets gaps.meeting to the children that may meet the other node. If floats are too coarse for the pair, boxes that
+  // they do not separate are tested in double.
   ORCHARD_INLINE void meeting_children(const NodePair& pair, const Opened& opened, BoxGaps& gaps) const noexcept {
     compare_children(pair, opened, gaps);
     if (!placement.coarse) return;

@@ -7,11 +7,11 @@
 
 namespace orchard::runtime::detail {
 
-inline constexpr double kSameLine = 1e-9;  // of the points' spread: too little of a second direction to say anything
+inline constexpr double kSameLine = 1e-9;  // of the points' spread: points nearer to a line count as on it
 
-// Up to four of some points that span them, seen along a direction. `each(visit)` calls visit(seen, point) for all of
-// them in the same order each time: `seen` are two coordinates across the direction. It is called five times at most,
-// so that the points need no memory. Returns how many are chosen: 0 if there are no points.
+// Chooses up to four outermost points, as seen along a direction, and returns how many it has chosen; 0 if there are no
+// points. each(visit) has to call visit(seen, point) for all points, always in the same order, where `seen` are two
+// coordinates across the direction. It is called at most five times, so the points need not be stored.
 template <typename Point, typename Each>
 std::uint32_t outermost_points(Each&& each, std::array<Point, kMaxContactPoints>& chosen) noexcept {
   using Seen = std::array<double, 2>;

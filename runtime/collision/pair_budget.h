@@ -8,7 +8,7 @@
 
 namespace orchard::runtime {
 
-// What one call may still spend.
+// The budget of one call, and what it has spent. It looks at the clock only every kClockInterval tests.
 class PairBudget {
  public:
   explicit PairBudget(const Budget& budget) noexcept : limit_(budget.work) {
@@ -17,11 +17,11 @@ class PairBudget {
       deadline_ = std::chrono::steady_clock::now() + budget.time;
     }
   }
-  bool exhausted() noexcept {  // and from then on
+  bool exhausted() noexcept {  // once it is true, it stays true
     if (spent_ >= next_clock_) look_at_clock();
     return spent_ >= limit_;
   }
-  // How many rows of so many tests may follow before the limits are seen to again: at least one.
+  // Returns how many rows of `tests` tests each may be done before the limits have to be checked again; at least one.
   std::uint32_t rows(std::uint32_t tests) const noexcept {
     const std::uint64_t left = std::min(limit_, next_clock_) - spent_;
     if (left >= std::uint64_t{kBlockWidth} * kBlockWidth) return kBlockWidth;  // saves a division

@@ -10,15 +10,16 @@
 
 namespace orchard::runtime {
 
-// What a NarrowPhase consists of; other queries of a pair use it, too. Members that NarrowPhase also has mean the same.
+// The implementation of NarrowPhase, which other queries of a pair use, too. Members that NarrowPhase also has mean the
+// same.
 class PairQuery {
  public:
   struct Known {
     Answer answer = Answer::maybe;
     bool finished = true, refused = true;
     double separation_bound = std::numeric_limits<double>::infinity(), lower_bound = 0;
-    // After a "no" of the roots: the direction from a to b along which the bodies are lower_bound apart, of length 1
-    // but for rounding. Else 0.
+    // After a "no" from the roots: the direction from a to b along which the bodies are lower_bound apart, of length 1
+    // up to rounding. Otherwise 0.
     Vec3 apart_along{};
     std::uint64_t work = 0;
   };
@@ -28,7 +29,8 @@ class PairQuery {
   bool reserve(std::size_t pairs) noexcept { return spheres_.reserve(pairs); }
 
   Answer start(const Pose& a, const Pose& b) noexcept;
-  // A level of spheres, or the last level, as far as the tracker goes, which knows what was spent.
+  // Does the next level of spheres, or the last level, as far as the budget of the tracker goes. The tracker counts the
+  // work.
   Answer advance(PairBudget& tracker, Order order) noexcept {
     if (known_.finished || tracker.exhausted()) return known_.answer;
     return order == Order::exact_first ? refine_last(tracker) : refine_level(tracker);
@@ -68,7 +70,7 @@ class PairQuery {
   TriangleSearch triangles_;
   Known known_;
   std::uint32_t level_ = 0;
-  bool roots_pending_ = false;  // deeper levels have not begun
+  bool roots_pending_ = false;  // the levels below the roots have not begun
   bool exact_started_ = false;
   bool out_of_room_ = false;
 };
@@ -101,10 +103,10 @@ class DirectSearch {
   PairQuery& query_;
 };
 
-// Returns what a NarrowPhase consists of.
+// Returns the implementation of a NarrowPhase.
 PairQuery& query_of(NarrowPhase& pair) noexcept;
 
-// collide() for it, and the same without the verdict.
+// collide() for a PairQuery, and the same without making the verdict.
 Verdict collide(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget = {},
                 Order order = Order::exact_first) noexcept;
 void answer_exactly(PairQuery& pair, const Pose& a, const Pose& b, const Budget& budget,

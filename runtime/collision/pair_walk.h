@@ -7,16 +7,17 @@
 #include "math/vector_functions.h"
 #include "orchard/runtime/packed_tree.h"
 
-// Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
+// A depth-first walk through the triangle BVHs of a pair, to every pair of triangles that meet.
 namespace orchard::runtime::detail {
 
-// Two trees, the second one placed in the first one's frame, both relative to their origins.
+// Two trees, of which the second one is placed in the first one's frame. Both frames are relative to the trees'
+// origins.
 struct PlacedPair {
   const PreparedTree &first, &second;
   Pose relative;
   Placement placement;
 
-  // The second one moved by `by`, in the first one's units.
+  // Returns the pair with the second tree moved by `by`, in the first one's units.
   PlacedPair moved(const Vec3& by) const noexcept {
     PlacedPair result = *this;
     const double size = one_norm(by);
@@ -31,14 +32,16 @@ struct PlacedPair {
   }
 };
 
+// The stack of a walk, and a count of its work.
 struct WalkStack {
   TreeStack<NodePair> stack;
-  std::uint64_t work = 0;  // The tests of eight against one, of leaves, and visits to triangles so far.
+  std::uint64_t work =
+      0;  // The number of pairs of nodes opened, pairs of leaves tested, and pairs of triangles visited.
 };
 
-// Calls visit(lanes, lane, rows, row) for every pair of triangles, of the first and of the second tree, that the float
-// tests do not tell apart, until it returns true. Precondition: both trees have triangles, and `room` suffices for
-// them.
+// Calls visit(lanes, lane, rows, row) for every pair of triangles that the tests in float do not separate, until it
+// returns true. `lanes` is a block of the first tree, and `rows` is one of the second. Preconditions: both trees have
+// triangles, and room.stack.reserve() has been called for them.
 template <typename Visit>
 void walk_candidates(const PlacedPair& pair, WalkStack& room, const Visit& visit) noexcept {
   const PlacedViews trees = {pair.first.tree, pair.second.tree, pair.placement, pair.relative};

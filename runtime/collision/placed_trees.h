@@ -10,8 +10,8 @@
 
 namespace orchard::runtime {
 
-// Two trees in a fixed order that does not depend on the order of the arguments: by their content or, of equal trees,
-// by their poses. Refers to them: they outlive what is asked until the next bind().
+// Two trees in an order that does not depend on the order of the arguments: by their content or, if they are equal, by
+// their poses. It refers to the trees, which have to live until the next bind().
 class OrderedTrees {
  public:
   void bind(const PreparedTree& a, const PreparedTree& b) noexcept;
@@ -21,47 +21,49 @@ class OrderedTrees {
   const PreparedTree& first() const noexcept { return *first_; }
   const PreparedTree& second() const noexcept { return *second_; }
   bool exchanged() const noexcept { return exchanged_; }  // whether the first tree is the second argument
-  // A coordinate of both roots' centres.
+  // Returns coordinate i of the centres of both roots.
   const std::array<double, 2>& roots(std::size_t i) const noexcept { return roots_[i]; }
 
  private:
   static const PreparedTree kNone;  // without nodes
 
   const PreparedTree *first_ = &kNone, *second_ = &kNone;
-  std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
-  bool equal_ = false;                            // ordered by their poses
-  bool one_tree_ = false;                         // equal, and in the same place
+  std::array<std::array<double, 2>, 3> roots_{};  // the centres of both roots, by coordinate
+  bool equal_ = false;                            // the trees are equal, so their poses order them
+  bool one_tree_ = false;                         // both are the same tree in memory
   bool exchanged_ = false;
 };
 
-// What the roots of two trees say, and the convex hulls around these. Lengths in world units.
+// The result of the test of two roots and of the convex hulls around the bodies. Lengths are in world units.
 struct Roots {
   enum class Answer : std::uint8_t {
     apart,
-    near,    // the trees are then placed as far as place() needs it
-    refused  // poses that name no place, or one beyond what floats can hold: nothing is certain then
+    near,    // they may meet; place() can be called
+    refused  // a pose is not rigid, or so far away that floats cannot hold the pair; nothing is certain
   };
   double separation_bound = std::numeric_limits<double>::infinity(), lower_bound = 0;
-  Vec3 apart_along{};  // of length 1 but for rounding: from a to b, if they are apart
+  Vec3 apart_along{};  // if they are apart: the direction from a to b in which they are, of length 1 up to rounding
 };
 
-// Two trees at two poses: the second one's place in the first one's frame, in double and, with margins for its
-// rounding, in float. Everything below the roots happens in the first tree's own units.
+// Two trees at two poses. It has the place of the second tree in the first one's frame, in double and in float, with
+// margins for the rounding of the latter. Everything below the roots is computed in the units of the first tree.
 class PlacedTrees {
  public:
   void bind(const PreparedTree& a, const PreparedTree& b) noexcept { trees_.bind(a, b); }
 
-  // Level 0, where most pairs end.
+  // Tests the roots (level 0), which decides most pairs.
   Roots::Answer test_roots(const Pose& a, const Pose& b, Roots& roots) noexcept;
-  // Places them whatever test_roots() said, unless it refused these poses. False if floats cannot hold the pair.
+  // Places the trees, even if test_roots() has found them apart. Returns false if floats cannot hold the pair.
+  // Precondition: test_roots() has not refused these poses.
   bool place(const Pose& a, const Pose& b) noexcept;
-  // Finds only relative(), without a look at the roots; place() does the rest. Precondition: both poses are rigid.
+  // Computes only relative(), without a test of the roots; place() then does the rest. Returns false if floats cannot
+  // hold the pair. Precondition: both poses are rigid.
   bool place_for_triangles(const Pose& a, const Pose& b) noexcept;
-  void place() noexcept;  // after `near`, or after place_for_triangles()
+  void place() noexcept;  // places the trees after `near` or place_for_triangles()
 
   const PreparedTree& first() const noexcept { return trees_.first(); }
   const PreparedTree& second() const noexcept { return trees_.second(); }
-  // Precondition of what follows: place().
+  // The functions below have the precondition that the trees are placed.
   bool exchanged() const noexcept { return exchanged_; }  // whether the first tree is that of `b`
   const Pose& first_pose() const noexcept { return first_pose_; }
   const Pose& second_pose() const noexcept { return second_pose_; }
@@ -71,8 +73,9 @@ class PlacedTrees {
   Vec3 in_world(const Vec3& place) const noexcept {  // a point of the first tree's frame
     return transform(first_pose_, place + first().tree.origin);
   }
-  double exact_error() const noexcept { return exact_error_; }  // of a point's place in double, in the world
-  // relative() at the poses kept by test_roots() or place_for_triangles().
+  // Returns a bound on the error of the place of a point in double, in world units.
+  double exact_error() const noexcept { return exact_error_; }
+  // Computes relative() for the poses of the last test_roots() or place_for_triangles().
   Pose relative_pose() const noexcept;
 
  private:

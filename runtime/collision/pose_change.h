@@ -5,8 +5,8 @@
 
 namespace orchard::runtime::detail {
 
-// How far the image of a vector of length 1 moves at most when `before` turns and scales to `now`, translations aside,
-// up to rounding and to what rotations may be off by.
+// Returns a bound on how far the image of a vector of length 1 moves from `before` to `now`, without the translations.
+// It holds up to rounding and to the error that rotations may have.
 inline double pose_change(const Pose& before, const Pose& now) noexcept {
   double square = 0;
   for (std::size_t i = 0; i < 9; ++i) {

@@ -6,10 +6,11 @@
 #include "collision/tree_walk.h"
 #include "simd/vector_support.h"
 
-// Rays in a body's frame, and how they go through its triangles.
+// Rays in the frame of a body, and walks along them through its triangles.
 namespace orchard::runtime::detail {
 
-// A ray's direction by a vector of about one unit, so that those of every length are as good as unit vectors.
+// The direction of a ray, scaled by a power of two to a length of about 1. So directions of any length are as accurate
+// as unit vectors.
 struct Direction {
   Direction(const Vec3& direction, double pose_scale) noexcept : scale(pose_scale) {
     const double largest = max_abs(direction);
@@ -17,7 +18,8 @@ struct Direction {
     for (std::size_t i = 0; i < 3; ++i) way[i] = scaled(direction[i], -power);
   }
   Direction(double pose_scale, int power_of_two) noexcept : scale(pose_scale), power(power_of_two) {}
-  // A factor of the direction in steps of the body's frame, and back.
+  // These convert a multiple of the given direction to a multiple of the scaled one in the body's frame ("steps"), and
+  // back.
   double steps(double along) const noexcept {
     if (!(along > 0) || !std::isfinite(along)) return along;
     const int p = exponent_of(along), q = exponent_of(scale);
@@ -31,20 +33,22 @@ struct Direction {
   int power = 0;
 };
 
-// From a point to outside of everything.
+// Returns a distance from a point that certainly leads past the whole body.
 inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3& point) noexcept {
   return length(minus(point, ball.middle)) + 2 * ball.radius + kRounding * bounding_radius;
 }
 
-// A ray for the float tests, or the verdict that there is none: past the whole tree.
+// A ray for the tests in float. Its parameter s is a length.
 struct Line {
   FloatRay ray;
-  double at = 0;             // of s = 0, along the ray from its origin
-  float begin = 0, end = 0;  // in s, which is above 0
+  double at = 0;             // where s = 0 is: the length along the ray from its origin
+  float begin = 0, end = 0;  // the range of s that is searched; both are above 0
+  // The ray certainly misses the whole tree; floats can hold the coordinates.
   bool misses = false, in_float = true;
 };
 
-// From `from` along the unit vector `way`, for `length_of_ray`, through what is in `ball`; its s = 0 is before it.
+// Returns the line from `from` along the unit vector `way`, of the length `length_of_ray`, for triangles in `ball`. Its
+// s = 0 is before the ball.
 inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double length_of_ray) noexcept {
   constexpr double unit = 0x1p-24;
   Line line;
@@ -69,8 +73,8 @@ inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double 
   return line;
 }
 
-// A ray in the body's frame: the segment from `from` to `to`, which ends beyond everything, so that where the ray ends
-// does not bend it. It has `end` steps at most.
+// A ray in the body's frame. It is the segment from `from` to `to`, which always ends beyond the whole body, so the end
+// of the given ray does not change its direction by rounding. The given ray ends after `end` steps.
 struct RayStart {
   Vec3 from{}, to{}, step{};
   double speed = 0, slowness = 0;  // the step's length, and 1 over it or 0
@@ -80,8 +84,8 @@ struct RayStart {
   double steps_to(const Vec3& place) const noexcept { return dot(minus(place, from), step) * slowness * slowness; }
 };
 
-// For `steps` along `way`, both as Direction has them. Without branches, so that a loop over several rays becomes one
-// over vectors of them.
+// Returns the ray from `origin` for `steps` along `way`, both as in Direction. It has no branches, so a loop over
+// several rays becomes one over vectors of them.
 ORCHARD_INLINE RayStart start_of(const Frame& frame, const Ball& ball, const Vec3& origin, const Vec3& way,
                                  double steps) noexcept {
   RayStart start;
@@ -100,15 +104,15 @@ ORCHARD_INLINE RayStart start_of(const Frame& frame, const Ball& ball, const Vec
   return start;
 }
 
-// Several at once, number by number.
+// Eight rays, stored member by member.
 struct RayStarts {
   static constexpr std::size_t kCount = 8;
   using Row = std::array<double, kCount>;
   using FloatRow = std::array<float, kCount>;
 
-  std::array<Row, 3> origin, way;  // what is given
+  std::array<Row, 3> origin, way;  // these and `steps` are the input of find_starts()
   Row steps;
-  std::array<Row, 3> from, to, step;  // and what is made of it
+  std::array<Row, 3> from, to, step;  // these and the members below are its output
   Row speed, slowness, end;
   struct Lines {
     Row at;
@@ -132,8 +136,8 @@ struct RayStarts {
 };
 void find_starts(const Frame& frame, const Ball& ball, RayStarts& starts) noexcept;
 
-// Calls visit(leaf, end) for the leaves on the ray of which triangles may be met, the nearest ball slab of a block
-// first. visit() returns up to which s the ray goes on from there, or something below 0.
+// Calls visit(leaf, end) for the leaves of which the ray may meet triangles, the nearest ball slab of a block first.
+// visit() returns the s up to which the search goes on, or a value below 0 to end it.
 template <typename Visit>
 void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   RayWalk walk(line.ray, line.begin, line.end, tree.obb_nodes[0].child[0]);
@@ -142,7 +146,7 @@ void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   }
 }
 
-// The triangles of a tree, as queries along rays go through them.
+// The triangles of a tree, with the functions that queries along rays need.
 struct TreeTriangles {
   const TreeView& tree;
 
@@ -155,8 +159,9 @@ struct TreeTriangles {
   std::span<const TriangleBlock> all() const noexcept { return tree.triangle_blocks; }
 };
 
-// Calls visit(points, triangle, whether the line surely runs through it, end) for the triangles that a line may meet,
-// or for all where floats do not reach. It returns the new end, as for walk_ray().
+// Calls visit(points, triangle, certain, end) for the triangles that a line may meet, or for all triangles if floats
+// cannot hold the coordinates. `certain` is whether the line certainly passes through the triangle. visit() returns the
+// new end, as for walk_ray().
 template <typename Triangles, typename Visit>
 void each_triangle_along(const Triangles& triangles, const Line& line, Visit&& visit) noexcept {
   if (!line.in_float) {

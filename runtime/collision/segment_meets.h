@@ -3,11 +3,12 @@
 
 namespace orchard::runtime::detail {
 
-// Whether a closed segment and a closed triangle share a point: exactly, as triangles_intersect() says of the segment
-// as a triangle. If so, `common` is the first such point, up to rounding.
+// Returns whether a closed segment and a closed triangle share a point. The result is exact, and the same as that of
+// triangles_intersect() for the segment as a degenerate triangle. If they do, `common` is the first such point on the
+// segment, up to rounding.
 bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept;
 
-// The same where the segment's line certainly runs through the triangle's inside.
+// Does the same for a segment whose line certainly passes through the inside of the triangle.
 bool segment_passes(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -6,7 +6,8 @@
 
 namespace orchard::runtime::detail {
 
-// contacts() where bodies may be boxes with their inside: with `is_first`, the body `a` is one. At most two of them.
+// Does the same as contacts() for bodies of which one or both are solid boxes. `boxes` has an element for each of
+// these, at most two; SolidBox::is_first then means that `a` is the box.
 Manifold contacts_of_solids(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                             const ContactOptions& options, std::span<const SolidBox> boxes) noexcept;
 

@@ -14,29 +14,30 @@ namespace detail {
 struct BlockHits;
 }
 
-// The levels of spheres of a pair (Fig. 5.4): at each one, the pairs of nodes that meet, and what they say of the
-// solids' distance. Bounds are in the first tree's units. Precondition: the trees are placed.
+// The search of a pair by levels of spheres (dissertation Fig. 5.4). At each level, it finds the pairs of nodes that
+// meet, and bounds on the distance of the solids from them. Bounds are in the first tree's units. Precondition: the
+// trees are placed.
 class SphereLevels {
  public:
-  struct Best {  // the pair with the least bound on the solids' distance
+  struct Best {  // the pair with the smallest upper bound on the distance of the solids
     double bound = std::numeric_limits<double>::infinity();
     NodePair pair{0, 0};
   };
-  enum class End : std::uint8_t { level, budget, room };  // what ended a call
+  enum class End : std::uint8_t { level, budget, room };  // what ended a call of refine(); room: there is too little
 
-  bool reserve(std::size_t pairs) noexcept;  // room for so many pairs per level; false if there is no memory
+  bool reserve(std::size_t pairs) noexcept;  // makes room for so many pairs per level; false if there is no memory
   void clear() noexcept;
   void reset_tests() noexcept { tests_ = 0; }
-  std::uint64_t tests() const noexcept { return tests_; }              // since then
-  void forget(double root_bound) noexcept;                             // what was found at other poses
+  std::uint64_t tests() const noexcept { return tests_; }              // the number since reset_tests()
+  void forget(double root_bound) noexcept;                             // drops what was found at other poses
   bool begin(const PlacedTrees& trees) noexcept;                       // with the roots; false if there is no room
-  End refine(const PlacedTrees& trees, PairBudget& tracker) noexcept;  // to the end of a level
-  void give_up() noexcept;                                             // for lack of room: the bounds so far stay valid
-  bool have_inner() const noexcept { return inner_.size() > 0; }       // whether there is another level
+  End refine(const PlacedTrees& trees, PairBudget& tracker) noexcept;  // goes on to the end of a level
+  void give_up() noexcept;  // drops all pairs, for lack of room; the bounds so far stay valid
+  bool have_inner() const noexcept { return inner_.size() > 0; }  // whether there is another level
   std::size_t pairs() const noexcept { return inner_.size() + settled_leaves_; }
   const Best& best() const noexcept { return best_; }
-  double least_bound() const noexcept { return least_bound_; }  // of all pairs that met
-  double pruned_gap() const noexcept { return pruned_gap_; }    // how far all others are apart, at least
+  double least_bound() const noexcept { return least_bound_; }  // the smallest bound of all pairs that met
+  double pruned_gap() const noexcept { return pruned_gap_; }    // a lower bound on the distance of all other pairs
   static bool roots_are_leaves(const PlacedTrees& trees) noexcept;
 
  private:
@@ -53,9 +54,9 @@ class SphereLevels {
     std::unique_ptr<NodePair[]> pairs_;
     std::size_t size_ = 0, capacity_ = 0;
   };
-  struct Cursor {  // where the level under way continues: lanes; rows
+  struct Cursor {  // where the level under way continues
     std::size_t pair = 0;
-    std::uint32_t outer = 0, inner = 0;
+    std::uint32_t outer = 0, inner = 0;  // in the groups of the pair: the first lane, and the first row
   };
   struct Groups;
   void collect(const PlacedTrees& trees, const Groups& groups, const detail::BlockHits& hits) noexcept;

@@ -4,11 +4,11 @@
 
 namespace orchard::runtime::detail {
 
-// By which coordinates a tree's triangles reach, in the frame that its poses place. Infinite where it has none.
+// A box around the triangles of a tree, in the frame that poses place. It is infinite if the tree has no triangles.
 struct SupportBox {
   Vec3 low, high;
 };
-// By PackedSphereTree::supports, and so for flexible trees, too, as long as they are.
+// Returns the box, from PackedSphereTree::supports. So it also holds for a FlexibleTree, whatever its vertices do.
 SupportBox support_box(const TreeView& tree) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -9,19 +9,20 @@
 
 namespace orchard::runtime::detail {
 
+// How far a body reaches along a direction.
 struct Support {
-  double most;  // at least direction . point for every point, but for rounding of a few 1e-16 of the coordinates
-  Vec3 point;   // where about
+  double most;  // an upper bound on direction . point over all points, up to rounding by a few 1e-16 of the coordinates
+  Vec3 point;   // the approximate point that reaches so far
 };
 
 inline constexpr double kHalfSupportCells = 0.5 * kSupportCells;
 
-// Where a direction, not zero, leaves the cube of directions: an axis, its sign, a cell of that face and a place in it.
+// Where a direction, which is not zero, leaves the cube of directions: a cell of a face, and a place in this cell.
 struct SupportCell {
-  std::size_t axis, next, last;
-  double size, slow, fast;  // of the component along the axis; the two others divided by it
-  double f, g;              // in the cell, from 0 to 1
-  const float* corner;      // the cell's first one
+  std::size_t axis, next, last;  // `axis` is that of the face; the others are the remaining ones
+  double size, slow, fast;       // |component along `axis`|, and the components along `next` and `last` divided by it
+  double f, g;                   // the place in the cell, from 0 to 1
+  const float* corner;           // the table's value at the first corner of the cell
 };
 
 inline SupportCell support_cell(std::span<const float> map, const Vec3& u) noexcept {
@@ -41,9 +42,9 @@ inline SupportCell support_cell(std::span<const float> map, const Vec3& u) noexc
   return c;
 }
 
-// How far a body reaches along a direction, not zero, from PackedSphereTree::supports, and the point that does: the
-// support function of a set is convex and homogeneous, so between the four directions around a given one it lies below
-// their interpolation, whose gradient is the point. Some 1 % too far.
+// Returns how far a body reaches along a direction, which is not zero, from PackedSphereTree::supports, and the point
+// that does. The support function of a set is convex and homogeneous, so it lies below the interpolation between the
+// four directions around the given one. The gradient of that is the point. The result is about 1 % too far.
 inline Support support_along(std::span<const float> map, const Vec3& u) noexcept {
   const SupportCell cell = support_cell(map, u);
   const float* const at = cell.corner;

@@ -15,14 +15,16 @@
 #include "orchard/runtime/shape_query.h"
 #include "tree/tree_nodes.h"
 
-// How queries about one tree go through its triangles, outward from a point or segment; along a ray: ray_walk.h.
+// Walks of queries through the triangles of one tree, outward from a point or a segment. Walks along a ray are in
+// ray_walk.h.
 namespace orchard::runtime::detail {
 
-// The rounding of a few operations in double.
+// The relative rounding error of a few operations in double.
 inline constexpr double kRounding = 1e-12;
-// Below this a coordinate is no more than rounding, and without it no product of three underflows: exact_sign.h.
+// Smaller coordinates are replaced by 0. They are no more than rounding, and without them, no product of three
+// coordinates underflows (exact_sign.h).
 inline constexpr double kMinCoordinate = 0x1p-305;
-// Farther from the origin than that, floats cannot hold squares of distances: every triangle is looked at.
+// If coordinates are larger than this, floats cannot hold the squares of distances, and every triangle is tested.
 inline constexpr double kFloatReach = 2e18;
 inline constexpr std::size_t kWalkRoom = std::size_t{kBlockWidth} * (kTriangleTreeDepthLimit + 1) + 1;
 
@@ -32,7 +34,8 @@ struct Segment {
   Segment(const Vec3& from, const Vec3& to) noexcept : p(from), d(minus(to, from)), square(dot(d, d)) {}
 };
 
-// Calls visit(points, triangle) for the triangles of blocks until it returns false, which is returned then.
+// Calls visit(points, triangle) for the triangles of blocks until it returns false. Returns false in this case, and
+// true otherwise.
 template <typename Visit>
 bool each_triangle(std::span<const TriangleBlock> blocks, Visit&& visit) noexcept {
   for (const TriangleBlock& block : blocks) {
@@ -52,7 +55,7 @@ inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a n
   return std::fabs(v[0]) <= kFarthest && std::fabs(v[1]) <= kFarthest && std::fabs(v[2]) <= kFarthest;
 }
 
-struct Frame {  // the body's, with its coordinates relative to the tree's origin
+struct Frame {  // the frame of a body, with coordinates relative to the tree's origin
   Frame(const Vec3& tree_origin, double tree_radius, const Pose& body) noexcept
       : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse(body)) {}
   Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
@@ -64,9 +67,9 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   Pose back;
 };
 
-// A point or segment in float, as a box, too, and what they need to be asked about in float.
+// A point or a segment for the tests in float: its ends, a box around it, and the margins for rounding.
 struct FloatShape {
-  bool in_float = true;  // else nothing below says anything
+  bool in_float = true;  // floats can hold the coordinates; otherwise, the other members mean nothing
   std::array<float, 3> from{}, to{};
   NodeBox box{};
   Placement placement{};
@@ -99,7 +102,7 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   return shape;
 }
 
-// The first of the nearest of these lanes, at least one.
+// Returns the lane with the smallest gap, the first one of equals. Precondition: `lanes` has at least one bit.
 inline std::uint32_t nearest_lane(const std::array<float, kBlockWidth>& gaps, std::uint32_t lanes) noexcept {
   auto nearest = static_cast<std::uint32_t>(std::countr_zero(lanes));
   for (std::uint32_t rest = lanes & (lanes - 1); rest != 0; rest &= rest - 1) {
@@ -109,9 +112,10 @@ inline std::uint32_t nearest_lane(const std::array<float, kBlockWidth>& gaps, st
   return nearest;
 }
 
-// Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
-// the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false. Returns how
-// far from the segment all others are, at least, if it has not returned false.
+// Calls visit(block, lane, may_meet) for the triangles that may be within limit() of the segment, until it returns
+// false. `may_meet` is whether the triangle may meet the segment. The nearest ball slabs of a block and the nearest
+// triangles of a leaf come first. Returns a lower bound on the distance of all other triangles from the segment; 0 if
+// visit() has returned false.
 template <typename Limit, typename Visit>
 float walk_outward(const TreeView& tree, const Segment& segment, Limit&& limit, Visit&& visit) noexcept {
   const FloatShape shape = shape_of(tree, segment);

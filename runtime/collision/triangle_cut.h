@@ -10,58 +10,62 @@ struct Segment3 {
   Vec3 p, q;
 };
 
-// A direction and two across it, all of length 1.
+// A direction and two directions perpendicular to it, all of length 1.
 struct Way {
   Vec3 u, e, f;
   explicit Way(const Vec3& direction) noexcept;
 };
 
-// Whether a plane across a normal of the triangles or across two of their edges parts them by more than `gap`, up to
-// rounding. Such a plane is all but sure to be found where they are that far apart.
+// Returns whether a plane separates two triangles by more than `gap`, up to rounding. The planes that are tried are
+// perpendicular to a normal of a triangle, or to the cross product of two edges. If the triangles are so far apart,
+// such a plane nearly always exists.
 bool are_parted_by(const TrianglePoints& a, const TrianglePoints& b, double gap) noexcept;
 
-// A pair of parallel planes that all shifts of b are between that leave it meeting a: -behind <= normal . shift <=
+// A pair of parallel planes. All shifts of b after which it meets a are between them: -behind <= normal . shift <=
 // ahead.
 struct ShiftPlanes {
-  Vec3 normal;  // of length 1 but for rounding
+  Vec3 normal;  // of length 1 up to rounding
   double ahead, behind;
 
-  // How far a shift can grow along a direction. `slack`: what rounding does to lengths.
+  // Returns how far a shift along a direction can go until it leaves the planes. `slack` bounds the rounding of
+  // lengths.
   double exit(const Vec3& direction, double slack) const noexcept;
 };
 
-// Those across both triangles: 0 of a triangle without area.
+// Returns the planes with the normals of both triangles; they are 0 for a triangle without area.
 std::array<ShiftPlanes, 2> face_planes(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
-// What two triangles have in common, which triangles_intersect() says they have: the ends of the common segment, or
-// two points far apart of the common part of triangles in one plane; correct up to rounding. `witness`: a common point,
-// for the case that rounding leaves nothing else.
+// Returns the intersection of two triangles: the ends of the common segment or, for triangles in one plane, two points
+// of the common part that are far apart. It is correct up to rounding. `witness` is a common point, which is the result
+// if rounding leaves nothing else. Precondition: triangles_intersect() is true.
 Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const std::array<ShiftPlanes, 2>& faces,
                         const Vec3& witness) noexcept;
 
-// All shifts of b that leave it meeting a, for two triangles that meet: a convex set, between the planes across the
-// triangles' normals and across pairs of their edges, up to rounding. The set is flat for triangles in one plane.
+// All shifts of b after which it still meets a, for two triangles that meet. Up to rounding, this is a convex set
+// between pairs of planes, whose normals are those of the triangles and the cross products of their edges. The set is
+// flat for triangles in one plane.
 class MeetingShifts {
  public:
   MeetingShifts() = default;
   MeetingShifts(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
-  // How far b can move along a direction and still meet a, and the normal of what they part at, pointing along it.
+  // How far b can move along a direction and still meet a, and the normal of the plane at which they part, pointing
+  // along the direction.
   struct Exit {
     double way;
     Vec3 normal;
   };
-  // Where that is no more than `least`, any such way.
+  // If the exact way is at most `least`, the result may be any way up to `least`.
   Exit exit(const Vec3& direction, double least) const noexcept;
-  // Whether b meets a all the way to t * direction. False where the set is flat.
+  // Returns whether b meets a all the way to t * direction. False if the set is flat.
   bool contain(const Vec3& direction, double t) const noexcept;
-  // The shortest shift that leads out, nearly. 0 where the set is flat.
+  // Returns approximately the shortest shift that leads out of the set; 0 if the set is flat.
   Vec3 shortest_way_out() const noexcept;
-  double shortest() const noexcept;  // its length
+  double shortest() const noexcept;  // the length of shortest_way_out()
 
  private:
   static constexpr std::size_t kPlanes = 11;
-  std::array<ShiftPlanes, kPlanes> planes_;  // `count_` of them
+  std::array<ShiftPlanes, kPlanes> planes_;  // the first count_ are in use
   std::size_t count_ = 0;
   double slack_ = 0;
   bool flat_ = false;

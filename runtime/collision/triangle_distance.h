@@ -8,13 +8,14 @@ struct NearestPoints {
   Vec3 on_a, on_b;
 };
 
-// The distance of two triangles that do not intersect, degenerate ones included, and where. The points are on the
-// triangles and `distance` apart, both up to rounding in double; nearly parallel edges can make that distance larger
-// than the true one, by at most kParallelError times the sum of the triangles' longest edges.
 inline constexpr double kParallelError = 2e-7;
+// Returns the distance of two triangles and their nearest points. The triangles must not intersect, and may be
+// degenerate. The points are on the triangles and `distance` apart, both up to rounding in double. If edges are nearly
+// parallel, `distance` may exceed the true one by at most kParallelError times the sum of the longest edges of both
+// triangles.
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
-// Of a triangle from a segment that it does not intersect, or a point: as above, `on_a` being on the segment.
+// Does the same for a triangle and the segment from p to q, which may be a point. `on_a` is on the segment.
 NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept;
 
 double longest_edge(const TrianglePoints& t) noexcept;

@@ -8,22 +8,22 @@
 
 namespace orchard::runtime {
 
-// What contacts() and time_of_impact() keep while they run.
+// The memory that contacts() and time_of_impact() use while they run.
 struct Workspace::Scratch {
   detail::WalkStack walk;
 
-  // Pairs of triangles that meet, and what they have in common, in the first tree's frame.
+  // Two triangles that meet, and their intersection, in the first tree's frame.
   struct Cut {
     detail::TrianglePoints first, second;
-    std::array<detail::ShiftPlanes, 2> faces;
-    Vec3 p, q;  // the ends of the common segment
+    std::array<detail::ShiftPlanes, 2> faces;  // face_planes() of both
+    Vec3 p, q;                                 // the ends of the common segment
     std::uint32_t triangle_first, triangle_second;
   };
   static constexpr std::size_t kCuts = 512;
   std::array<Cut, kCuts> cuts;
   std::size_t cut_count = 0;
 
-  // Pairs of nodes that may meet next, and when at the earliest.
+  // Two nodes that may meet next, and a lower bound on the time at which they can.
   struct TimedPair : NodePair {
     float time;
   };

@@ -4,16 +4,19 @@
 
 namespace orchard::runtime::detail {
 
-// What a job needs while it answers pairs.
+// The workspace of one job that answers pairs, and the work that it has done, in units of Budget::work.
 struct AnswerScratch {
   Workspace workspace{0};
   std::uint64_t work = 0;
 };
 
-// What is known of a pair before anything is asked: no parts of it are near. What two of its parts add to that. And
-// where what happened between two steps is not known: "maybe", unless it touches at this one.
+// Resets the answer of a pair to what holds before any of its parts are compared: "no", with infinite bounds.
 void forget_answer(CachedPair& record) noexcept;
+// Adds the verdict of two parts to the answer of their bodies. The verdict that decides() prefers is kept, with the
+// smaller of both bounds.
 void add(CachedPair& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept;
+// Changes the answer of a pair to an uncertain "maybe", unless the bodies touch at this step. It is for pairs of which
+// it is not known what happened between two steps.
 void leave_open(CachedPair& record) noexcept;
 
 // Answers one pair of bodies from the poses of a step. Any number of threads may call it at once, each with its own
@@ -22,11 +25,14 @@ class PairAnswerer {
  public:
   explicit PairAnswerer(const ShapePlacements& places) noexcept : places_(&places) {}
 
-  // Every pair of its parts to the end, and what happened between the step before and this one, if that can be swept.
+  // Answers the pair without a limit of work: compares parts until two of them touch or none is left. If
+  // record.sweep.possible is set, it then sweeps.
   void answer(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept;
-  // What happened between the step before and this one, until scratch.work has reached `most`.
+  // Searches for an impact between the step before and this one. It stops once scratch.work has reached `most`, and the
+  // parts that it has not searched to the end count as "maybe".
   void sweep(CachedPair& record, Step now, AnswerScratch& scratch, std::uint64_t most) const noexcept;
 
+  // Sets `pair` to two parts of the bodies, at the poses of the step under way.
   void place(const CachedPair& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
 
  private:

@@ -3,10 +3,10 @@
 
 namespace orchard::runtime::detail {
 
-// The half-spaces of a world: few, and static.
+// The half-spaces of a world. They are few, and static.
 class HalfSpaces {
  public:
-  BodyIndex add(const HalfSpace& half, const Body& with);  // its BodyIndex; BodyId::generation is 1
+  BodyIndex add(const HalfSpace& half, const Body& with);  // returns its index; its generation is 1
   bool remove(BodyIndex index) noexcept;
   bool contains(BodyId id) const noexcept {
     return is_half_space(id.index) && id.generation == 1 && id.index - kFirstHalfSpace < planes_.size() &&
@@ -34,28 +34,31 @@ class HalfSpaces {
   std::vector<Plane> planes_;
 };
 
-// When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
-// updated again. One number per body, whatever the number of half-spaces: they are few.
+// The first step at which each body can reach a half-space, by the same motion bounds as those of the broad phase. At
+// that step, the body is due: its pairs and its next step are found again. One step is kept per body, whatever the
+// number of half-spaces, because they are few.
 class HalfSpaceTimes {
  public:
   explicit HalfSpaceTimes(const HalfSpaces& halves) noexcept : halves_(halves) {}
 
-  // At the next step: it is new, or its bounds do not hold any more.
+  // Makes a body due at the next step, because it is new or its motion bounds do not hold any more.
   void update_again(BodyIndex body) { set_due(body, 0); }
-  void update_all() noexcept;                                 // a half-space is new
-  void forget(BodyIndex body) { set_due(body, kNeverStep); }  // it is gone, or does not move
-  // At which any body is due.
+  void update_all() noexcept;                                 // makes all bodies due, for a new half-space
+  void forget(BodyIndex body) { set_due(body, kNeverStep); }  // after it was removed, or for one that does not move
+  // Returns the first step at which a body is due, or kNeverStep.
   Step next() const noexcept { return halves_.empty() ? kNeverStep : next_; }
 
-  // The bodies due at `now` or before, in ascending order, each of which is to be updated.
+  // Appends the bodies that are due at `now` or before, in ascending order. The caller then has to call update() for
+  // each of them.
   void due(Step now, std::vector<BodyIndex>& bodies);
-  // Of a body of which `motion` is relied on: appends its pairs, in ascending order of half-spaces, and finds when it
-  // is due again. `slack`: see BroadPhaseOptions::position_slack.
+  // Appends the pairs of a body, in ascending order of half-spaces, and computes when it is due again. `motion` is the
+  // motion bound of the body. `slack`: see BroadPhaseOptions::position_slack.
   void update(const Body& body, Step now, const Clock& clock, Motion motion, double slack,
               std::vector<BodyPair>& pairs);
-  // Whether the body keeps the bounds that its next update relies on.
+  // Returns whether the body, whose motion at `time` is `now`, keeps the motion bound from which its next due step was
+  // computed.
   bool motion_bound_kept(BodyIndex body, double time, const Motion& now) const noexcept;
-  // Whether that is about the body's middle: see Body::relies_on_middle().
+  // Returns whether that bound is about the body's middle; see Body::relies_on_middle().
   bool relies_on_middle(BodyIndex body) const noexcept { return body < bounds_.size() && bounds_[body].by_middle; }
   std::size_t memory_bytes() const noexcept { return bytes_of(due_, moving_, bounds_); }
 
@@ -68,8 +71,8 @@ class HalfSpaceTimes {
   void set_due(BodyIndex body, Step due);
   const HalfSpaces& halves_;
   std::vector<Step> due_;            // by body; kNeverStep: it does not move
-  std::vector<BodyIndex> moving_;    // in ascending order: all but those that do not move,
-  bool moving_known_ = true;         // unless some have come or gone
+  std::vector<BodyIndex> moving_;    // the bodies that move, in ascending order
+  bool moving_known_ = true;         // `moving_` is up to date
   std::vector<MotionBound> bounds_;  // by body
   double slack_ = 0;
   Step next_ = kNeverStep;

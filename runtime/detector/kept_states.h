@@ -7,11 +7,11 @@
 
 namespace orchard::runtime::detail {
 
-// The states of bodies that the detector keeps for the application: each body moves straight from the time at which its
-// state was set.
+// The states of bodies that the detector keeps for the application. Each body moves straight, at constant velocity,
+// from the time at which its state was set.
 class KeptStates {
  public:
-  // put_cancels: the bounds of a body hold until put().
+  // `put_cancels`: each call of put() cancels the motion bounds of the body, so they need not hold any longer.
   explicit KeptStates(bool put_cancels) noexcept : put_cancels_(put_cancels) {}
   void put(BodyIndex body, double time, const BodyState& state) {
     grow(told_, std::size_t{body} + 1);
@@ -22,7 +22,8 @@ class KeptStates {
     state.pose.translation = Vec3(state.pose.translation) + (time - told_[body].time) * state.velocity;
     return state;
   }
-  // No body turns until its state is changed, which cancels its bounds.
+  // Fills in the states of bodies at `time`. If put() cancels bounds, their angular speed is 0, since no body turns
+  // between two calls of put().
   void fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       states[i] = at(time, bodies[i]);

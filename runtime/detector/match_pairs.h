@@ -4,20 +4,23 @@
 
 namespace orchard::runtime::detail {
 
-// Match: which pairs of bodies a step asks about, and what is remembered of each from the step before.
+// The stage "match" of a step: collects the pairs of bodies that the step has to answer, and finds what is remembered
+// of each from the step before.
 class PairMatcher {
  public:
   PairMatcher(World& world, StateSampler& sampler, PartPairs& part_pairs) noexcept
       : world_(world), sampler_(sampler), part_pairs_(part_pairs) {}
 
-  // Whether no step has pairs before the broad phase, or a half-space, finds some.
+  // Returns whether steps have no pairs until the broad phase or a half-space finds some.
   bool idle() const noexcept { return cache_.empty() && !part_pairs_.any(); }
-  void expect(double meetings) noexcept { seen_.meetings = meetings; }  // as the timing wheel has announced them
-  // The pairs of the step, in ascending order: the broad phase's, those with half-spaces, those found by parts, and
-  // those of the step before that an interrupted broad phase may have left out. Samples the states of their bodies.
+  // Notes how many meetings the broad phase predicts for the next step.
+  void expect(double meetings) noexcept { seen_.meetings = meetings; }
+  // Collects the pairs of the step, in ascending order: those of the broad phase, those with half-spaces, those found
+  // by parts, and those of the step before that an interrupted broad phase may have left out. Samples the states of
+  // their bodies.
   void gather(Step step, const Advance& now);
-  // Matches them with those of the step before. Calls goes_on(pair) for each held pair that is none any more; true
-  // keeps it.
+  // Matches the collected pairs with those of the step before. Calls goes_on(pair) for each pair of the step before
+  // that is none any more and that is PairCache::busy(). The pair is kept if that returns true.
   template <typename GoesOn>
   void match(GoesOn&& goes_on);
   std::size_t pair_count() const noexcept { return pairs_.size(); }
@@ -25,11 +28,14 @@ class PairMatcher {
 
   PairCache& cache() noexcept { return cache_; }
   const PairCache& cache() const noexcept { return cache_; }
-  // What is remembered of a pair that has to be asked about, from the first time on.
+  // Returns the record of an active pair, and fills it in the first time.
   CachedPair& cached(PairCache::Known& known);
-  // By the filters of both bodies and of the application, which is asked again only after something has changed.
+  // Returns whether the filters of both bodies and of the application allow the pair. The filters are asked again only
+  // after one of them has changed.
   bool allowed(CachedPair& pair) const;
+  // Returns whether both bodies still exist.
   bool is_there(const CachedPair& pair) const noexcept { return world_.contains(pair.a) && world_.contains(pair.b); }
+  // Returns whether a body was teleported since the pair was last looked at.
   bool has_jumped(const CachedPair& pair) const noexcept {
     return pair.versions.jumps !=
            world_.places.body(pair.bodies.a).changes.jumps + world_.places.body(pair.bodies.b).changes.jumps;
@@ -44,6 +50,7 @@ class PairMatcher {
   }
   void gather_half_spaces(Step step);
   void gather_left_out(Step step, const Advance& now);
+  // Returns the sum of the generations of both bodies.
   std::uint32_t generations(const BodyPair& pair) const noexcept {
     const std::uint32_t first = world_.bodies.sphere_cache(pair.a).generation;
     return is_half_space(pair.b) ? first : first + world_.bodies.sphere_cache(pair.b).generation;
@@ -53,9 +60,9 @@ class PairMatcher {
   StateSampler& sampler_;
   PartPairs& part_pairs_;
   PairCache cache_;
-  std::span<const BodyPair> pairs_;  // of the step: those of the broad phase and
-  std::vector<BodyPair> others_;     // those that it does not know of,
-  std::vector<BodyPair> merged_;     // together, if there are any
+  std::span<const BodyPair> pairs_;  // all pairs of the step: the list of the broad phase, others_ or merged_
+  std::vector<BodyPair> others_;     // the pairs that the broad phase does not report
+  std::vector<BodyPair> merged_;     // the pairs of both lists, if neither is empty
   LoadModel::Pairs seen_;
   std::vector<BodyIndex> due_, left_out_;
 };

@@ -3,7 +3,7 @@
 
 namespace orchard::runtime::detail {
 
-// Report: from answers to events.
+// The stage "report" of a step: derives events from the answers.
 class EventReporter {
  public:
   EventReporter(const World& world, const PairSkipper& skipper) noexcept : world_(world), skipper_(skipper) {}
@@ -11,13 +11,18 @@ class EventReporter {
   void begin_call() noexcept { events_.clear(), ended_.clear(); }
   bool full() const noexcept { return events_.size() >= world_.options.max_events; }
 
-  // A pair that is none any more. True: it is still reported as touching, as long as steps_to_end says.
+  // Reports on a pair that is none any more. Returns true if it still counts as touching, because
+  // DetectorOptions::steps_to_end is not reached. `there`: both bodies exist and filters allow the pair. `jumped`: one
+  // was teleported.
   bool part(CachedPair& pair, bool there, bool jumped, Step step);
+  // Ends the touch of a pair one of whose bodies was teleported.
   void end_by_teleport(CachedPair& pair, Step step);
   void begin_step(const ActivePairs& active) { grow(outcomes_, active.size()); }
-  // What the answer of an active pair, or that none was asked for, makes of it. Jobs may do so at once.
+  // Updates the record of an active pair, whether it was answered at this step or not, and notes which event follows.
+  // Jobs may call it at the same time for different pairs.
   void conclude(const ActivePairs& active, std::size_t i) noexcept;
-  // Appends the events of the step, in ascending order of pairs; what has ended of a pair comes before what has begun.
+  // Appends the events of the step, in ascending order of pairs. If a pair has two events, the end comes before the
+  // beginning.
   void report(const ActivePairs& active, Step step, Frame& frame);
 
   std::span<const PairEvent> events() const noexcept { return events_; }
@@ -30,9 +35,9 @@ class EventReporter {
 
   const World& world_;
   const PairSkipper& skipper_;
-  std::vector<Outcome> outcomes_;  // of the active pairs
-  std::vector<PairEvent> events_;  // of this call
-  std::vector<PairEvent> ended_;   // before any answer, until report() merges them in
+  std::vector<Outcome> outcomes_;  // by active pair
+  std::vector<PairEvent> events_;  // of this call of step()
+  std::vector<PairEvent> ended_;   // of pairs that ended before any answer, until report() merges them with the others
 };
 
 }  // namespace orchard::runtime::detail

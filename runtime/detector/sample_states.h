@@ -4,35 +4,37 @@
 
 namespace orchard::runtime::detail {
 
-// Sample: where bodies are at a step, and what the broad phase may rely on. Every question for a body's state is asked
-// here, at most once a step.
+// The stage "sample" of a step: asks the source for the states of bodies, at most once per step for each body, and
+// derives the motion bounds on which the broad phase relies.
 class StateSampler {
  public:
   StateSampler(World& world, BroadPhase& broad, StateSource source);
 
   const StateSource& source() const noexcept { return source_; }
   void begin_call() noexcept { refused_.clear(), broken_.clear(); }
-  // Makes the states of these bodies those of the step; a body may come up twice.
+  // Asks for the states of these bodies at the step, unless they are known. A body may occur twice.
   void sample(Step step, std::span<const BodyIndex> bodies);
-  // Where most bodies were in pairs at the step before: all of them at once, so that the broad phase's jobs may run at
-  // once.
+  // Asks for the states of all bodies if at least half of them, and at least 256, were in pairs at the step before. The
+  // jobs of the broad phase may then run at the same time, because they need not ask.
   void sample_all(Step step);
-  // Whether every state is that of the step that the broad phase is at.
+  // Returns whether sample_all() has asked for the states of the step that the broad phase is at.
   bool sampled_all() const noexcept { return all_sampled_at_ == world_.answered + 1; }
-  // The bodies of these pairs, in ascending order; refuses those whose states are not valid.
+  // Samples the bodies of these pairs, and refuses those whose states are not valid. The pairs are in ascending order.
   void sample_pairs(Step step, std::span<const BodyPair> pairs);
-  // What is relied on of a body whose state has been sampled: what its state says, or what the monitor makes of it.
+  // Returns the motion bound of a body whose state has been sampled: that of the state or, if BodyOptions::suggest is
+  // set, the one that the monitor suggests.
   Motion given_motion(BodyIndex body, double time) const;
-  // The broad phase asks for the motions of bodies.
+  // Fills in motions[i] of the body asked[i]. It is the source of the broad phase.
   void answer_broad_phase(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
 
   bool watches() const noexcept { return watches_; }
-  // Before the broad phase relies on anything at this step: compares every body's state with its motion bounds.
+  // Compares the state of every moving body with its motion bound, and cancels those that do not hold. Call it before
+  // the broad phase advances to the step.
   void watch(Step step);
-  void cancel(Body& body);  // its bounds do not hold any more
+  void cancel(Body& body);  // its motion bound does not hold any more
   void refuse(std::span<const BodyIndex> bodies) { refused_.insert(refused_.end(), bodies.begin(), bodies.end()); }
   MotionMonitor& monitor() noexcept { return monitor_; }
-  void report(Frame& frame);  // what was refused, and whose bounds were broken, since begin_call()
+  void report(Frame& frame);  // sets Frame::refused and Frame::broken, for the bodies since begin_call()
   std::size_t memory_bytes() const noexcept {
     return monitor_.memory_bytes() + bytes_of(asking_, answers_, refused_, broken_, paired_, is_paired_);
   }
@@ -51,11 +53,11 @@ class StateSampler {
   MotionMonitor monitor_;
   bool watches_;
   Step all_sampled_at_ = kNotAsked, paired_at_ = kNotAsked;
-  std::atomic<bool> any_flawed_ = false;  // some answer was not valid; set by jobs
+  std::atomic<bool> any_flawed_ = false;  // an answer of the source was not valid; set by jobs
   std::vector<BodyIndex> asking_, refused_, broken_;
   std::vector<BodyState> answers_;
-  std::vector<BodyIndex> paired_;        // of sample_pairs(), at the step paired_at_
-  std::vector<std::uint8_t> is_paired_;  // by body, while `paired_` is made
+  std::vector<BodyIndex> paired_;        // the bodies that were in pairs at the step paired_at_
+  std::vector<std::uint8_t> is_paired_;  // by body: scratch for finding `paired_`, otherwise 0
 };
 
 }  // namespace orchard::runtime::detail

@@ -5,42 +5,48 @@
 
 namespace orchard::runtime::detail {
 
-// Schedule: which pairs of a step are answered when, by jobs, and within a budget in what order.
-//
-// Within a budget: by class of importance, and there in the order of who has waited longest. First each pair of parts
-// gets what costs next to nothing and tells most of them: spheres, roots, what the last step found, simple shapes. A
-// share of the budget is set aside for those that need more: each gets a search of its triangles, as far as kFirstSlice
-// goes. As most take a few microseconds, those that have not ended then begin again, with slices that grow, when every
-// pair of the class has had a turn.
+// The stage "schedule" of a step: divides the pairs among jobs and, within a budget, decides in which order they are
+// answered. That order is by class of importance, and in a class by the number of steps that a pair has waited. There
+// are three passes:
+//   1. Each pair of parts gets the cheap tests, which decide most pairs: spheres, roots, what the last step found,
+//      simple shapes. A share of the budget is set aside for the other passes.
+//   2. In each class, each pair of parts that is still open gets a search of its triangles with a limit of kFirstSlice
+//      tests. Most searches end within it, in a few microseconds.
+//   3. When every pair of the class has had its turn, the searches that did not end begin again, with limits that grow.
 class PairScheduler {
  public:
   explicit PairScheduler(const World& world) noexcept : world_(world), answerer_(world.places) {}
 
-  // Before a step: a scratch for each job, with room for pairs of all shapes, and for sweeps if there are any, so that
-  // no query allocates.
+  // Allocates a scratch for each job, with room for pairs of all shapes and, if there are continuous bodies, for
+  // sweeps. Call it before each step; then no query allocates.
   void prepare();
 
-  // use(i, scratch) for i = 0 .. count - 1, by jobs. Returns the work that the scratches count.
+  // Calls use(i, scratch) for i = 0 .. count - 1, by jobs. Returns the sum of the work that the scratches have counted.
   template <typename Use>
   std::uint64_t each(std::size_t count, Use&& use);
   const PairAnswerer& answerer() const noexcept { return answerer_; }
 
-  // Answers as far as the budget goes, in three parts: what is done in any case; what the budget allows; and what that
-  // makes of the records. What is not answered has the answer maybe and is not CachedPair::answered.
+  // These three functions, called in this order, answer the pairs `open` as far as the budget goes. The first one tests
+  // the spheres of all parts, whatever the budget.
   void begin_within(PairCache& records, std::span<const std::uint32_t> open);
+  // Runs the three passes until the budget is spent.
   void answer_within(PairCache& records, StepBudget& budget);
+  // Combines the verdicts of parts to the answers of the records. A pair without a certain answer gets "maybe", and its
+  // CachedPair::answered stays as it is.
   void fold(PairCache& records, std::span<const std::uint32_t> open, Step now);
-  // What happened between the step before and this one, for the records that can be swept.
+  // Sweeps from the step before to this one, for the records that can be swept, until the budget is spent. Where a
+  // sweep is missing, the answer becomes "maybe", unless the bodies touch.
   void sweep_within(PairCache& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
 
+  // Returns the workspace of the first job, or null before prepare().
   Workspace* workspace() noexcept { return scratches_.empty() ? nullptr : &scratches_[0]->workspace; }
   std::size_t memory_bytes() const noexcept;
 
  private:
-  struct Task {
+  struct Task {  // two parts that are to be tested
     std::uint32_t record = 0, part_a = 0, part_b = 0;
     bool done = false, simple = false;
-    std::uint64_t work = 0;  // of the last piece
+    std::uint64_t work = 0;  // of its last turn
     Verdict verdict;
   };
   void begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept;
@@ -53,13 +59,13 @@ class PairScheduler {
   std::vector<std::unique_ptr<AnswerScratch>> scratches_;
   std::size_t seen_shapes_ = 0;
   bool sweeps_ = false;
-  PreparedTree deepest_;                 // of all shapes: a query that has been bound to it allocates for no other
+  PreparedTree deepest_;                 // the tree with the deepest triangle BVH; queries bound to it have enough room
   std::vector<Task> tasks_;              // in the order of pairs, then of parts
-  std::vector<std::uint64_t> schedule_;  // of tasks: their importance, how long they have waited, and their index
-  std::vector<std::uint32_t> order_;     // of the tasks that run at once
+  std::vector<std::uint64_t> schedule_;  // a sort key for each open task: importance, steps waited, index of the task
+  std::vector<std::uint32_t> order_;     // the indices of the tasks that run at the same time
 };
 
-// The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
+// The division into jobs depends only on `count` and the executor's concurrency, and no answer depends on the division.
 template <typename Use>
 std::uint64_t PairScheduler::each(std::size_t count, Use&& use) {
   constexpr std::size_t kMinPerJob = 8;  // some pairs cost a hundred times what others do

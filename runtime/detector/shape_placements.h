@@ -7,7 +7,7 @@
 
 namespace orchard::runtime::detail {
 
-// What is asked at one step about two parts, the second of which may be a half-space, which no sphere is around.
+// A part of a body at its pose of one step, with the sphere around it; or a half-space, which has no sphere.
 struct PlacedPart : BoundingSphere {
   const Shape* shape = nullptr;
   bool rigid = true;
@@ -16,10 +16,11 @@ struct PlacedPart : BoundingSphere {
   void be_in(const BoundingSphere& sphere) noexcept { static_cast<BoundingSphere&>(*this) = sphere; }
   const Pose& pose() const noexcept { return there != nullptr ? *there : *own; }
   void move_to(const Pose& pose) noexcept { there = nullptr, own = pose; }
-  const Pose* there = nullptr;  // most are where their body is: that is not copied
+  const Pose* there = nullptr;  // the pose of the body, which most parts have and which is not copied; null: `own`
   std::optional<Pose> own = {};
 };
 
+// Two parts at the poses of one step. Only `b` may be a half-space.
 struct PartPair {
   PlacedPart a, b;
   bool simple() const noexcept { return !a.shape->has_tree() || !b.shape->has_tree(); }
@@ -42,14 +43,16 @@ class ShapePlacements {
   const BoundingSphere& sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
     return (*bodies_)[body].parts()[part].sphere;
   }
-  // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
-  // sphere: long shapes fill little of theirs. Else at most 0.
+  // Returns a lower bound on the distance of two parts: from the box or the capsule around one of them to the sphere
+  // around the other. For long shapes, which fill little of their spheres, it is sharper than that of the spheres. It
+  // is at most 0 if nothing is known.
   double bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b, const BoundingSphere& a,
                     const BoundingSphere& b) const noexcept;
-  // At the step before `now`; only of bodies that have been asked for then, or rest since before.
+  // Places a part where it was at the step before `now`. Precondition: the state of the body was asked for at that
+  // step, or the body rests since then.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
   ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
-    constexpr std::size_t kInCache = 2048;  // of so few bodies
+    constexpr std::size_t kInCache = 2048;  // so few bodies are in the cache anyway
     if (bodies_->slots() <= kInCache) return;
     for (const BodyIndex body : {pair.a, pair.b}) {
       if (is_half_space(body)) continue;
@@ -69,14 +72,16 @@ class ShapePlacements {
   const HalfSpaces* halves_;
 };
 
-// Of rotations that are rotations to kRigidTolerance, and of coordinates.
+// A bound on the relative error of a place, from coordinates that are rounded and rotations that are exact to
+// kRigidTolerance only.
 inline constexpr double kPlaceRounding = 1e-11;
 
+// Bounds from the spheres around two parts.
 struct SphereGap {
-  double least;  // how far apart the spheres around the two are, at least; at most 0 where they may overlap
-  double most;   // and what is in them, at most
+  double least;  // a lower bound on the distance of the spheres; at most 0 if they may overlap
+  double most;   // an upper bound on the distance of what is in them
 };
-// `apart`: of the spheres' centres, or of a's from a half-space; `reach`, `size`: of both.
+// `apart` is the distance of the centres, or of a's centre from a half-space. `reach` and `size` are sums over both.
 inline SphereGap sphere_gap(double apart, double reach, double size) noexcept {
   const double least = apart - reach - kPlaceRounding * size, most = std::max(0.0, apart) + reach;
   // Each solid is somewhere in its sphere.
@@ -88,22 +93,25 @@ inline SphereGap sphere_gap(const BoundingSphere& a, const BoundingSphere& b) no
 inline SphereGap sphere_gap(const BoundingSphere& a, const HalfSpace& half) noexcept {
   return sphere_gap(dot(half.normal, a.center) - half.offset, a.reach, a.size + std::fabs(half.offset));
 }
-// What is known of two parts that nothing was asked about.
+// Returns what the spheres around two parts say about them, without any other test.
 Verdict unasked(const PartPair& pair) noexcept;
 
-// A triangle of the tree that a simple shape was nearest to, as its last answer says: where looking for it begins.
+// Returns the triangle of a tree that a simple shape touched, by their last answer, so that the next search begins with
+// it; kNoTriangle if they did not touch.
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept;
 
-// The whole answer, unless `work`, which it increases by what it costs, reaches `most`. `narrow` is only scratch.
+// Returns the answer about two parts, searched to the end unless `work` reaches `most`. Adds what it costs to `work`.
+// `narrow` is scratch, and `guess` is that of test_simple().
 Verdict answer_exactly(PairQuery& narrow, const PartPair& pair, std::uint64_t& work,
                        std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
                        std::uint32_t guess = kNoTriangle) noexcept;
 
-// What is known of two trees whose surfaces have been asked about: of solid boxes these do not tell everything.
+// Corrects the verdict about two surfaces if one of them is that of a solid box: "no" becomes "yes" if a piece of the
+// other shape lies inside the box.
 void make_solid(Verdict& verdict, const PartPair& pair) noexcept;
 
-// The better of what is known of two pairs of parts, for their bodies: yes before maybe before no, then the least
-// bound.
+// Returns whether `verdict`, about two parts, decides the answer of their bodies rather than `than`, about two other
+// parts: yes comes before maybe, maybe before no, and then the smaller separation bound.
 bool decides(const Verdict& verdict, const Verdict& than) noexcept;
 
 }  // namespace orchard::runtime::detail

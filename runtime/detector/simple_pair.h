@@ -2,33 +2,37 @@
 #include "detector/shapes.h"
 #include "orchard/runtime/shape_query.h"
 
-// Pairs with a simple shape: in closed form, or one walk down one tree. Correct to rounding in double, as shape_query.h
-// says. None is interrupted. A round or box-shaped body is solid.
+// Answers about pairs with a simple shape, in closed form or by one walk down one tree. They are correct up to rounding
+// in double, as shape_query.h says, and cannot be interrupted. Round shapes and boxes are solid.
 namespace orchard::runtime::detail {
 
+// Returns "maybe" with an infinite bound.
 Verdict unknown_verdict() noexcept;
 
-// At least one of the two is round, or `b` is a half-space, into which the normal of a contact points then. The poses
-// are rigid. `guess`: the tree's triangle that may be the nearest one, or none; it changes nothing but the time.
+// Tests two shapes. Preconditions: at least one of them is round, or `b` is a half-space; and the poses are rigid. The
+// normal of a contact with a half-space points into it. `guess` is the tree's triangle that may be the nearest one, or
+// kNoTriangle; it changes only the time.
 Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::uint32_t guess = kNoTriangle) noexcept;
 
-// The lowest point of a shape and its height over the plane; not finite if that is not known.
+// Returns the lowest point of a shape, with its height over the plane as the distance. That is not finite if it is not
+// known.
 SurfacePoint lowest_point(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept;
 
-// How far the second one of a pair that touches has to move along the verdict's normal, until it does no more.
+// Returns how far `b`, which touches `a`, has to move along the normal of their verdict until the two are apart.
 double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     const Vec3& normal) noexcept;
 
-// Of a pair with a half-space that touches: up to four points and the depth. Leaves the rest of the manifold, and its
-// point where there is no better one, as they are.
+// Fills in up to four points and the depth of the contact of a shape with a half-space that it touches. The rest of the
+// manifold stays as it is, and so does its point if no better one is found.
 void half_space_contact(const Shape& a, const Pose& pose, const HalfSpace& b, Manifold& manifold) noexcept;
 
-// Whether a piece of one lies wholly inside the other, which is a box. Precondition: their surfaces do not touch, and
-// both have trees.
+// Returns whether a connected piece of one shape lies inside the other one, which is a box, and then sets `contact`.
+// Preconditions: both shapes have trees, and their surfaces do not touch.
 bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& contact) noexcept;
 
-// A lower bound on the distance, for advancing safely. 0 if they touch, or if nothing can be said.
+// Returns a lower bound on the distance, for conservative advancement. It is 0 if the shapes touch, or if nothing is
+// known.
 double half_space_distance(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -4,7 +4,7 @@
 
 namespace orchard::runtime::detail {
 
-// The pairs of a step that may not be skipped.
+// The active pairs of a step: those that may not be skipped.
 class ActivePairs {
  public:
   ActivePairs(PairCache& cache, const ShapePlacements& places, std::span<const std::uint32_t> active) noexcept
@@ -13,9 +13,9 @@ class ActivePairs {
   const BodyPair& pair(std::size_t i) const noexcept { return cache_->pair(active_[i]); }
   PairCache::Known& known(std::size_t i) const noexcept { return cache_->known(active_[i]); }
   CachedPair& cached(std::size_t i) const noexcept { return (*cache_)[known(i).record]; }
-  // Whether a certain "no" at the next step would change what is remembered, or the pair's end would be noticed.
+  // Sets what PairCache::busy() returns for the pair at the next step.
   void tell(std::size_t i, bool busy) const noexcept { cache_->tell(active_[i], busy); }
-  // For loops: what the next ones need is on its way from memory.
+  // Prefetches what the next passes of a loop over the pairs need.
   ORCHARD_INLINE void prefetch(std::size_t i) const noexcept {
     constexpr std::size_t kKnown = 12, kCached = 8, kBodies = 6;  // places ahead
     if (i + kKnown < size()) cache_->prefetch_known(active_[i + kKnown]);
@@ -29,17 +29,22 @@ class ActivePairs {
   std::span<const std::uint32_t> active_;  // places in the cache
 };
 
-// Decides which pairs may be skipped at a step: those whose spheres are apart, those that have moved less since a
-// certain "no" than they were apart then, and those that have not moved at all since a certain answer.
+// Decides which pairs may be skipped at a step:
+//   1. pairs whose spheres are apart;
+//   2. pairs that have moved less since a certain "no" than they were apart then;
+//   3. pairs that have not moved at all since a certain answer.
 class PairSkipper {
  public:
   explicit PairSkipper(const World& world) noexcept : world_(world) {}
 
-  // All pairs but those of the first two kinds. Valid until the next call.
+  // Returns all pairs except those of kinds 1 and 2, and gives each of them a record. The result is valid until the
+  // next call.
   ActivePairs find_active(PairCache& cache);
-  // Of an active pair, whether it is of no third kind either. `interrupted`: the broad phase was at the step before.
+  // Returns whether an active pair has to be answered, because it is not of kind 3 either. Also decides whether it has
+  // to be swept. `interrupted`: the broad phase was interrupted at the step before.
   bool needs_answer(CachedPair& pair, Step step, bool interrupted) const noexcept;
-  // After an answer: how far the two may move before they have to be asked about again.
+  // Call it after each answer. If that is a certain "no", it stores how far the bodies may move before the pair has to
+  // be answered again.
   void keep_clearance(PairCache::Known& known, const CachedPair& pair) const noexcept;
   std::size_t memory_bytes() const noexcept { return bytes_of(active_, active_of_job_); }
 
@@ -51,7 +56,7 @@ class PairSkipper {
 
   const World& world_;
   std::vector<std::uint32_t> active_;       // places in the cache
-  std::vector<std::size_t> active_of_job_;  // how many
+  std::vector<std::size_t> active_of_job_;  // the number of active pairs that each job has found
 };
 
 }  // namespace orchard::runtime::detail

@@ -6,7 +6,7 @@
 
 namespace orchard::runtime::detail {
 
-// A tree of boxes around the spheres of bodies' parts, as they are at one time.
+// A binary tree of axis-parallel boxes around the spheres of the parts of bodies, at the poses of one time.
 class SphereTree {
  public:
   struct Part {
@@ -17,12 +17,14 @@ class SphereTree {
   };
 
   void clear() noexcept { parts_.clear(), nodes_.clear(); }
-  // Enlarges it by more than what rotations and rounding are off by.
+  // Adds a sphere, enlarged by more than the errors of rotations and rounding.
   void add(const BoundingSphere& sphere, BodyIndex body, std::uint32_t part);
-  void build(std::uint32_t leaf = 4);  // after all have been added, so many in a leaf at most; O(n log n)
-  std::span<const Part> parts() const noexcept { return parts_; }  // after build(), those of a leaf one after another
-  // visit(begin, end), as of parts(), for the leaves in boxes for which bound(low, high), a lower bound on what is
-  // looked for, is at most most(). The nearer boxes come first.
+  // Builds the tree of the spheres that have been added, with at most `leaf` of them in a leaf. O(n log n).
+  void build(std::uint32_t leaf = 4);
+  std::span<const Part> parts() const noexcept { return parts_; }  // after build(), those of a leaf are adjacent
+  // Calls visit(begin, end), a range of parts(), for each leaf that may have what is looked for. bound(low, high) is a
+  // lower bound on its distance in a box, or on another measure, and boxes for which this is above most() are left out.
+  // Of two siblings, the one with the smaller bound comes first.
   template <typename Bound, typename Most, typename Visit>
   void walk(const Bound& bound, const Most& most, const Visit& visit) const;
   std::size_t memory_bytes() const noexcept { return bytes_of(parts_, nodes_); }
@@ -30,8 +32,8 @@ class SphereTree {
  private:
   struct Node {
     Vec3 low{}, high{};
-    std::uint32_t begin = 0, end = 0;  // of parts_; a leaf
-    std::uint32_t second = 0;          // the node of its other half, its first one being the next node; 0: a leaf
+    std::uint32_t begin = 0, end = 0;  // a leaf's range of parts_
+    std::uint32_t second = 0;          // the second child, or 0 for a leaf; the first child is the next node
   };
   std::uint32_t build(std::uint32_t begin, std::uint32_t end);
 
@@ -40,7 +42,7 @@ class SphereTree {
   std::uint32_t leaf_ = 0;
 };
 
-// The square of the least distance of a point from a box.
+// Returns the square of the distance of a point from a box.
 inline double square_to_box(const Vec3& low, const Vec3& high, const Vec3& point) noexcept {
   double square = 0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -7,8 +7,8 @@
 
 namespace orchard::runtime::detail {
 
-// What is left of the work and the time of a step, and where it cuts the step short: as the clock says, or as another
-// run's clock said. For one thread.
+// The work and the time that are left for a step, and the places at which the step is cut short: by the clock or, in a
+// replay, where the clock cut another run. For one thread.
 class StepBudget {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,14 +35,15 @@ class StepBudget {
                   : Budget{}.time;
   }
   bool timed() const noexcept { return timed_; }
-  double clock() const noexcept {  // ns since some time; 0 if there is no limit in time
+  double clock() const noexcept {  // ns since a fixed time; 0 if there is no limit in time
     return timed_ ? std::chrono::duration<double, std::nano>(Clock::now().time_since_epoch()).count() : 0;
   }
-  // Sets a part of what is left aside, until it is given back. Time as well, or only time.
+  // A part of what is left, which can be set aside until it is given back.
   struct Part {
     std::uint64_t work = 0;
     std::chrono::nanoseconds time{};
   };
+  // Returns one of `among` equal parts of what is left.
   Part part(std::uint64_t among) const noexcept {
     return {limited_ ? left_ / among : 0,
             timed_ ? time_left() / static_cast<std::int64_t>(among) : std::chrono::nanoseconds{}};
@@ -52,14 +53,14 @@ class StepBudget {
     deadline_ -= part.time;
   }
   void give_back(const Part& part) noexcept {
-    const std::uint64_t overshoot = std::min(beyond_, part.work);  // comes out of it, or overshoots would add up
+    const std::uint64_t overshoot = std::min(beyond_, part.work);  // taken from the part, or overshoots would add up
     left_ += part.work - overshoot, beyond_ -= overshoot;
     deadline_ += part.time;
   }
 
   bool limited() const noexcept { return limited_in_work() || timed() || replay_ != nullptr; }
-  // One of `among` equal shares of what is left.
-  StepBudget share(std::uint64_t among) const noexcept {  // this one first
+  // Returns a budget of its own with one of `among` equal shares of what is left, rounded up.
+  StepBudget share(std::uint64_t among) const noexcept {
     Budget part;
     if (limited_) part.work = left_ / among + (left_ % among != 0 ? 1 : 0);
     if (timed_) part.time = time_left() / static_cast<std::int64_t>(among);
@@ -68,14 +69,19 @@ class StepBudget {
 
   const StepCut* replay() const noexcept { return replay_; }
   const StepCut& cut() const noexcept { return cut_; }
-  bool may_go_on() noexcept { return left() > 0 && reaches(&StepCut::begun, begun_); }  // with beginning
+  // The next functions return whether the step may go on with one of its stages. If not, cut() has the place.
+  // - The quick test of another pair of parts: may_go_on() asks about it, and may_begin() also counts it.
+  bool may_go_on() noexcept { return left() > 0 && reaches(&StepCut::begun, begun_); }
   bool may_begin() noexcept {
     const bool may = reaches(&StepCut::begun, begun_);
     begun_ += may ? 1 : 0;
     return may;
   }
+  // - Another search, which refined() counts when it is done.
   bool may_refine() noexcept { return left() > 0 && reaches(&StepCut::refined, refined_); }
+  // - The sweep with this number, from 0.
   bool may_sweep(std::uint64_t pair) noexcept { return left() > 0 && reaches(&StepCut::swept, pair); }
+  // Returns the limit of work for the next search: `slice` or, in a replay, at most what is left up to the cut.
   std::uint64_t piece(std::uint64_t slice) const noexcept {
     return replay_ == nullptr ? slice : std::min(slice, replay_->refined - refined_ - 1);
   }
@@ -83,13 +89,14 @@ class StepBudget {
   void cut_broad(std::uint64_t work) noexcept { cut_.broad = work; }
 
  private:
+  // Returns whether a stage that has done so much may go on, and notes the cut if it may not.
   bool reaches(std::uint64_t StepCut::*stage, std::uint64_t done) noexcept {
     const bool stop = replay_ != nullptr ? done >= replay_->*stage : late();
     if (stop) cut_.*stage = std::min(cut_.*stage, done);
     return !stop;
   }
 
-  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: spent when nothing was left
+  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: the work that was spent when nothing was left
   bool limited_, timed_ = false;
   Clock::time_point deadline_{};
   const StepCut* replay_;

@@ -4,16 +4,18 @@
 
 namespace orchard::runtime::detail {
 
+// The result of sweep(). Times are from 0, at the first pose, to 1, at the second one.
 struct Swept {
-  Answer answer = Answer::no;  // of whether they touch between the two poses; maybe: not known from `from` on
+  Answer answer = Answer::no;  // whether they touch between the two poses; maybe: this is not known from `from` on
   double from = 0, to = 1;     // certified: they do not touch before `from`; yes: they do at `to`
   Verdict verdict{};           // at `to`
 };
 
-// What happens while both move from one pose to the other in one unit of time, as travel_between() says with the
-// centre of the part's sphere: by time_of_impact(), a round shape being a segment with its radius as margin; towards a
-// half-space by advancing along its normal. Ends once `work`, which it increases, has reached `most`, less than
-// kMaxOvershoot beyond; what is not known by then is maybe, as are poses that are not rigid, or of two scales.
+// Returns whether and when two parts touch while both move from one pose to the other in one unit of time, as
+// travel_between() describes for the centre of each part's sphere. It calls time_of_impact(), with a round shape as a
+// segment and its radius as the margin; towards a half-space, it advances conservatively along the normal. It adds what
+// it costs to `work`, and stops once this has reached `most`, with an overshoot of less than kMaxOvershoot. The answer
+// is maybe if it was stopped before the end, if a pose is not rigid, or if a scale changes.
 Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept;
 

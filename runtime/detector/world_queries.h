@@ -4,8 +4,8 @@
 
 namespace orchard::runtime::detail {
 
-// Rays, nearest points and overlaps among all parts of all bodies and half-spaces at one time, by a tree of the parts'
-// spheres, which is built when the first question is asked after a change.
+// Answers queries by ray, by nearest point and by overlap about all parts of all bodies and half-spaces, at the last
+// step. It uses a tree of the parts' spheres, which is rebuilt at the first query after a change.
 class WorldQueries {
  public:
   WorldQueries(const World& world, const StateSampler& sampler) noexcept : world_(world), sampler_(sampler) {}
@@ -26,7 +26,7 @@ class WorldQueries {
     Pose pose{};
   };
   void find_poses();
-  void update();  // to the world as of the last step; nothing is built where it is still the one of the last call
+  void update();  // rebuilds the tree from the world at the last step, unless it is up to date
   template <typename Bound, typename Most, typename Use>
   void each_target(const QueryFilter& filter, const Bound& bound, const Most& most, const Use& use);
   template <typename Most, typename Use>

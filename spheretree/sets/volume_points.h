@@ -13,8 +13,8 @@ namespace orchard::detail {
 // a point outside costs a weight.
 class VolumePoints {
  public:
-  // Spreads about `inside` points in the solid, equally dense through its box, which is enlarged by `margin` of its
-  // longest side. `weights`: how much more a point counts.
+  // Spreads points evenly through the box of the solid, so densely that about `inside` of them are in the solid. The
+  // box is enlarged by `margin` times its longest side. `weights` has the weight of each place.
   VolumePoints(const Surface& surface, std::size_t inside, double margin, const WeightField& weights = {});
 
   std::size_t inside_count() const { return inside_count_; }
@@ -25,7 +25,7 @@ class VolumePoints {
   void add(const Sphere& ball) { count(ball, 1); }
   void remove(const Sphere& ball) { count(ball, -1); }
 
-  // By what the worth of all held points changes if a ball is added, removed or replaced by another.
+  // Return by how much the worth of all held points changes if a ball is added, removed or replaced by another.
   double gain_of(const Sphere& ball) const { return worth_in(ball, 0); }
   double loss_of(const Sphere& ball) const { return worth_in(ball, 1); }
   double gain_of_change(const Sphere& from, const Sphere& to) const;
@@ -51,7 +51,7 @@ class VolumePoints {
   Box box_;
   double cell_ = 1;  // mesh units
   std::array<int, 3> cells_{1, 1, 1};
-  std::vector<Index> begin_;  // of each cell's points, and one more
+  std::vector<Index> begin_;  // by cell: its first point; the number of points follows at the end
   std::vector<double> x_, y_, z_;
   std::vector<char> inside_;
   std::vector<double> weights_, worth_;

@@ -16,65 +16,70 @@
 
 namespace orchard::detail {
 
-// What placing a vertex came to.
+// The result of placing a vertex.
 enum class Placing : std::uint8_t {
   good,
-  shared,  // its own centre would be poor, but it is on a neighbour's sphere as far as the input goes: that is taken
-  thin,    // the forming points are so near to coplanar that a doubt elsewhere could move the centre far
-  failed,  // no centre worth having, or wrongly oriented
+  shared,  // its own centre would be inaccurate, but up to the noise it is on a neighbour's sphere, which it gets
+  thin,    // the forming points are so nearly coplanar that an uncertain sign elsewhere could move the centre far
+  failed,  // the centre would be useless, or the orientation is wrong
 };
 
-// What an insertion knows of a vertex so far.
+// What an insertion knows about a vertex so far.
 enum class Mark : std::uint8_t { unseen, deleted, kept, wanted };
 
-// Which of four it is that is told by the second, the third and the fourth, without branches: it is as good as random.
+// Returns the index of the one of four items that satisfies a condition, given the conditions of the last three. It has
+// no branches, because no processor could predict them.
 inline std::size_t index_of_four(bool is_second, bool is_third, bool is_fourth) {
   return static_cast<std::size_t>(is_second | is_fourth) + 2 * static_cast<std::size_t>(is_third | is_fourth);
 }
-// Where one of four numbers is.
+// Returns the index of `number` among four numbers, one of which it is.
 inline std::size_t index_of(const std::array<Index, 4>& numbers, Index number) {
   return index_of_four(numbers[1] == number, numbers[2] == number, numbers[3] == number);
 }
 
-// A diagram under construction. Its vertices differ from the finished ones: `radius` holds the square of the radius,
-// and no number at infinity, where the infinite point always comes last. Freed vertices have no neighbours.
+// A diagram under construction. Its vertices differ from the finished ones: `radius` is the square of the radius. For
+// vertices at infinity it is NaN, and the infinite point always comes last. Freed vertices have no neighbours.
 //
-// Each vertex has a bound on the error of  squared radius - squared distance  when its stored centre is used: rounded
-// up to a power of four and kept in six bits, so that a test costs a distance, a look-up and a comparison.
+// Each vertex has a bound on the error of  squared radius - squared distance  if its stored centre is used. The bound
+// is rounded up to a power of four, whose exponent (the error class) is stored in six bits. So a test costs a distance,
+// a look-up and a comparison.
 class Workspace {
  public:
   std::vector<Point> points;
   std::vector<VoronoiVertex> vertices;
   std::vector<Index> free_vertices;
 
-  // The lengths that the bounds are made of: the box of the points, and how far rounding may have moved a coordinate.
-  // Input points count as exact to kInputNoise times that only: what rounding has put off a plane or a sphere still is
-  // on it, or else half of the signs there would be certain and half in doubt.
+  // Sets the lengths from which the bounds are computed: the box of the points, and how far rounding may have moved a
+  // coordinate (`rounding`). The points are assumed to be exact only to kInputNoise times this (the noise). So points
+  // that rounding has moved off a plane or a sphere still count as on it; otherwise, half of the signs there would be
+  // certain and half uncertain.
   void set_scale(const Box& box, double rounding);
   static constexpr double kInputNoise = 4;
-  // The same as those of another one.
+  // Sets the same lengths as those of another workspace.
   void take_scale(const Workspace& other);
-  // Whether the input's noise is too near to what counts as harm for doubts to be settled by it.
+  // Returns whether the noise is so large, compared with harmless_intrusion(), that it cannot be decided whether
+  // uncertain signs are harmless.
   bool too_noisy() const { return noise_ > kMaxNoise * scale(); }
-  // From now on signs are exact, as if the input had no noise: slower, and slivers appear where rounding has put points
-  // off a plane, but consistent whatever the input. For input that is off by more than rounding but by too little.
+  // Makes all further signs exact, as if the input had no noise. It is slower, and slivers appear where rounding has
+  // moved points off a plane, but the diagram is consistent whatever the input is. It is for input with errors that are
+  // larger than rounding, but too small for signs to be certain.
   void set_exact(bool exact) { exact_ = exact; }
   bool exact() const { return exact_; }
-  // For a diagram all of whose signs are exact: the input has no noise.
+  // Sets the noise to 0. Precondition: all signs of the diagram are exact.
   void forget_noise() { noise_ = 0; }
 
   void prefetch(Index v) const {
     __builtin_prefetch(vertices.data() + v);
     __builtin_prefetch(state_.data() + v);
   }
-  // Those of a vertex that others may be giving new neighbours meanwhile, elsewhere (see Region).
+  // Returns the neighbours of a vertex that other threads may be changing at the same time (see Region).
   std::array<Index, 4> neighbors_now(Index v) const {
     return {neighbor_now(v, 0), neighbor_now(v, 1), neighbor_now(v, 2), neighbor_now(v, 3)};
   }
   Index neighbor_now(Index v, unsigned slot) const {
     return std::atomic_ref(const_cast<Index&>(vertices[v].neighbors[slot])).load(std::memory_order_relaxed);
   }
-  // index_of() the neighbor among them, without writing them to memory.
+  // Returns index_of(neighbors_now(v), neighbor), without writing the neighbours to memory.
   std::size_t slot_now(Index v, Index neighbor) const {
     return index_of_four(neighbor_now(v, 1) == neighbor, neighbor_now(v, 2) == neighbor,
                          neighbor_now(v, 3) == neighbor);
@@ -85,10 +90,10 @@ class Workspace {
   bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
   bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
   Mark mark(Index v) const { return static_cast<Mark>(state_[v] & 3u); }
-  void add_mark(Index v, bool condition, Mark mark) {  // to an unseen one
+  void add_mark(Index v, bool condition, Mark mark) {  // precondition: v is unseen
     state_[v] = static_cast<std::uint16_t>(state_[v] | (condition ? unsigned(mark) : 0u));
   }
-  // To unseen ones, of which these have a bit set.
+  // Marks those of four vertices as deleted, or as kept, that have a bit set. Precondition: they are unseen.
   void add_marks(const std::array<Index, 4>& v, unsigned deleted, unsigned kept) {
     static_assert(unsigned(Mark::deleted) == 1 && unsigned(Mark::kept) == 2);
     for (unsigned i = 0; i < 4; ++i)
@@ -96,15 +101,16 @@ class Workspace {
   }
   void set_mark(Index v, Mark mark) { state_[v] = static_cast<std::uint16_t>((state_[v] & ~3u) | unsigned(mark)); }
 
-  // The squared radius minus the squared distance to q by the stored centre; no number at infinity.
+  // Returns the squared radius minus the squared distance of q from the stored centre; NaN at infinity.
   double power(Index v, const Point& q) const { return vertices[v].radius - (vertices[v].center - q).squaredNorm(); }
   double power_bound(Index v) const { return bounds_[error_class_of(v)]; }
-  // Below this many squared radii of its own, the bound of a vertex at a place leaves the doubt in the input: its signs
-  // are uncertain then wherever the bound does not tell. 0 with exact signs.
+  // Returns the limit of the error bound, in squared radii, below which the noise of the input is what makes a sign
+  // uncertain. A vertex with such a bound has uncertain signs wherever the bound does not decide. The limit is 0 with
+  // exact signs.
   double doubtful_input() const { return exact_ ? 0 : good_center_; }
 #ifdef ORCHARD_FOUR_LANES
-  // What power() and power_bound() tell of four vertices, and their marks: a bit for each. far or near, where the bound
-  // tells; where it does not, input: the bound is below so many squared radii.
+  // What the marks, power() and power_bound() say about four vertices, with a bit for each. If the bound decides, `far`
+  // or `near` is set. If not, `input` is set if the bound is below `doubtful_input` squared radii.
   struct FourTests {
     struct Marks {
       unsigned unseen, kept;
@@ -112,23 +118,25 @@ class Workspace {
     unsigned far, near, input;
   };
   ORCHARD_AVX2 FourTests test_four(const std::array<Index, 4>& v, const FourVectors& q, double doubtful_input) const;
-  // A bit for each of four pairs of vertices whose spheres are their own ones and that of the first certainly does not
-  // hold q, or which have the same one.
+  // Returns a bit for each of four pairs of vertices that agree: their spheres are their own, and that of the first one
+  // certainly does not contain q; or both have the same sphere.
   ORCHARD_AVX2 unsigned agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
                                    const FourVectors& q) const;
-  // Of four finite vertices; a mask where the sphere is a neighbour's, or may be.
+  // The spheres of four finite vertices. `shared` is a mask of those whose sphere is, or may be, that of a neighbour.
   struct FourSpheres {
     __m256d radius, power_bound, shared;
   };
   ORCHARD_AVX2 FourSpheres spheres(const std::array<Index, 4>& v) const;
-  // As own_power_bound(), by the radii and their squares, in the same order of operations.
+  // Does the same as own_power_bound() for four vertices, given the radii and their squares, with the operations in the
+  // same order.
   ORCHARD_AVX2 static __m256d own_power_bounds(const FourVectors& center, __m256d squared_radius, __m256d radius,
                                                __m256d off);
 #endif
-  // Whether its sphere is a neighbour's, or may be.
+  // Returns whether the sphere of v is, or may be, that of a neighbour.
   bool shares_sphere(Index v) const { return (state_[v] & kShared) != 0; }
 
-  // Whether the vertex is nearer to q than to its forming points. At infinity: whether q lies beyond the hull's facet.
+  // Returns whether the vertex is nearer to q than to its forming points; at infinity, whether q lies beyond the facet
+  // of the hull.
   Sign sign(Index v, const Point& q) {
     const double p = power(v, q), bound = power_bound(v);
     if (p > bound) return Sign::positive;
@@ -136,79 +144,82 @@ class Workspace {
     return doubtful_sign(v, q, bound);
   }
 
-  // The same where the stored centre does not tell.
+  // Does the same for a vertex whose stored centre does not decide.
   Sign doubtful_sign(Index v, const Point& q, double bound);
 
-  // doubtful_sign() of those of four vertices that have a bit set, as far as it is soon told by their points: uncertain
-  // may stand for any.
+  // Returns doubtful_sign() for those of four vertices that have a bit set, as far as their points decide it quickly. A
+  // sign may be `uncertain` although doubtful_sign() would find it.
   std::array<Sign, 4> doubtful_signs(const std::array<Index, 4>& v, unsigned which, const Point& q) const;
 
-  // How deep a point in a sphere does no harm, unless many such are met on one line (see certificate.h).
+  // Returns the depth up to which a point inside a sphere is harmless, unless a line meets many such spheres (see
+  // certificate.h).
   double harmless_intrusion() const { return kIntrusion * scale(); }
-  // Whether the error bound of a placed vertex alone, of which input noise over a height is a part (see place()), shows
-  // that power over twice this height is below the harmless intrusion.
+  // Returns whether the error bound alone shows that a new vertex is wrong by less than the harmless intrusion. It is
+  // wrong by `power` divided by twice the height of the new point above the facet, and the bound includes the noise
+  // divided by that height (see place()).
   bool harmless(double power, const VoronoiVertex& placed, std::uint8_t error_class) const {
     return power * bounds_[error_class] < 16 * harmless_intrusion() * placed.radius * noise_;
   }
-  // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
-  // of that along the unbounded edge, which is the distance of q beyond the facet.
+  // Returns the dissertation's value of a deletion: the distance to the forming points minus the distance to q. At
+  // infinity, it is the limit of that along the unbounded edge, which is the distance of q beyond the facet.
   double value(Index v, const Point& q) const;
 
-  // The position of a vertex of the new point and three others a, b, c, given relative to it, where rounding permits a
-  // centre worth having, and the volume a . (b x c) is positive.
+  // Computes the position of the vertex of the new point and three others, a, b and c, which are given relative to it.
+  // Fails if rounding would make the centre useless, or if the volume a . (b x c) is not positive.
   Placing place(VoronoiVertex& vertex, std::uint8_t& error_class, const Point& new_point, const LengthedVector& a,
                 const LengthedVector& b, const LengthedVector& c) const;
-  // What place() comes to, for a sphere that placed_sphere() or place_four() placed with this noise. The class is set
-  // where the centre is worth anything.
+  // Returns the result of place() for a sphere that placed_sphere() or place_four() has placed with this noise. Sets
+  // `error_class` if the centre is of any use.
   Placing judge(const PlacedQuality& placed, std::uint8_t& error_class) const;
-  // What is good by these judge() calls good, and it is not poor, or may be where that does not matter.
+  // Returns limits for place_four(). A sphere within them is one that judge() calls good and that is not poor(); with
+  // `may_be_poor`, it may be poor.
   PlacingLimits placing_limits(bool may_be_poor) const {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     return {noise_, exact_ ? kShaken : kThin, exact_ ? kSharpCondition : kNone,
             exact_ || may_be_poor ? kNone : good_center_, bounds_[0]};
   }
-  // The same at infinity, beyond the facet of the new point, a and b.
+  // Does the same as place() for a vertex at infinity, beyond the facet of the new point, a and b.
   Placing place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
                             const LengthedVector& b) const;
-  // Whether the placed vertex, one of these, may be off by more than the input's noise.
+  // Returns whether the error of a placed vertex may be larger than what the noise of the input explains.
   bool poor(const VoronoiVertex& vertex, std::uint8_t error_class) const {
     return !(bounds_[error_class] < good_center_ * vertex.radius);
   }
   bool poor(Index v) const { return poor(vertices[v], error_class_of(v)); }
-  // For a vertex of the new point that forms a facet with v, if that puts it on the sphere of v as far as the input
-  // goes: takes over this very sphere and its error bound, so that all vertices of many points on one sphere have the
-  // same sign for the next. False, and no change, if not.
+  // Gives a new vertex, which has a common facet with v, exactly the sphere and the error bound of v if the new point
+  // is on that sphere up to the noise. So all vertices of many points on one sphere have the same sign for the next
+  // point. Otherwise, returns false and changes nothing.
   bool share_sphere(VoronoiVertex& vertex, std::uint8_t& error_class, Index v, const Point& new_point) const;
-  // Whether share_sphere() may be true.
+  // Returns false if share_sphere() certainly returns false.
   bool may_share_sphere(Index v, const Point& new_point) const {
     const double sphere = kSphereNoise * noise_ * std::sqrt(vertices[v].radius);
     return std::abs(power(v, new_point)) <= std::min(sphere, power_bound(v));  // not at infinity
   }
-  // A length far beyond the points, for vertices whose place is as good as infinite.
+  // Returns a length far beyond the points, for vertices that are practically at infinity.
   double far() const { return 1024 * scale(); }
   double scale() const { return std::sqrt(squared_scale_); }  // the size of the points' box, to a factor of two
-  // Copies the vertices of a finished diagram of `points`, with room for some more. Their error bounds are infinite
-  // until somebody asks: most vertices are never looked at again.
+  // Copies the vertices of a finished diagram of `points`, with room for `more` further ones. Their error bounds are
+  // infinite until settle() computes them, because most vertices are never looked at again.
   void adopt(std::span<const VoronoiVertex> finished, const Frame& frame, std::size_t more);
-  // Finds the error bound of an adopted vertex out. To be called before power() and power_bound() are relied on; sign()
-  // does it by itself.
+  // Computes the error bound of an adopted vertex. Call it before power() and power_bound() are relied on; sign() calls
+  // it itself.
   void settle(Index v) {
     if (!settled(v)) [[unlikely]]
       find_error_class(v);
   }
-  // Gives a finite vertex the sphere of its forming points, to some roundings; false if they have none.
+  // Gives a finite vertex the sphere of its forming points, up to a few roundings. Returns false if they have none.
   bool place_sharply(Index v);
-  void place_sharply(Index v, const Vector& center);  // which is relative to its first point
-  // The same for all that were made with exact signs and whose centres call for sharper arithmetic than they got then.
-  // The number of those that keep an approximate place.
+  void place_sharply(Index v, const Vector& center);  // with a centre that is given relative to its first point
+  // Does the same for all vertices that were made with exact signs and whose centres need more accurate arithmetic than
+  // they were computed with. Returns the number of those that keep an approximate position.
   std::size_t place_thin_vertices();
-  // The same with this sphere, by which the error of a power is no more than the bound.
+  // Gives a vertex this sphere, with `bound` as the bound on the error of a power.
   void place_by_bound(Index v, const Point& center, double squared_radius, double bound) {
     vertices[v].center = center;
     vertices[v].radius = squared_radius;
     set_error_class(v, error_class(bound), false, state_[v] & 3u);
   }
-  // Leaves it where it is, with the bound that follows from how far, at most, it is off that centre.
+  // Leaves a vertex where it is, and lowers its bound to the one that follows if its centre is off by at most `off`.
   void note_own_center(Index v, double off) {
     note_bound(v, own_power_bound(vertices[v].center, vertices[v].radius, off));
   }
@@ -237,14 +248,15 @@ class Workspace {
     vertices.emplace_back();
     state_.emplace_back();
   }
-  // Has the system map the room for so many vertices, by several threads: that takes longer than to fill it.
+  // Makes the system map the memory for `count` vertices, by several threads, because mapping takes longer than filling
+  // it.
   void bring_in(std::size_t count);
   void clear() {
     vertices.clear();
     state_.clear();
     free_vertices.clear();
   }
-  // Room for so many vertices, of which so many are likely to be used.
+  // Reserves memory for `count` vertices, of which about `used` will be used.
   void reserve(std::size_t count, std::size_t used);
 
  private:
@@ -268,27 +280,29 @@ class Workspace {
   static double rounding_of_power(const Point& center, double squared_radius);
 
   static constexpr unsigned kShared = 1u << 8;
-  std::vector<std::uint16_t> state_;                 // mark, error class above, kShared
+  std::vector<std::uint16_t> state_;                 // by vertex: the mark, the error class and kShared
   std::array<double, 64> bounds_{};                  // by error class
   double squared_scale_ = 1, per_min_bound_ = 1;     // powers of two, so that scaled input is treated exactly alike
   static constexpr double kThin = 0x1p-24;           // how far the noise may turn a facet of a good vertex, in radians
-  static constexpr double kShaken = 0.125;           // the same of one that is worth anything
-  static constexpr double kSharpCondition = 0x1p12;  // with exact signs: where a centre calls for sharper arithmetic
-  // How many times the noise a point may be off a sphere that it is taken to be on: the sphere's centre magnifies the
-  // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
-  // those within a torus do.
+  static constexpr double kShaken = 0.125;           // the same for a vertex whose centre is of any use
+  static constexpr double kSharpCondition = 0x1p12;  // with exact signs: above it, place_sharply() is needed
+  // How far a point may be off a sphere that it is taken to be on, in multiples of the noise. It is more than 1 because
+  // the centre of the sphere magnifies the noise of its own points. Larger values, up to the error bound, would give
+  // points to a sphere by chance where many spheres nearly agree, as in a torus.
   static constexpr double kSphereNoise = 0x1p12;
-  static constexpr double kFourPoints = 4;        // the noise of four points off a plane, in terms of the largest face
-  static constexpr double kWide = 0x1p8;          // a bound on a height is wide above this many times the noise
-  static constexpr double kIntrusion = 0x1p-36;   // harmless_intrusion() in terms of scale()
-  static constexpr double kMaxNoise = 0x1p-40;    // see too_noisy()
-  static constexpr double kSameCenter = 0x1p-45;  // of a sphere's size: some roundings, going in and out of the frame
+  static constexpr double kFourPoints = 4;       // the noise of a tetrahedron's volume, over noise times largest face
+  static constexpr double kWide = 0x1p8;         // a bound on a height is wide above this many times the noise
+  static constexpr double kIntrusion = 0x1p-36;  // harmless_intrusion(), as a fraction of scale()
+  static constexpr double kMaxNoise = 0x1p-40;   // see too_noisy()
+  // Centres nearer to each other than this fraction of the sphere's size are the same, up to the rounding of moving
+  // them into the frame and out of it.
+  static constexpr double kSameCenter = 0x1p-45;
   bool exact_ = false;
-  double noise_ = 0;        // how far off an input point may be
-  double good_center_ = 0;  // an error bound below this many squared radii
+  double noise_ = 0;        // a bound on the error of an input point
+  double good_center_ = 0;  // centres with an error bound below this many squared radii are good
 };
 
-// The smallest class whose bound is not below the given one.
+// Returns the smallest error class whose bound is at least the given one.
 inline std::uint8_t Workspace::error_class(double bound) const {
   const double ratio = bound * per_min_bound_;
   if (!(ratio < 0x1p120)) return kUnknownError;

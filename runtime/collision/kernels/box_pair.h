@@ -2,10 +2,11 @@
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
 
-// One node's ball and box against eight others': the axes along which they may be apart, of which gaps (node_box.cpp)
-// and times (box_time.cpp) are made. Rounding: placed_trees.cpp, (6).
+// The ball and the box of one node against those of eight others: the axes along which they may be apart. Gaps
+// (node_box.cpp) and times (box_time.cpp) are computed from these. The rounding is analysed in placed_trees.cpp, (6).
 namespace orchard::runtime::detail {
 
+// Eight boxes, or one box eight times.
 template <typename Kind>
 struct Boxes {
   using E = Eight<Kind>;
@@ -19,7 +20,7 @@ struct Boxes {
     return {E::all_of(b.center), E::all_of(b.n),  E::all_of(b.m),   E::all_of(third_normal(b)),
             E::all(b.height),    E::all(b.width), E::all(b.length), E::all(b.radius)};
   }
-  // `scale`: times this, lanes are in the other one's units.
+  // `scale` converts lengths of `b` to the units of the other box.
   ORCHARD_INLINE static Boxes of(const ObbNodeBlock& b, float scale) noexcept {
     const Floats unit = E::all(scale);
     const Vectors n = {E::at(b.nx), E::at(b.ny), E::at(b.nz)}, m = {E::at(b.mx), E::at(b.my), E::at(b.mz)};
@@ -34,6 +35,7 @@ struct Boxes {
   }
 };
 
+// Eight pairs of boxes.
 template <typename Kind>
 struct BoxPair {
   using E = Eight<Kind>;
@@ -52,12 +54,12 @@ struct BoxPair {
         distance(Kind::sqrt(E::dot(d, d))),
         ball_gap(distance - (q.radius + p.radius)) {}
 
-  ORCHARD_INLINE Vectors line() const noexcept {  // of the centres, from p to q
+  ORCHARD_INLINE Vectors line() const noexcept {  // the direction from p's centre to q's, of length 1
     const Floats far = distance + E::all(kMinDistance);
     return {d.x / far, d.y / far, d.z / far};
   }
-  // Calls take(gap, axis, along) for the axes of both boxes: `axis` is of length 1 to within 1e-6, and points from p to
-  // q where `along` is not below 0, else back. Returns the gap along the line of the centres.
+  // Calls take(gap, axis, along) for the axes of both boxes. `axis` is of length 1 to within 1e-6; it points from p to
+  // q if `along` is at least 0, otherwise from q to p. Returns the gap along the line of the centres.
   template <typename Take>
   ORCHARD_INLINE Floats each_axis(Take&& take) const noexcept {
     const Floats signed_n = E::dot(d, q.n), signed_m = E::dot(d, q.m), signed_l = E::dot(d, q.l);

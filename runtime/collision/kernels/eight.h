@@ -7,11 +7,12 @@
 #include "orchard/runtime/packed_tree.h"
 #include "simd/vector_support.h"
 
-// Eight numbers, and eight vectors, at a time: what the inner loops over spheres, boxes and triangles are made of.
-// `Kind` is PlainFloats, or of the compiler's vectors (simd/vector_support.h).
+// Operations on eight numbers, and on eight vectors, at a time. The inner loops over spheres, boxes and triangles
+// consist of them. `Kind` is PlainFloats or a kind that uses the compiler's vectors (simd/vector_support.h).
 namespace orchard::runtime::detail {
 
-// What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.
+// The kinds for PerMachine (machine.h): one for the widest vectors that there are, one for those that every machine
+// has.
 #ifdef ORCHARD_VECTORS
 using Widest = VectorFloats;
 using Base = FourFloats;
@@ -34,8 +35,8 @@ struct Eight {
 
   ORCHARD_INLINE static Floats at(const std::array<float, kBlockWidth>& from) noexcept { return load<Floats>(from); }
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
-  // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
-  // number, both give the second one.
+  // min() and max() use a comparison each: then compilers recognise a minimum and a maximum, which are single
+  // instructions. If an argument is not a number, both return the second one.
   ORCHARD_INLINE static Floats min(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
   ORCHARD_INLINE static Floats max(const Floats& a, const Floats& b) noexcept { return Kind::choose(b < a, a, b); }
   ORCHARD_INLINE static Floats abs(const Floats& a) noexcept { return max(a, -a); }
@@ -69,7 +70,7 @@ struct Eight {
   }
 };
 
-// Vectors that were made eight at a time, to be taken one by one.
+// Eight vectors that were computed together, for use one by one.
 template <typename Kind>
 struct OneByOne {
   using E = Eight<Kind>;
@@ -83,7 +84,7 @@ struct OneByOne {
   }
 };
 
-// Of all eight.
+// Returns the least of eight numbers.
 template <typename Kind>
 ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
   std::array<float, kBlockWidth> lanes;
@@ -94,7 +95,7 @@ ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
   return lanes[0];
 }
 
-// Which of eight distances are no more than `limit`, rounded to float, as bits, and the least of the others.
+// Which of eight distances are at most `limit`, rounded to float, as bits, and the least of the others.
 struct Within {
   std::uint32_t lanes;
   float beyond;
@@ -106,7 +107,7 @@ ORCHARD_INLINE Within within(const std::array<float, kBlockWidth>& distances, do
   return {~Base::bits(outside) & E::kAll, least_of<Base>(Base::choose(outside, distance, infinite))};
 }
 
-// The lanes that hold a triangle, as bits.
+// Returns the lanes that hold a triangle, as bits.
 ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
   std::uint32_t used = 0;
   for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;

@@ -8,8 +8,9 @@
 
 namespace orchard::runtime::detail {
 
-// The order of the children of a pair, the least last, where a stack is opened first; of equal ones the later one.
-// Each one's place comes from comparing all: sorting them takes branches that nothing foresees.
+// Sorts the children of a pair for a stack: the one with the least key comes last, so that it is popped first; of
+// children with equal keys, it is the later one. The place of each child comes from comparing it with all others,
+// because a sorting algorithm has branches that no processor predicts.
 struct FarthestFirst {
   std::uint32_t place[kBlockWidth], count = 0;
   float keys[kBlockWidth];
@@ -25,8 +26,8 @@ struct FarthestFirst {
   }
 };
 
-// Puts an entry on a stack for each of these lanes, the one of the least key last. `entry_of(lane)` makes an entry,
-// `key_of(entry, lane)` its key. Returns the size of the stack, which was `size`.
+// Pushes an entry for each lane of a bit mask on a stack, the one with the least key last. entry_of(lane) makes an
+// entry, and key_of(entry, lane) returns its key. `size` is the size of the stack before; the new size is returned.
 template <typename Entry, typename EntryOf, typename KeyOf>
 ORCHARD_INLINE std::size_t push_farthest_first(Entry* stack, std::size_t size, std::uint32_t lanes, EntryOf&& entry_of,
                                                KeyOf&& key_of) noexcept {

@@ -7,11 +7,12 @@
 #include "orchard/runtime/pose.h"
 #include "simd/vector_support.h"
 
-// The inner loop of the exact level and of distances: one node's ball and box against eight others'.
+// The inner loop of the exact level and of distance queries: the ball and the box of one node against those of eight
+// others.
 namespace orchard::runtime::detail {
 
-// What is inside a ball and an oriented box of the same centre; the third normal is the cross product of the others.
-// The fourth places are 0.
+// The intersection of a ball and an oriented box with the same centre. The normals of the box are n, m and their cross
+// product, and its half sizes along these are height, width and length. The fourth components are 0.
 struct NodeBox {
   alignas(16) std::array<float, 4> center, n, m;
   float radius, height, width, length;
@@ -36,7 +37,7 @@ inline std::array<float, 3> third_normal(const NodeBox& b) noexcept {
   return {n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]};
 }
 
-// Placement::rows and columns, once `turn` is known.
+// Sets Placement::rows and columns from `turn`.
 inline void find_rows(Placement& placement) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -45,7 +46,7 @@ inline void find_rows(Placement& placement) noexcept {
   }
 }
 
-// The sum of three vectors, times the components of `by`.
+// Returns the sum of three vectors, each times a component of `by`.
 ORCHARD_INLINE std::array<float, 4> combined(const std::array<std::array<float, 4>, 3>& vectors,
                                              const std::array<float, 4>& by) noexcept {
 #ifdef ORCHARD_VECTORS
@@ -60,7 +61,7 @@ ORCHARD_INLINE std::array<float, 4> combined(const std::array<std::array<float, 
 #endif
 }
 
-// Of the second tree, to the first one's frame.
+// Moves a box of the second tree to the first one's frame.
 ORCHARD_INLINE NodeBox moved(const NodeBox& b, const Placement& p) noexcept {
   const float s = p.scale;
   NodeBox result = {combined(p.columns, b.center),
@@ -74,30 +75,33 @@ ORCHARD_INLINE NodeBox moved(const NodeBox& b, const Placement& p) noexcept {
   return result;
 }
 
-// Of the first tree, to the second one's axes and origin, in the first one's units.
+// Moves a box of the first tree to the axes and the origin of the second one; lengths stay in the first one's units.
 ORCHARD_INLINE NodeBox moved_back(const NodeBox& b, const Placement& p) noexcept {
   const std::array<float, 4> from = {b.center[0] - p.translation[0], b.center[1] - p.translation[1],
                                      b.center[2] - p.translation[2], 0};
   return {combined(p.rows, from), combined(p.rows, b.n), combined(p.rows, b.m), b.radius, b.height, b.width, b.length};
 }
 
-// How far eight nodes are from the single one.
+// How far eight nodes are from a single one.
 struct BoxGaps {
   using Lanes = std::array<float, kBlockWidth>;
-  // Certified lower bound on the distance; negative: they may meet, the lower the deeper. Infinite where no node is.
+  // A certified lower bound on the distance. If it is negative, they may meet, and lower values mean deeper overlaps.
+  // Infinite for lanes without a node.
   alignas(32) Lanes gap;
   std::uint32_t used;     // bits: lanes that hold a node
   std::uint32_t meeting;  // bits: those with gap <= 0
 };
 
-// `scale`: times this, lanes are in the units of `single`, which is in their frame. `margin` (Placement::box_margin)
-// covers all rounding. The axes tried are those of both boxes (six of the fifteen of Gottschalk, Lin and Manocha 1996:
-// the products of edges seldom tell) and the line of the centres; no box reaches farther along one than its ball.
+// Computes the gaps between a single node and eight others. `single` is in the frame of the lanes; `scale` converts
+// lengths of the lanes to its units. `margin` (Placement::box_margin) covers all rounding. The axes that are tried are
+// those of both boxes (six of the fifteen of Gottschalk, Lin and Manocha 1996; the cross products of edges seldom
+// decide) and the line of the centres. Along each axis, a box reaches no farther than its ball.
 void box_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin, BoxGaps& result) noexcept;
 
-// Whether two nodes' boxes, each as its own tree stores it, are certainly apart by the same six axes in double, where
-// only the other box's reach is rounded: a wall's face tells from any distance. `relative`: the second tree's frame in
-// the first one's, as the exact test of triangles uses it.
+// Returns whether the boxes of two nodes, each as its own tree stores it, are certainly apart along one of the same six
+// axes. It computes in double, where only the reach of the other box is rounded, so that, for example, the face of a
+// large wall separates it from bodies anywhere along it. `relative` is the second tree's frame in the first one's, as
+// the exact test of triangles uses it.
 bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& relative) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -7,8 +7,8 @@
 
 #include "orchard/runtime/packed_tree.h"
 
-// A ray against eight ball slabs and against eight triangles at a time. Both may let through what the ray misses, but
-// keep everything that it meets.
+// Tests of a ray against eight ball slabs, and against eight triangles, at a time. Both are conservative: they may keep
+// nodes and triangles that the ray misses, but drop none that it meets.
 namespace orchard::runtime {
 
 // Eight boxes side by side, along the axes of a body's frame: nodes of a ray index. Every triangle below a node lies in
@@ -16,7 +16,7 @@ namespace orchard::runtime {
 struct alignas(32) BoxBlock {
   using Lanes = std::array<float, kBlockWidth>;
   std::array<Lanes, 3> low{}, high{};              // [coordinate]
-  std::array<std::uint32_t, kBlockWidth> child{};  // block of the children; with kLeafBit set, a block of triangles
+  std::array<std::uint32_t, kBlockWidth> child{};  // the block of the children or, with kLeafBit set, of triangles
 };
 static_assert(sizeof(BoxBlock) == 224 && alignof(BoxBlock) == 32);
 
@@ -24,9 +24,9 @@ static_assert(sizeof(BoxBlock) == 224 && alignof(BoxBlock) == 32);
 
 namespace orchard::runtime::detail {
 
-// The points origin + s direction, in the tree's frame, the direction of length 1: the true ray is nowhere farther than
-// `margin` from it, where |s| is at most twice the tree's size, the rounding of a ball slab's and a triangle's own test
-// included.
+// The points origin + s direction in the tree's frame, with a direction of length 1. If |s| is at most twice the tree's
+// size, the true ray is nowhere farther than `margin` from it. This includes the rounding of the tests of ball slabs
+// and of triangles.
 struct FloatRay {
   std::array<float, 3> origin{}, direction{};
   float margin = 0;
@@ -41,7 +41,7 @@ struct RayWalk {
     stack[0] = entry(from, first);
   }
 
-  // A node and the s at which the ray enters it, not too late: in one word, so that entries compare as their s do.
+  // A node and a lower bound on the s at which the ray enters it, in one word, so that entries compare as their s do.
   static constexpr std::uint64_t entry(float enter, std::uint32_t child) noexcept {
     return std::uint64_t{std::bit_cast<std::uint32_t>(enter)} << 32 | child;
   }
@@ -51,29 +51,30 @@ struct RayWalk {
   static constexpr std::uint32_t child_of(std::uint64_t entry) noexcept { return static_cast<std::uint32_t>(entry); }
 
   const FloatRay& ray;
-  float begin, end;      // the part of the ray that is looked at; `end` may be made smaller between two leaves
-  std::size_t size = 1;  // entries of the stack
+  float begin, end;      // the part of the ray that is searched; `end` may be made smaller between two leaves
+  std::size_t size = 1;  // the number of entries on the stack
   std::array<std::uint64_t, kRoom> stack;
 };
 
-// What a ray index holds.
+// The tree of a ray index.
 struct BoxTree {
   std::span<const BoxBlock> boxes;
   std::span<const TriangleBlock> leaves;
-  std::span<const float> sizes;  // of the leaves' boxes: the diagonals
+  std::span<const float> sizes;  // the diagonals of the leaves' boxes
 };
 
-// A ray along a slab or a plane: s is below 1e19 then, times this less than every margin.
+// Smaller slopes count as this, so that a ray along a slab or a plane has a finite s. As s is below 1e19, s times this
+// is less than every margin.
 inline constexpr float kMinSlope = 1e-12f;
 
 // A ray for the tests against boxes and their triangles.
 struct BoxRay {
   explicit BoxRay(const FloatRay& ray) noexcept;
 
-  std::array<float, 3> near_from, far_from, inverse;  // for the planes met first and last, across each axis
-  std::array<std::uint32_t, 3> near_side, far_side;   // where these are in a block, in bytes
-  std::array<std::uint8_t, 3> axis;                   // the last one is the ray's steepest
-  std::array<float, 2> shear;                         // along the ray, onto a plane across that one
+  std::array<float, 3> near_from, far_from, inverse;  // for the planes that are met first and last, across each axis
+  std::array<std::uint32_t, 3> near_side, far_side;   // the offsets of these planes in a block, in bytes
+  std::array<std::uint8_t, 3> axis;                   // the order of the axes; the last one is the ray's steepest
+  std::array<float, 2> shear;                         // projects along the ray to a plane across the steepest axis
 };
 
 inline BoxRay::BoxRay(const FloatRay& ray) noexcept {  // without branches: directions have no pattern
@@ -97,14 +98,14 @@ inline BoxRay::BoxRay(const FloatRay& ray) noexcept {  // without branches: dire
   for (std::size_t i = 0; i < 2; ++i) shear[i] = ray.direction[axis[i]] * inverse[axis[2]];
 }
 
-// Eight triangles at most, the bits of those that the ray's line may meet, and of those that it certainly meets.
+// Up to eight triangles, with bits for those that the line of the ray may meet, and for those that it certainly meets.
 struct RayLeaf {
   const TriangleBlock* block = nullptr;
   std::uint32_t some = 0, sure = 0;
 };
 
-// The next leaf on the ray of which triangles may be met, the nearest node of a block first; without a block where
-// there is none.
+// Return the next leaf of which the ray may meet triangles; RayLeaf::block is null if there is none. The nearest node
+// of a block comes first.
 RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept;
 RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept;
 

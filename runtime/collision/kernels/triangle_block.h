@@ -10,21 +10,22 @@
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
 
-// The inner loops of the exact level and of distances over triangles: eight against eight.
+// The inner loops over triangles of the exact level and of distance queries: eight against eight.
 namespace orchard::runtime::detail {
 
+// The triangles of two leaves.
 struct LeafPair {
-  const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second
-  const NodeBox &lane_box, &row_box;  // around them, both in the first tree's frame
+  const TriangleBlock &lanes, &rows;  // of the first tree, and of the second one, in its own frame
+  const NodeBox &lane_box, &row_box;  // the boxes of the leaves, both in the first tree's frame
 };
 
-// Finds the pairs that may share a point, and never leaves out one that does: calls visit(context, row, bits of lanes)
-// for each row that has any, in order, until it returns true, which is returned then.
+// Finds the pairs that may share a point, and never leaves out one that does. Calls visit(context, row, bits of lanes)
+// for each row that has such a pair, in order, until it returns true. Returns whether it did.
 using CandidateVisit = bool (*)(const void* context, std::uint32_t row, std::uint32_t lanes);
 bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit,
                       const void* context) noexcept;
 
-// The same pair by pair: calls take(lane, row) until it returns true.
+// Does the same pair by pair: calls take(lane, row) until it returns true.
 template <typename Take>
 bool each_candidate(const LeafPair& pair, const Placement& placement, const Take& take) noexcept {
   const auto visit = [](const void* context, std::uint32_t row, std::uint32_t lanes) {
@@ -37,19 +38,19 @@ bool each_candidate(const LeafPair& pair, const Placement& placement, const Take
   return visit_candidates(pair, placement, visit, &take);
 }
 
-// Certified lower bounds on the distances of triangles, below 0 where none is known; unused rows and lanes hold
-// anything.
+// Certified lower bounds on the distances of triangles. They are negative if nothing is known. Unused rows and lanes
+// have arbitrary values.
 struct TriangleGaps {
   alignas(32) std::array<std::array<float, kBlockWidth>, kBlockWidth> lower;  // [row][lane]
   std::array<std::uint32_t, kBlockWidth> near;  // [row], bits: lanes that are no farther than `reach`
-  float beyond;                                 // the least of all others, or infinite
+  float beyond;                                 // the least bound of all others, or infinity
 };
-// `direction`: one more axis to try, of length 1 at most. Rows that are all farther than `reach` get no closer bounds
-// than need be to see that.
+// Computes these bounds. `direction` is another axis to try, of length at most 1. A row of which all triangles are
+// farther than `reach` gets bounds that are just sharp enough to show this.
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept;
 // Calls take(lane, row, lower bound) for the triangles within reach, the nearest first, until it returns false. Returns
-// how far all others are apart, at least. Few are taken: no need to sort them all.
+// a lower bound on the distance of all other pairs. It does not sort them, because few are taken.
 template <typename Take>
 float each_nearest_first(const TriangleGaps& gaps, const Take& take) noexcept {
   const auto ordered = [](float value) -> std::uint64_t {  // compares as the float does; of 32 bits
@@ -74,6 +75,7 @@ float each_nearest_first(const TriangleGaps& gaps, const Take& take) noexcept {
   return gaps.beyond;
 }
 
+// Return the corners of a triangle, and the corners after they are moved by a pose.
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept;
 TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept;
 

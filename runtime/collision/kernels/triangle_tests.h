@@ -2,19 +2,19 @@
 #include "collision/kernels/eight.h"
 #include "collision/kernels/node_box.h"
 
-// What the inner loops over triangles (triangle_block.cpp, segment_block.cpp) are made of.
+// The tests that the inner loops over triangles (triangle_block.cpp, segment_block.cpp) consist of.
 //
-// Rounding. Ball slabs: see Placement::margin in placed_trees.cpp, (5). Triangles: any fixed vector serves as an axis,
-// so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
-// are more than the margin apart are apart. A projection a . (p - q) of points placed to within sigma is computed to
-// within |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, with |a|_1 the sum of |components|.
-// Such projections are of the third degree, or of the fourth: coordinates of 1e13 would overflow and those of 1e-13
-// underflow. So triangles are first multiplied by a power of two (Placement::unit) that makes every coordinate at most
-// 1 and changes no digit. What then underflows, or is dropped by a flush-to-zero mode, is at most 2^-126 an operation:
-// below 2^-120 a projection, which kMinRoom covers.
+// Rounding. For ball slabs, see placed_trees.cpp, (5). For triangles, any fixed vector can be an axis, so an axis
+// itself need not be accurate; only the projections to it must be. Let points be placed with an error of at most sigma.
+// Points that are more than the margin apart along a coordinate are apart. A projection a . (p - q) is computed with an
+// error of at most |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, where |a|_1 is the sum of the absolute
+// components. Such projections are of the third or fourth degree in the coordinates: coordinates of 1e13 would
+// overflow, and those of 1e-13 would underflow. So triangles are first multiplied by a power of two (Placement::unit),
+// which makes every coordinate at most 1 and changes no digit. What then underflows, or is dropped by a flush-to-zero
+// mode, is at most 2^-126 per operation, and below 2^-120 per projection, which kMinRoom covers.
 namespace orchard::runtime::detail {
 
-inline constexpr float kMinRoom = 0x1p-110f;  // to add to the room along an axis, in units of Placement::whole
+inline constexpr float kMinRoom = 0x1p-110f;  // is added to the room along an axis, in units of Placement::whole
 
 template <typename Kind>
 struct Extent {
@@ -33,7 +33,7 @@ struct Box {
   typename Eight<Kind>::Vectors low, high;
 };
 
-// Around eight triangles each, grown by `margin`.
+// Returns the boxes around eight triangles, enlarged by `margin`.
 template <typename Kind>
 ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3],
                                 const typename Kind::Floats& margin) noexcept {
@@ -43,7 +43,7 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
   return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
 }
 
-// Triangles that do not reach between two planes, as a mask.
+// Returns a mask of the triangles that are wholly outside of the slab between two parallel planes.
 template <typename Kind>
 ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3], const auto& normal, float height,
                                   const typename Kind::Floats& margin) noexcept {
@@ -54,7 +54,7 @@ ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3]
   return (limit < e.low) | (e.high < -limit);
 }
 
-// Triangles that do not reach into a box, as far as its planes tell, as a mask.
+// Returns a mask of the triangles that a plane of a box separates from it.
 template <typename Kind>
 ORCHARD_INLINE auto beyond_box(const typename Eight<Kind>::Vectors (&corner)[3], const NodeBox& b,
                                const typename Kind::Floats& margin) noexcept {
@@ -66,16 +66,16 @@ ORCHARD_INLINE auto beyond_box(const typename Eight<Kind>::Vectors (&corner)[3],
          beyond_planes<Kind>(from, third_normal(b), b.length, margin);
 }
 
-// The eight lanes' triangles, and their planes.
+// The triangles of eight lanes, and their planes.
 template <typename Kind>
 struct Lanes {
   using Vectors = typename Eight<Kind>::Vectors;
   Vectors corner[3], edge[3], normal;
-  typename Kind::Floats limit;  // own corners' heights over the plane
+  typename Kind::Floats limit;  // own_height() of each
 };
 
-// Those of the lanes in `left` that neither the plane of the triangle p, with its own corners' heights `limit`, nor
-// their own keeps apart from it, nor any product of two edges.
+// Returns the lanes of `left` whose triangles are not separated from the triangle p by the plane of p, by their own
+// planes, or along the cross product of two edges. `limit` is own_height() of p.
 template <typename Kind>
 ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& lanes,
                                        const typename Eight<Kind>::Vectors (&p)[3],
@@ -109,7 +109,8 @@ ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& la
   return left;
 }
 
-// Own corners' heights over the plane through the first one, at most: 0 but for rounding.
+// Returns a bound on the heights of a triangle's own corners over its plane through the first corner. They are 0 except
+// for rounding.
 template <typename Kind>
 ORCHARD_INLINE typename Kind::Floats own_height(const typename Eight<Kind>::Vectors& normal,
                                                 const typename Eight<Kind>::Vectors (&edge)[2],
@@ -145,7 +146,7 @@ ORCHARD_INLINE Extent<Kind> extent_along(const typename Eight<Kind>::Vectors& ax
   return extent<Kind>(E::dot(axis, t[0]), E::dot(axis, t[1]), E::dot(axis, t[2]));
 }
 
-// Between triangles, along the axes of a box.
+// Returns the largest gap between two boxes along a coordinate axis.
 template <typename Kind>
 ORCHARD_INLINE typename Kind::Floats gap_between(const Box<Kind>& a, const typename Eight<Kind>::Vectors& low,
                                                  const typename Eight<Kind>::Vectors& high) noexcept {
@@ -154,7 +155,7 @@ ORCHARD_INLINE typename Kind::Floats gap_between(const Box<Kind>& a, const typen
                 E::max(a.low.z - high.z, low.z - a.high.z));
 }
 
-// And along any axis: of the triangles `lane` from the triangle p.
+// Returns the gaps between the triangles `lane` and the triangle p along an axis.
 template <typename Kind>
 ORCHARD_INLINE typename Kind::Floats gap_along(const typename Eight<Kind>::Vectors& axis,
                                                const typename Eight<Kind>::Vectors (&lane)[3],

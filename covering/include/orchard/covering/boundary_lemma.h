@@ -35,10 +35,10 @@ struct TriangleCover {
 // Decides whether path regions cover a triangle, by the boundary lemma made sound for closed sets. The triangle is
 // covered if (i) one of its interior points lies in a path region and (ii) every circle's arc inside it lies, except
 // for finitely many points, in the interior of path regions of other balls.
-// Arcs that have to be covered are rounded outward and arcs that cover them inward, by a few roundings of the extent of
-// the balls and the triangle. So "covered" is a proof, and balls that are merely tangent to each other do not cover.
-// The triangle may be degenerate. O(n log n + k) for n balls of which k pairs have boxes that meet. Source:
-// dissertation 5.3.3, Appendix B.
+// Arcs that have to be covered are rounded outward, and arcs that cover them inward, by more than the rounding errors
+// of lengths as large as the balls and the triangle. So "covered" is a proof, and balls that are merely tangent to each
+// other do not cover. The triangle may be degenerate. O(n log n + k) for n balls of which k pairs have boxes that meet.
+// Source: dissertation 5.3.3, Appendix B.
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<const PathBall> balls);
 
 // Decides the same for the part of the triangle inside the closed ball `clip`; an empty part is covered. Witness and

@@ -20,8 +20,8 @@ struct DistanceTolerance {
 // Returns bounds on Hubbard's inaccuracy of a sphere: the largest distance to the surface from a point of the sphere's
 // surface that lies outside the solid, or 0 if there is none (dissertation 5.3.2, 5.3.5).
 // Lemma 5.1 holds for convex objects only, so this is a branch and bound over the sphere, which uses that the distance
-// is 1-Lipschitz. Lengths are in mesh units. The bounds differ by at most the tolerance, but by no less than 1e-6 R,
-// unless the work limit is reached. Throws InputError unless surface.solid().
+// is 1-Lipschitz. Lengths are in mesh units. Unless the work limit is reached, the bounds differ by at most the
+// tolerance, or by at most 1e-6 R if the tolerance is smaller than that. Throws InputError unless surface.solid().
 Bounds inaccuracy(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance = {});
 
 // Returns bounds on the largest distance to the solid from a point of the closed ball, or 0 if the ball lies inside.

@@ -10,8 +10,8 @@
 // Removes the insignificant parts of a medial axis, such as the spurs that noise on the surface causes.
 namespace orchard {
 
-// The options of prune(): for each measure of importance.h, the value below which places are removed. Several values
-// remove what each of them removes. The defaults remove nothing; larger values remove more.
+// The options of prune(): for each measure of importance.h, the value below which places are removed. If several values
+// are set, a place is removed if it is below one of them. The defaults remove nothing; larger values remove more.
 struct PruneOptions {
   double angle = 0;  // In radians, in [0, pi]. Foskey, Lin, Manocha 2003 call it the separation angle.
   double scale = 1;  // A factor, at least 1.
@@ -25,12 +25,12 @@ struct PruneOptions {
 
 // Removes faces from their free edges and edges from their free ends, the least significant first. All removals are
 // elementary collapses, so the result has the topology of `axis` for all options (as in Sud, Foskey, Manocha 2005).
-// What the options select but what has no free side stays.
+// A part that the options select stays if it has no free edge or end.
 // The triangles of a refined axis are cut along the line on which the measure has the given value, at exact balls; the
 // measure is interpolated linearly in between. The polygons of a Voronoi diagram and the triangles of an imported axis
-// go as a whole: by `angle` and `lambda` if their two points are seen at a smaller angle or are less than 2 lambda
-// apart, and by the other measures if that of a corner is below.
-// Throws InputError if an option is out of range. Deterministic. O(n log n), and the cost of importance().
+// are removed as a whole: for `angle`, if their two points are seen at a smaller angle; for `lambda`, if these points
+// are less than 2 lambda apart; and for the other measures, if the value of a corner is below the limit. Throws
+// InputError if an option is out of range. Deterministic. O(n log n), and the cost of importance().
 MedialAxis prune(const Surface& surface, const MedialAxis& axis, const PruneOptions& options,
                  const Progress& progress = {});
 

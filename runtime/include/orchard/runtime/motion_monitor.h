@@ -60,15 +60,15 @@ class MotionMonitor {
   std::size_t memory_bytes() const noexcept { return tracks_.capacity() * sizeof(Track); }
 
  private:
-  static constexpr std::size_t kParts = 4;  // of the window
-  struct Part {                             // of the window: the accelerations seen in it
+  static constexpr std::size_t kParts = 4;  // the number of parts of the window
+  struct Part {                             // a part of the window: the accelerations that were seen in it
     double begin = 0;
     double largest = 0;
     Vec3 sum{};
     std::uint32_t count = 0;
     Vec3 lower{1, 1, 1}, upper{-1, -1, -1};  // a box around their directions
     void add(const Vec3& acceleration) noexcept;
-    double min_along(const Vec3& way) const noexcept;  // of the directions' cosines with it, a lower bound
+    double min_along(const Vec3& way) const noexcept;  // a lower bound on the cosines of their angles with `way`
   };
   struct Track {
     // The bounds.
