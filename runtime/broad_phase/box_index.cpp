@@ -14,18 +14,21 @@ void BoxIndex::rebuild(std::size_t slots, std::size_t lines, const Executor& exe
   }
 }
 
-// In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
+// In the order of the timing wheel bodies are all over memory: their boxes are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
-  constexpr std::size_t kAhead = 16;
-  const auto is_inside = [&](std::size_t i) { return i < bodies.size() && places_[bodies[i]] == Place::inside; };
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (i + 2 * kAhead < bodies.size()) prefetch(&boxes_[bodies[i + 2 * kAhead]]);
-    if (is_inside(i + kAhead)) grid_.prepare_removal(boxes_[bodies[i + kAhead]]);
-    const BodyIndex body = bodies[i];
-    if (places_[body] == Place::oversized)
-      std::erase_if(oversized_, [=](const Oversized& o) { return o.body == body; });
-    if (is_inside(i)) grid_.remove(body, boxes_[body].whole());
-    places_[body] = Place::nowhere;
+  constexpr std::size_t kAtOnce = SweptGrid::kRemovedAtOnce;
+  std::array<BodyIndex, kAtOnce> inside;
+  for (; !bodies.empty(); bodies = bodies.subspan(std::min(kAtOnce, bodies.size()))) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < std::min(kAtOnce, bodies.size()); ++i) {
+      if (i + kAtOnce < bodies.size()) prefetch(&boxes_[bodies[i + kAtOnce]]), prefetch(&places_[bodies[i + kAtOnce]]);
+      const BodyIndex body = bodies[i];
+      const Place place = std::exchange(places_[body], Place::nowhere);
+      if (place == Place::oversized) std::erase_if(oversized_, [=](const Oversized& o) { return o.body == body; });
+      inside[count] = body;
+      count += place == Place::inside ? 1 : 0;
+    }
+    grid_.remove(std::span(inside).first(count), boxes_);
   }
 }
 

@@ -32,16 +32,15 @@ constexpr BodyIndex body_of(std::uint64_t entry) noexcept { return static_cast<B
 template <typename Of>
 ORCHARD_INLINE std::uint64_t zeros(const CellLine& line, const Of& of) noexcept {
   std::uint64_t bits = 0;
-#ifdef ORCHARD_VECTORS
-  using Words __attribute__((vector_size(32))) = std::uint64_t;
-  const auto half = [&](std::size_t at, const Words& as) ORCHARD_INLINE_LAMBDA {
-    Words entries;
-    std::memcpy(&entries, reinterpret_cast<const char*>(&line) + at, sizeof entries);
-    return (of(entries) - 1) & (as << kIdShift);  // the high bits of 0 - 1 are set
-  };
-  const Words all = half(0, Words{1, 2, 4, 8}) | half(32, Words{16, 32, 64, 0});
-  const auto both = __builtin_shufflevector(all, all, 0, 1) | __builtin_shufflevector(all, all, 2, 3);
-  bits = (both[0] | both[1]) >> kIdShift;
+#if defined(ORCHARD_VECTORS) && defined(__SSE2__)  // signs of two are one instruction
+  using Two __attribute__((vector_size(16))) = std::uint64_t;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Two entries;
+    std::memcpy(&entries, reinterpret_cast<const char*>(&line) + i * sizeof entries, sizeof entries);
+    const Two signs = -of(entries);  // set unless it is 0
+    bits |= static_cast<std::uint64_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(signs))) << 2 * i;
+  }
+  bits = ~bits & ((1u << kLineRoom) - 1);
 #else
   for (std::uint32_t i = 0; i < kLineRoom; ++i) bits |= std::uint64_t{of(line.entries[i]) == 0} << i;
 #endif
@@ -74,51 +73,67 @@ ORCHARD_INLINE std::uint64_t put(CellLine& line, std::uint64_t entry) noexcept {
   return full;
 }
 
-// Quanta along the three axes. They are below 2^31, so the top bits are free for comparing two of them at the same
-// time.
-struct Quanta {
-  std::uint64_t xy, z;
-
-  static constexpr std::uint64_t kTop = 0x8000000080000000u;
-  // Returns top bits that are set for the axes along which this is at most `other`.
-  ORCHARD_INLINE Quanta at_most(const Quanta& other) const noexcept {
-    return {(other.xy | kTop) - xy, (other.z | kTop) - z};
-  }
-  ORCHARD_INLINE static Quanta lower(const PackedAabb& box) noexcept {
-    return {box.lower[0] | std::uint64_t{box.lower[1]} << 32, box.lower[2]};
-  }
-  ORCHARD_INLINE static Quanta upper(const PackedAabb& box) noexcept {
-    const Quanta from = lower(box);
-    return {from.xy + ((box.lengths & 0xff) | std::uint64_t{box.lengths & 0xff00} << 24), from.z + (box.lengths >> 16)};
-  }
-};
-
 // A body's box in one of the cells that it takes. `steps` is how far that cell is from the box's first one, two bits
 // for each axis. A pair of boxes is reported in one cell only: the one with the lower corner of their intersection.
+// Quanta are below 2^31, so the difference of two has its top bit set if it is negative.
 class BoxInCell {
+#ifdef ORCHARD_VECTORS
+  using Numbers __attribute__((vector_size(16))) = std::uint32_t;
+  using Signed __attribute__((vector_size(16))) = std::int32_t;
+#else
+  using Numbers = std::array<std::uint32_t, 4>;
+#endif
+
  public:
-  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint32_t steps) noexcept : lower_(Quanta::lower(box)) {
-    const QuantizedAabb whole = box.whole();
-    PackedAabb first, last;
-    for (std::uint32_t d = 0; d < 3; ++d) {
-      const std::uint32_t step = steps >> 2 * d & 3, begin = ((box.lower[d] >> kQuantumBits) + step) << kQuantumBits;
-      first.lower[d] = step == 0 ? 0 : begin;  // in the box's first cell, the other box may begin before it
-      last.lower[d] = std::min(whole.upper[d], begin + (kQuanta - 1));
-    }
-    first_ = Quanta::lower(first);
-    last_ = Quanta::lower(last);
+  ORCHARD_INLINE BoxInCell(const PackedAabb& box, std::uint32_t steps) noexcept {
+    read(box, lower_, upper_);
+    const Numbers further = {steps & 3, steps >> 2 & 3, steps >> 4, 0};
+#ifdef ORCHARD_VECTORS
+    cell_ = (lower_ >> kQuantumBits) + further;
+#else
+    for (std::uint32_t d = 0; d < 3; ++d) cell_[d] = (lower_[d] >> kQuantumBits) + further[d];
+#endif
   }
   // Returns whether the other box, which has an entry in the cell, meets this one, and the lower corner of their
   // intersection is in the cell.
   ORCHARD_INLINE bool meets_here(const PackedAabb& other) const noexcept {
-    const Quanta from = Quanta::lower(other);
-    const Quanta after = first_.at_most(from), before = from.at_most(last_),
-                 above = lower_.at_most(Quanta::upper(other));
-    return (~(after.xy & before.xy & above.xy & after.z & before.z & above.z) & Quanta::kTop) == 0;
+    Numbers lower{}, upper{};
+    read(other, lower, upper);
+#ifdef ORCHARD_VECTORS
+    using Halves __attribute__((vector_size(16))) = std::uint64_t;
+    const auto larger = reinterpret_cast<Signed>(lower_) > reinterpret_cast<Signed>(lower);
+    const Numbers corner = larger ? lower_ : lower, apart = (upper_ - lower) | (upper - lower_);
+    const auto wrong = reinterpret_cast<Halves>((apart & 0x80000000u) | ((corner >> kQuantumBits) ^ cell_));
+    return (wrong[0] | wrong[1]) == 0;
+#else
+    std::uint32_t apart = 0, elsewhere = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      apart |= (upper_[d] - lower[d]) | (upper[d] - lower_[d]);
+      elsewhere |= (std::max(lower_[d], lower[d]) >> kQuantumBits) ^ cell_[d];
+    }
+    return (apart >> 31 | elsewhere) == 0;
+#endif
   }
 
  private:
-  Quanta lower_, first_, last_;  // its lower ends; the range of the lower ends of the boxes to report in this cell
+  // The fourth places are 0.
+  ORCHARD_INLINE static void read(const PackedAabb& box, Numbers& lower, Numbers& upper) noexcept {
+#ifdef ORCHARD_VECTORS
+    using Bytes __attribute__((vector_size(16))) = std::uint8_t;
+    using Shorts __attribute__((vector_size(16))) = std::uint16_t;
+    const auto all = load<Numbers>(box);
+    lower = all & Numbers{~0u, ~0u, ~0u, 0};
+    // The last four bytes, each as a number, in two steps that are one instruction each.
+    const auto shorts = reinterpret_cast<Shorts>(__builtin_shufflevector(
+        reinterpret_cast<Bytes>(all), Bytes{}, 8, 16, 9, 17, 10, 18, 11, 19, 12, 20, 13, 21, 14, 22, 15, 23));
+    upper = lower + reinterpret_cast<Numbers>(__builtin_shufflevector(shorts, Shorts{}, 4, 8, 5, 9, 6, 10, 7, 11));
+#else
+    const QuantizedAabb whole = box.whole();
+    for (std::size_t d = 0; d < 3; ++d) lower[d] = whole.lower[d], upper[d] = whole.upper[d];
+#endif
+  }
+
+  Numbers lower_{}, upper_{}, cell_{};
 };
 
 }  // namespace orchard::runtime::detail

@@ -76,31 +76,36 @@ ORCHARD_INLINE Numbers lasting_of(const Horns<Numbers>& p, const Numbers& limit)
   return least<Kind>(limit, Kind::choose(better, tangent, sure));
 }
 
-// Lemma 4.2 for one body of the pair: its sphere stays behind a plane, so that the other one has to cross it.
-double half_space_contact(const Motion& a, const Motion& b, double slack) noexcept {
-  const double length = std::sqrt(dot(a.half_space, a.half_space));
-  if (!(length > 0)) return 0;
-  const Vec3 d = (1 / length) * a.half_space;
-
-  const double gap = dot(b.position - a.position, d) - a.radius - b.radius - slack;
-  if (!(gap > 0)) return 0;
-  // How much of b's acceleration can point along -d, given its own half-space.
-  double share = 1;
-  const double other = std::sqrt(dot(b.half_space, b.half_space));
-  if (other > 0) {
-    const double cosine = dot(d, b.half_space) / other;
-    if (cosine < 0) share = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    share = std::min(1.0, share + 1e-7);  // the root of a rounding error
+// Lemma 4.2 for one body of the pair: its sphere stays behind a plane, so that the other one has to cross it. 0 if it
+// has no half-space.
+template <typename Kind, typename Numbers = typename Kind::Numbers>
+ORCHARD_INLINE Numbers half_space_contact(const MotionLanes<Numbers>& a, const MotionLanes<Numbers>& b,
+                                          const Numbers& slack) noexcept {
+  const Numbers zero = all_of<Kind>(0), one = all_of<Kind>(1);
+  const Numbers length = Kind::sqrt(dot_of(a.half_space, a.half_space)),
+                other = Kind::sqrt(dot_of(b.half_space, b.half_space)), unit = one / length;
+  std::array<Numbers, 3> d, way, speed;
+  for (std::size_t i = 0; i < 3; ++i) {
+    d[i] = unit * a.half_space[i], way[i] = b.position[i] - a.position[i], speed[i] = b.velocity[i] - a.velocity[i];
   }
-  const double slope = dot(b.velocity - a.velocity, d) - a.drift - b.drift;
-  return closing<OneDouble>(gap, slope, share * b.acceleration);
+  const Numbers gap = dot_of(way, d) - a.radius - b.radius - slack;
+  // How much of b's acceleration can point along -d, given its own half-space.
+  const Numbers cosine = dot_of(d, b.half_space) / other;
+  const Numbers sine = Kind::sqrt(most<Kind>(zero, one - cosine * cosine));
+  const Numbers some = least<Kind>(one, Kind::choose(cosine < zero, sine, one) + all_of<Kind>(1e-7));  // a root's error
+  const Numbers share = Kind::choose(other > zero, some, one);
+  const Numbers slope = dot_of(speed, d) - a.drift - b.drift;
+  const Numbers contact = closing<Kind>(gap, slope, share * b.acceleration);
+  return Kind::choose(both(length > zero, gap > zero), contact, zero);
 }
 
-// A contact at a time not after the limit, by the two bodies' half-spaces: not before both allow it, and infinity if
-// that is after the limit.
-double tightened(const Motion& a, const Motion& b, double contact, double limit, double slack) noexcept {
-  const double tight = std::max({contact, half_space_contact(a, b, slack), half_space_contact(b, a, slack)});
-  return tight <= limit ? tight : kNever;
+// A contact by the two bodies' half-spaces, too: not before both allow it, and infinity if that is after the limit.
+template <typename Kind, typename Numbers = typename Kind::Numbers>
+ORCHARD_INLINE Numbers tightened(const MotionLanes<Numbers>& a, const MotionLanes<Numbers>& b, const Numbers& contact,
+                                 const Numbers& limit, const Numbers& slack) noexcept {
+  const Numbers tight =
+      most<Kind>(contact, most<Kind>(half_space_contact<Kind>(a, b, slack), half_space_contact<Kind>(b, a, slack)));
+  return Kind::choose(tight <= limit, tight, all_of<Kind>(kNever));
 }
 
 // Of as many pairs as the kind has numbers. False if a motion may not be valid.
@@ -134,17 +139,11 @@ ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, cons
     p.radius = radii + slacks;
     time = Kind::choose(touch, time, contact_of<Kind>(p, squared > radii * radii, limit, precision.resolution));
   }
+  const auto tighter = both(both(half_spaces > 0, time <= limit), squared > radii * radii);  // few bodies have one
+  if (Kind::any(tighter)) time = Kind::choose(touch, time, tightened<Kind>(a, b, time, limit, slacks));
   std::memcpy(seconds, &time, sizeof time);
   const std::uint32_t touches = Kind::bits(touch);
-  std::array<double, Kind::kLanes> slack_of_each;
-  std::memcpy(&slack_of_each, &slacks, sizeof slacks);
-  const bool tighten = Kind::any(half_spaces > 0);  // few bodies have one
-  for (std::size_t i = 0; i < Kind::kLanes; ++i) {
-    touching[i] = (touches >> i & 1) != 0;
-    if (!tighten || touching[i] || !(seconds[i] <= limits[i])) continue;
-    const Motion &first = motions[2 * i], &second = motions[2 * i + 1];
-    seconds[i] = tightened(first, second, seconds[i], limits[i], slack_of_each[i]);
-  }
+  for (std::size_t i = 0; i < Kind::kLanes; ++i) touching[i] = (touches >> i & 1) != 0;
   return true;
 }
 
@@ -152,29 +151,26 @@ template <typename Kind>
 ORCHARD_INLINE bool find_all_times(std::span<const Motion> motions, std::span<const double> limits,
                                    const PairPrecision& precision, PairTimes& times) noexcept {
   constexpr std::size_t kLanes = Kind::kLanes;
-  std::array<Motion, 2 * kLanes> rest;
-  std::array<double, kLanes> rest_limits;
-  for (std::size_t i = 0; i < limits.size(); i += kLanes) {
-    const Motion* some = &motions[2 * i];
-    const double* until = &limits[i];
-    if (i + kLanes > limits.size()) {
-      rest = {};
-      rest_limits = {};
-      std::copy(motions.begin() + static_cast<std::ptrdiff_t>(2 * i), motions.end(), rest.begin());
-      std::copy(limits.begin() + static_cast<std::ptrdiff_t>(i), limits.end(), rest_limits.begin());
-      some = rest.data();
-      until = rest_limits.data();
-    }
-    if (!find_times<Kind>(some, until, precision, &times.seconds[i], &times.touching[i])) return false;
+  std::size_t i = 0;
+  for (; i + kLanes <= limits.size(); i += kLanes) {
+    if (!find_times<Kind>(&motions[2 * i], &limits[i], precision, &times.seconds[i], &times.touching[i])) return false;
   }
-  return true;
+  if (i == limits.size()) return true;
+  std::array<Motion, 2 * kLanes> rest{};
+  std::array<double, kLanes> rest_limits{};
+  std::copy(motions.begin() + static_cast<std::ptrdiff_t>(2 * i), motions.end(), rest.begin());
+  std::copy(limits.begin() + static_cast<std::ptrdiff_t>(i), limits.end(), rest_limits.begin());
+  return find_times<Kind>(rest.data(), rest_limits.data(), precision, &times.seconds[i], &times.touching[i]);
 }
 
 }  // namespace
 
+static MotionLanes<double> one_of(const Motion& m) noexcept {
+  return OneDouble::motions([&m](std::size_t) { return &m; });
+}
+
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept {
-  const auto one = [](const Motion& m) { return OneDouble::motions([&](std::size_t) { return &m; }); };
-  return slack_of<OneDouble>(one(a), one(b), duration);
+  return slack_of<OneDouble>(one_of(a), one_of(b), duration);
 }
 
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {
@@ -198,7 +194,7 @@ double earliest_contact(const Motion& a, const Motion& b, double limit, double r
   const detail::HornPair pair{b.position - a.position, b.velocity - a.velocity, a.radius + b.radius + slack,
                               a.drift + b.drift, a.acceleration + b.acceleration};
   const double contact = detail::horn_contact(pair, limit, resolution);
-  return contact <= limit ? detail::tightened(a, b, contact, limit, slack) : detail::kNever;
+  return detail::tightened<detail::OneDouble>(detail::one_of(a), detail::one_of(b), contact, limit, slack);
 }
 
 }  // namespace orchard::runtime

@@ -36,16 +36,17 @@ bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, Outcome& outco
 
 // What has been updated ahead is of the next step: this one has been reported already.
 void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure, Outcome& outcome) const {
-  const PairEvent next{event.pair, state_.windows.round(), !ahead_ || sure > 0};
+  const Round round = state_.windows.round();
+  const bool parting = !ahead_ || sure > 0;
   if (ahead_) {
-    if (next.parting) outcome.ahead.push_back(event.pair);
+    if (parting) outcome.ahead.push_back(event.pair);
   } else if (!event.parting) {
     outcome.touching.push_back(event.pair);
-    if (within_budget_) outcome.doubtful.push_back(next);
+    if (within_budget_) outcome.doubtful.emplace_back(event.pair, round, parting);
   }
   // A pair with a body that waits is tested at the next step in any case.
   const bool waits = state_.windows[event.pair.a].end == kUpdateDue || state_.windows[event.pair.b].end == kUpdateDue;
-  if (sure + 1 < left && !waits) outcome.later.push_back({next, now + sure + 1});
+  if (sure + 1 < left && !waits) outcome.later.emplace_back(event.pair, round, parting, now + sure + 1);
 }
 
 // For how many whole steps both motions hold, until the next update of one of them, or until a bound expires. Written
@@ -79,7 +80,7 @@ void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon,
   if (horizon.left <= 1) return;
   Step ahead = seconds <= limit ? std::max<Step>(1, clock.steps_before(seconds, now)) : kNeverStep;
   if (horizon.safe < horizon.left) ahead = std::min(ahead, std::max<Step>(0, horizon.safe) + 1);
-  if (ahead < horizon.left) outcome.later.push_back({{event.pair, state_.windows.round()}, now + ahead});
+  if (ahead < horizon.left) outcome.later.emplace_back(event.pair, state_.windows.round(), false, now + ahead);
 }
 
 // Those with a motion that is not valid leave; returns how many stay, at the front.

@@ -23,7 +23,9 @@ class NearPairs {
   // The results of tests. They have no effect before take(), so that each of the jobs that run at the same time can
   // have an outcome of its own.
   struct Outcome {
-    struct Later {
+    struct Later {  // made where it stays: copies of small parts would wait for their writes
+      Later(const BodyPair& pair, Round round, bool parting, Step at) noexcept
+          : event(pair, round, parting), step(at) {}
       PairEvent event;
       Step step;
     };

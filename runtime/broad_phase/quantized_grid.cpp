@@ -15,11 +15,29 @@ constexpr double kRoundingQuanta = 0x1p-8;          // covers some roundings of 
 }  // namespace
 
 void BoxBlock::store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept {
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    PackedAabb& box = to[places[i]];
-    box.lower = {lower[0][i], lower[1][i], lower[2][i]};
-    box.lengths = lengths[i];
+  std::size_t i = 0;
+#ifdef ORCHARD_VECTORS  // four at a time, transposed
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  for (; i + 4 <= places.size(); i += 4) {
+    const auto at = [&](const auto& row) {
+      Four result;
+      std::memcpy(&result, &row[i], sizeof result);
+      return result;
+    };
+    const Four x = at(lower[0]), y = at(lower[1]), z = at(lower[2]);
+    const Four lengths = (at(upper[0]) - x) | (at(upper[1]) - y) << 8 | (at(upper[2]) - z) << 16;
+    const Four xy[2] = {__builtin_shufflevector(x, y, 0, 4, 1, 5), __builtin_shufflevector(x, y, 2, 6, 3, 7)};
+    const Four rest[2] = {__builtin_shufflevector(z, lengths, 0, 4, 1, 5),
+                          __builtin_shufflevector(z, lengths, 2, 6, 3, 7)};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Four even = __builtin_shufflevector(xy[k], rest[k], 0, 1, 4, 5),
+                 odd = __builtin_shufflevector(xy[k], rest[k], 2, 3, 6, 7);
+      std::memcpy(&to[places[i + 2 * k]], &even, sizeof even);
+      std::memcpy(&to[places[i + 2 * k + 1]], &odd, sizeof odd);
+    }
   }
+#endif
+  for (; i < places.size(); ++i) to[places[i]] = PackedAabb(get(i));
 }
 
 QuantizedGrid::QuantizedGrid(const Vec3& origin, const Vec3& velocity, double cell_size, double slack,
@@ -67,10 +85,6 @@ ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
     boxes.around.upper[d] = static_cast<std::uint32_t>(most);
   }
   boxes.more_cells = more_cells;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto length = [&](std::size_t d) ORCHARD_INLINE_LAMBDA { return boxes.upper[d][i] - boxes.lower[d][i]; };
-    boxes.lengths[i] = length(0) | length(1) << 8 | length(2) << 16;
-  }
 }
 
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box

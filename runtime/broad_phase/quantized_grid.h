@@ -50,8 +50,7 @@ inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & 
 // A block of boxes, stored by coordinate so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
-  std::array<std::uint32_t, kBlock> lengths;  // as in PackedAabb
-  QuantizedAabb around;                       // contains all boxes of the block
+  QuantizedAabb around;      // contains all boxes of the block
   std::uint32_t more_cells;  // the bitwise or, over all boxes and axes, of the number of cells beyond the first one
 
   QuantizedAabb get(std::size_t i) const noexcept {
@@ -64,7 +63,6 @@ struct BoxBlock {
       lower[d][i] = box.lower[d];
       upper[d][i] = box.upper[d];
     }
-    lengths[i] = PackedAabb(box).lengths;
   }
 };
 

@@ -279,9 +279,10 @@ void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb
   insertion.hand_over();
 }
 
-// Mostly one or two, which cannot be predicted.
-template <typename Use>
-ORCHARD_INLINE void SweptGrid::for_each_line(const QuantizedAabb& box, const Use& use) const noexcept {
+// Appends the lines of a box. A body takes one or two cells along most axes, which no processor predicts, so there are
+// no branches: what does not count is written, too. The lines begin to be loaded.
+ORCHARD_INLINE SweptGrid::Removal* SweptGrid::list_removals(BodyIndex body, const QuantizedAabb& box,
+                                                            Removal* end) const noexcept {
   std::uint32_t axes = 0, more = 0, first = 0;
   for (std::uint32_t d = 0; d < 3; ++d) {
     const std::uint32_t cell = box.lower[d] >> kQuantumBits, beyond = (box.upper[d] >> kQuantumBits) - cell;
@@ -289,11 +290,20 @@ ORCHARD_INLINE void SweptGrid::for_each_line(const QuantizedAabb& box, const Use
     more |= beyond >> 1;
     first += cell * factors_[d];
   }
-  if (more != 0) return for_each_cell(box, [&](const Cell&, std::uint32_t line) ORCHARD_INLINE_LAMBDA { use(line); });
-  for (std::uint32_t corner = axes;; corner = (corner - 1) & axes) {
-    use((first + corner_lines_[corner]) & mask_);
-    if (corner == 0) return;
+  const auto add = [&](std::uint32_t line, bool counts) ORCHARD_INLINE_LAMBDA {
+    *end = {body, line};
+    prefetch(&lines_[line]);
+    end += counts ? 1 : 0;
+  };
+  if (more != 0) {
+    for_each_cell(box, [&](const Cell&, std::uint32_t line) ORCHARD_INLINE_LAMBDA { add(line, true); });
+    return end;
   }
+  const std::uint32_t corners = axes < 4 ? 4 : 8;
+  for (std::uint32_t corner = 0; corner < corners; ++corner) {
+    add((first + corner_lines_[corner]) & mask_, (corner & ~axes) == 0);
+  }
+  return end;
 }
 
 // After the last one of a chain.
@@ -336,15 +346,16 @@ ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Over
   overflow.free = freed;
 }
 
-void SweptGrid::remove(BodyIndex body, const QuantizedAabb& box) noexcept {
+void SweptGrid::remove(std::span<const BodyIndex> bodies, std::span<const PackedAabb> boxes) noexcept {
+  constexpr std::size_t kMostLines = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis;  // of a body
+  std::array<Removal, kRemovedAtOnce * kMostLines + 1> removals;
+  Removal* end = removals.data();
+  for (const BodyIndex body : bodies) end = list_removals(body, boxes[body].whole(), end);
   per_machine([&]() ORCHARD_INLINE_LAMBDA {
-    for_each_line(box, [&](std::uint32_t line)
-                           ORCHARD_INLINE_LAMBDA { remove_from(lines_[line], body, overflow_[part_of(line)]); });
+    for (const Removal* removal = removals.data(); removal != end; ++removal) {
+      remove_from(lines_[removal->line], removal->body, overflow_[part_of(removal->line)]);
+    }
   });
-}
-
-void SweptGrid::prepare_removal(const PackedAabb& box) const noexcept {
-  for_each_line(box.whole(), [&](std::uint32_t line) { prefetch(&lines_[line]); });
 }
 
 }  // namespace orchard::runtime::detail

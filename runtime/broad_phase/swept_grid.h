@@ -95,8 +95,9 @@ class SweptGrid {
   // visits of each are to another part.
   void insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
               GridCounts& counts);
-  void prepare_removal(const PackedAabb& box) const noexcept;  // prefetches the lines of the box
-  void remove(BodyIndex body, const QuantizedAabb& box) noexcept;
+  // Removes at most kRemovedAtOnce bodies. `boxes` is indexed by body.
+  static constexpr std::size_t kRemovedAtOnce = 16;
+  void remove(std::span<const BodyIndex> bodies, std::span<const PackedAabb> boxes) noexcept;
 
   // Calls use(body) for each entry in the cells of the box, and in other cells that share their lines. A body may occur
   // several times.
@@ -126,8 +127,11 @@ class SweptGrid {
       }
     }
   }
-  template <typename Use>
-  void for_each_line(const QuantizedAabb& box, const Use& use) const noexcept;
+  struct Removal {
+    BodyIndex body;
+    std::uint32_t line;
+  };
+  Removal* list_removals(BodyIndex body, const QuantizedAabb& box, Removal* end) const noexcept;
   struct Overflow {
     std::vector<CellLine> lines;
     std::uint32_t free = 0;  // 1 + the index of the first free line, or 0

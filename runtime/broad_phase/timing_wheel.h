@@ -47,8 +47,8 @@ class TimingWheel {
   }
   // Returns whether a large share of the entries may be void, if there are so many bodies. Then tidy() pays.
   bool crowded(std::size_t bodies) const noexcept {
-    constexpr std::size_t kBytesPerBody = 8;  // so few bytes do not matter
-    return bytes_used() > std::max(kBytesPerBody * bodies, tidied_bytes_ + tidied_bytes_ / 2);
+    constexpr std::size_t kBytesPerBody = 16;  // so few bytes do not matter
+    return bytes_used() > std::max(kBytesPerBody * bodies, 2 * tidied_bytes_);
   }
   // Drops void entries after `now`: bodies for which end_of(body) is another step or that occur twice, and events for
   // which valid(event) is false. end_of(body) returns a reference, to which it writes meanwhile. Runs of bodies stay,

@@ -65,23 +65,19 @@ WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept
 // False if a motion has no time of expiry.
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
                              std::span<const Motion> motions) const noexcept {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const bool alike = !state_.pool.statics.any();  // those whose bounds expire at the same time, if they do
-  bool all = true;
-  double known = kNone, duration = 0;  // the expiry of the body before
-  Step end = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double expiry = motions[i].expiry;
-    const bool at_rest = rests(motions[i]);
-    if (expiry != known || at_rest) {
-      end = state_.windows.end_of(block.from, bodies[i], motions[i]);
-      duration = end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
-      known = alike && !at_rest ? expiry : kNone;
-      all = all && !std::isnan(expiry);
-    }
-    block.ends[i] = end;
-    block.durations[i] = duration;
+  std::uint64_t other = 0;  // bits of expiries that differ
+  for (const Motion& motion : motions) {
+    other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
   }
+  const bool alike = other == 0 && std::isfinite(motions[0].expiry) && !state_.pool.statics.any();
+  bool all = true;
+  for (std::size_t i = 0; i < (alike ? 1 : bodies.size()); ++i) {
+    const Step end = state_.windows.end_of(block.from, bodies[i], motions[i]);
+    block.ends[i] = end;
+    block.durations[i] = end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
+    all = all && !std::isnan(motions[i].expiry);
+  }
+  if (alike) block.ends.fill(block.ends[0]), block.durations.fill(block.durations[0]);
   return all;
 }
 

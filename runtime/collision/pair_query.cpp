@@ -190,19 +190,18 @@ void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
 
 // From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.
 Vec3 PairQuery::triangle_normal() const noexcept {
-  const auto normal_of = [](const detail::TrianglePoints& t) {
-    Vec3 n = detail::cross(detail::minus(t[1], t[0]), detail::minus(t[2], t[0]));
-    const double size = length(n);
-    for (double& component : n) component = size > 0 ? component / size : 0;
-    return n;
+  const auto unit = [](Vec3 v, double least) {  // 0 if it is no longer than that
+    const double size = length(v);
+    for (double& component : v) component = size > least ? component / size : 0;
+    return v;
+  };
+  const auto normal_of = [unit](const detail::TrianglePoints& t) {
+    return unit(detail::cross(detail::minus(t[1], t[0]), detail::minus(t[2], t[0])), 0);
   };
   const auto of_first = normal_of(detail::points_of(trees_.first().tree, triangles_.found().first));
   const auto of_second =
       rotate(trees_.relative(), normal_of(detail::points_of(trees_.second().tree, triangles_.found().second)));
-  Vec3 way = detail::minus(of_first, of_second);
-  const double size = length(way);
-  for (double& component : way) component = size > kMinOpposition ? component / size : 0;
-  return way;
+  return unit(detail::minus(of_first, of_second), kMinOpposition);
 }
 
 Verdict PairQuery::verdict() const noexcept {

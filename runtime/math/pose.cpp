@@ -29,7 +29,8 @@ bool is_rigid(const Pose& pose) noexcept {
   for (const double t : pose.translation) {
     if (!std::isfinite(t)) return false;
   }
-  return detail::rotates(pose);
+  const bool in_range = pose.scale >= 1 / kScaleLimit && pose.scale <= kScaleLimit;
+  return in_range && defect_of(pose.rotation) <= detail::kMaxRotationDefect;
 }
 
 std::optional<Pose> made_rigid(const Pose& pose) noexcept {

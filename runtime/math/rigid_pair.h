@@ -26,13 +26,6 @@ ORCHARD_INLINE T rotation_defect(At&& r) noexcept {
 
 inline constexpr double kMaxRotationDefect = kRigidTolerance * kRigidTolerance;
 
-inline bool scale_in_range(double scale) noexcept { return scale >= 1 / kScaleLimit && scale <= kScaleLimit; }
-
-inline bool rotates(const Pose& pose) noexcept {
-  const double defect = rotation_defect<double>([&pose](std::size_t i) { return pose.rotation[i]; });
-  return defect <= kMaxRotationDefect && scale_in_range(pose.scale);
-}
-
 // Two poses, number by number.
 struct PoseLanes {
   Two rotation[9], translation[3], scale;

@@ -36,12 +36,10 @@ struct Turns {
   }
 };
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE void find_times(const NodeBox& single, const ObbNodeBlock& lanes, float scale, const Closing& closing,
                                float margin, BoxTimes& result) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const Boxes<Kind> p = Boxes<Kind>::of(single), q = Boxes<Kind>::of(lanes, scale);
   const Vectors v = E::all_of(closing.velocity);
   const Turns<Kind> single_turns(closing.single, p, closing.rounding), lane_turns(closing.lanes, q, closing.rounding);

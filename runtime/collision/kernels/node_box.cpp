@@ -55,11 +55,9 @@ bool parted_by_axis(const WideBox& of, const WideBox& other, double error) noexc
   return false;
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats>
 ORCHARD_INLINE void find_gaps(const NodeBox& single, const ObbNodeBlock& lanes, float scale, float margin,
                               BoxGaps& result) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
   const Boxes<Kind> p = Boxes<Kind>::of(single), q = Boxes<Kind>::of(lanes, scale);
   const BoxPair<Kind> pair(p, q);
   Floats gap = pair.ball_gap;

@@ -28,12 +28,10 @@ using RayEntries = std::array<float, kBlockWidth>;
 
 // The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it
 // meets between begin and end.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE std::uint32_t find_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
                                             RayEntries& entries) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const Vectors d = E::all_of(ray.direction);
   const Vectors n = {load<Floats>(obb_nodes.nx), load<Floats>(obb_nodes.ny), load<Floats>(obb_nodes.nz)};
   const Vectors to = E::minus({load<Floats>(obb_nodes.x), load<Floats>(obb_nodes.y), load<Floats>(obb_nodes.z)},
@@ -59,22 +57,19 @@ ORCHARD_INLINE std::uint32_t find_obb_nodes(const FloatRay& ray, const ObbNodeBl
 }
 
 // From the products of each two neighbouring corners, off by less than `room`: on which side of the edges the line is.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE RayLeaf told_apart(const TriangleBlock& block, const typename Kind::Floats& p,
                                   const typename Kind::Floats& q, const typename Kind::Floats& r,
                                   const typename Kind::Floats& room) noexcept {
-  using E = Eight<Kind>;
   const auto least = E::min(E::min(p, q), r), most = E::max(E::max(p, q), r);
   const std::uint32_t some = E::kAll & ~Kind::bits((least < -room) & (room < most));
   if (some == 0) return {&block, 0, 0};
   return {&block, some & used_lanes(block), Kind::bits((room < least) | (most < -room))};
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const Vectors d = E::all_of(ray.direction);
   // From a point of the line near the first triangle, so that products are as small as the leaf.
   float at = 0;

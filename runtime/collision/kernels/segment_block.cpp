@@ -41,13 +41,11 @@ struct EdgeWay {
   }
 };
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::array<float, 3>& q,
                                       const TriangleBlock& block, const Placement& placement,
                                       SegmentGaps& lower) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const Floats unit = E::all(placement.unit), zero = E::all(0.0f);
   const Vectors begin = E::all_of(p), w = E::times(E::minus(E::all_of(q), begin), unit);
   const auto corner = [&](std::size_t k) ORCHARD_INLINE_LAMBDA -> Vectors {

@@ -22,20 +22,17 @@ ORCHARD_INLINE std::uint32_t leaves_of(const SiblingBlock& block) noexcept {
   return leaves;
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Eight<Kind>::Vectors centers_of(const SiblingBlock& block, bool move,
                                                         const Placement& placement) noexcept {
-  using E = Eight<Kind>;
   const typename E::Vectors centers = {E::at(block.x), E::at(block.y), E::at(block.z)};
   return move ? E::move(placement, centers) : centers;
 }
 
 // Of the pairs that meet, those whose errors or depths may give a lower separation bound than the best one so far.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats>
 ORCHARD_INLINE std::uint64_t find_improving(const BlockPair& pair, const Placement& placement, const LevelState& level,
                                             const BlockHits& hits) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
   const SiblingBlock &rows = *pair.rows, &lanes = *pair.lanes;
   const float row_scale = pair.lanes_are_second ? 1.0f : placement.scale;
   const Floats zero = E::all(0.0f), lane_scale = E::all(pair.lanes_are_second ? placement.scale : 1.0f);
@@ -55,12 +52,10 @@ ORCHARD_INLINE std::uint64_t find_improving(const BlockPair& pair, const Placeme
   return hits.meeting & improving;
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, LevelState& level,
                          BlockHits& hits) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const SiblingBlock &rows = *pair.rows, &lanes = *pair.lanes;
   const float lane_scale = pair.lanes_are_second ? placement.scale : 1,
               row_scale = pair.lanes_are_second ? 1 : placement.scale;

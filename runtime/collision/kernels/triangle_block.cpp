@@ -11,10 +11,9 @@ namespace orchard::runtime::detail {
 namespace {
 
 // For each row the lanes whose boxes, grown by the margin, meet its own; all of them together.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t lanes, const Box<Kind>& row_box,
                                        std::uint32_t rows, std::uint32_t (&near)[kBlockWidth]) noexcept {
-  using E = Eight<Kind>;
   const OneByOne<Kind> lows(row_box.low), highs(row_box.high);
   std::uint32_t found = 0;
   for (; rows != 0; rows &= rows - 1) {
@@ -28,12 +27,10 @@ ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t 
   return found;
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE bool find_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit,
                                     const void* context) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
   const Floats reach = E::all(placement.margin);
   const std::uint32_t lanes_left = E::kAll & ~Kind::bits(beyond_box<Kind>(lane, pair.row_box, reach));
@@ -71,11 +68,10 @@ ORCHARD_INLINE bool find_candidates(const LeafPair& pair, const Placement& place
 }
 
 // Between all triangles of the lanes and all of the rows, along a direction.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Eight<Kind>::Floats gap_of_all(const typename Eight<Kind>::Vectors& u,
                                                        const typename Eight<Kind>::Vectors (&lane)[3],
                                                        const typename Eight<Kind>::Vectors (&row)[3]) noexcept {
-  using E = Eight<Kind>;
   const Extent<Kind> lanes = extent_along<Kind>(u, lane), rows = extent_along<Kind>(u, row);
   return E::max(E::all(least_of<Kind>(rows.low)) + E::all(least_of<Kind>(-lanes.high)),
                 E::all(least_of<Kind>(lanes.low)) + E::all(least_of<Kind>(-rows.high)));
@@ -83,13 +79,11 @@ ORCHARD_INLINE typename Eight<Kind>::Floats gap_of_all(const typename Eight<Kind
 
 // Axes are normalised in float, so they are longer than 1 by less than 4 u, and a projection of D is off by less than
 // 12 u D and the points' own errors: twice the margin is plenty.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
                                        const Placement& placement, const std::array<float, 3>& direction, float reach,
                                        TriangleGaps& result) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const Floats unit = E::all(placement.unit), whole = E::all(placement.whole);
   const auto lane_corner = [&](std::size_t k)
                                ORCHARD_INLINE_LAMBDA -> Vectors { return E::times(E::corner(lanes, k), unit); };

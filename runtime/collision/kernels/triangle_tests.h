@@ -21,10 +21,9 @@ struct Extent {
   typename Kind::Floats low, high;
 };
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE Extent<Kind> extent(const typename Kind::Floats& a, const typename Kind::Floats& b,
                                    const typename Kind::Floats& c) noexcept {
-  using E = Eight<Kind>;
   return {E::min(E::min(a, b), c), E::max(E::max(a, b), c)};
 }
 
@@ -44,10 +43,9 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
 }
 
 // Returns a mask of the triangles that are wholly outside of the slab between two parallel planes.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3], const auto& normal, float height,
                                   const typename Kind::Floats& margin) noexcept {
-  using E = Eight<Kind>;
   const typename E::Vectors n = E::all_of(normal);
   const Extent<Kind> e = extent<Kind>(E::dot(n, from[0]), E::dot(n, from[1]), E::dot(n, from[2]));
   const auto limit = E::all(height) + margin;
@@ -55,10 +53,9 @@ ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3]
 }
 
 // Returns a mask of the triangles that a plane of a box separates from it.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE auto beyond_box(const typename Eight<Kind>::Vectors (&corner)[3], const NodeBox& b,
                                const typename Kind::Floats& margin) noexcept {
-  using E = Eight<Kind>;
   const typename E::Vectors center = E::all_of(b.center);
   const typename E::Vectors from[3] = {E::minus(corner[0], center), E::minus(corner[1], center),
                                        E::minus(corner[2], center)};
@@ -76,14 +73,12 @@ struct Lanes {
 
 // Returns the lanes of `left` whose triangles are not separated from the triangle p by the plane of p, by their own
 // planes, or along the cross product of two edges. `limit` is own_height() of p.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
+          typename Vectors = typename E::Vectors>
 ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& lanes,
                                        const typename Eight<Kind>::Vectors (&p)[3],
                                        const typename Eight<Kind>::Vectors& normal, const typename Kind::Floats& limit,
                                        const typename Kind::Floats& margin) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
   const Vectors from[3] = {E::minus(lanes.corner[0], p[0]), E::minus(lanes.corner[1], p[0]),
                            E::minus(lanes.corner[2], p[0])};
   const Extent<Kind> over_row = extent<Kind>(E::dot(normal, from[0]), E::dot(normal, from[1]), E::dot(normal, from[2]));
@@ -111,25 +106,22 @@ ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& la
 
 // Returns a bound on the heights of a triangle's own corners over its plane through the first corner. They are 0 except
 // for rounding.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Kind::Floats own_height(const typename Eight<Kind>::Vectors& normal,
                                                 const typename Eight<Kind>::Vectors (&edge)[2],
                                                 const typename Kind::Floats& margin) noexcept {
-  using E = Eight<Kind>;
   return E::max(E::abs(E::dot(normal, edge[0])), E::abs(E::dot(normal, edge[1]))) +
          (E::one_norm(normal) * margin + E::all(kMinRoom));
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Eight<Kind>::Vectors normalised(const typename Eight<Kind>::Vectors& v) noexcept {
-  using E = Eight<Kind>;
   const typename E::Floats size = Kind::sqrt(E::dot(v, v)) + E::all(kMinDistance);
   return {v.x / size, v.y / size, v.z / size};
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Eight<Kind>::Vectors normal_of(const typename Eight<Kind>::Vectors (&t)[3]) noexcept {
-  using E = Eight<Kind>;
   return normalised<Kind>(E::cross(E::minus(t[1], t[0]), E::minus(t[2], t[0])));
 }
 
@@ -139,28 +131,25 @@ ORCHARD_INLINE typename Eight<Kind>::Vectors middle_of(const typename Eight<Kind
   return {(t[0].x + t[1].x + t[2].x) * third, (t[0].y + t[1].y + t[2].y) * third, (t[0].z + t[1].z + t[2].z) * third};
 }
 
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE Extent<Kind> extent_along(const typename Eight<Kind>::Vectors& axis,
                                          const typename Eight<Kind>::Vectors (&t)[3]) noexcept {
-  using E = Eight<Kind>;
   return extent<Kind>(E::dot(axis, t[0]), E::dot(axis, t[1]), E::dot(axis, t[2]));
 }
 
 // Returns the largest gap between two boxes along a coordinate axis.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Kind::Floats gap_between(const Box<Kind>& a, const typename Eight<Kind>::Vectors& low,
                                                  const typename Eight<Kind>::Vectors& high) noexcept {
-  using E = Eight<Kind>;
   return E::max(E::max(E::max(a.low.x - high.x, low.x - a.high.x), E::max(a.low.y - high.y, low.y - a.high.y)),
                 E::max(a.low.z - high.z, low.z - a.high.z));
 }
 
 // Returns the gaps between the triangles `lane` and the triangle p along an axis.
-template <typename Kind>
+template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Kind::Floats gap_along(const typename Eight<Kind>::Vectors& axis,
                                                const typename Eight<Kind>::Vectors (&lane)[3],
                                                const typename Eight<Kind>::Vectors (&p)[3]) noexcept {
-  using E = Eight<Kind>;
   const auto project = [&](const auto& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
   const Extent<Kind> l = extent<Kind>(project(lane[0]), project(lane[1]), project(lane[2]));
   const Extent<Kind> r = extent<Kind>(E::all(0.0f), project(p[1]), project(p[2]));
