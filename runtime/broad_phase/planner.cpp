@@ -86,10 +86,14 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   if (sample_.empty()) survey_next_ = 0;
   std::array<BodyIndex, kSample> bodies;
   std::size_t count = 0;
-  for (std::size_t body = survey_next_; sample_.size() + count < wanted; body += std::max<std::size_t>(1, stride)) {
+  for (std::size_t body = survey_next_; sample_.size() + count < wanted;) {
     while (body < pool_.slots() && !pool_.alive(static_cast<BodyIndex>(body))) ++body;
     if (body >= pool_.slots()) break;
     bodies[count++] = static_cast<BodyIndex>(body);
+    // Steps of one size would find a single row of bodies that were added row by row, such as those of a pile.
+    const double golden = 0.6180339887498949 * static_cast<double>(sample_.size() + count);
+    const double step = 2 * static_cast<double>(stride) * (golden - std::floor(golden));
+    body += static_cast<std::size_t>(std::max(1.0, step));
   }
   for (std::size_t done = 0; done < count;) {
     survey_next_ = bodies[done];
