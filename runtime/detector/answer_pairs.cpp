@@ -37,7 +37,8 @@ void PairAnswerer::place(const CachedPair& record, std::uint32_t part_a, std::ui
   places_->place(record.bodies.b, part_b, pair.b);
 }
 
-// Two bodies of one tree each, as most are: what the last step found is where this one begins.
+// Answers a pair of bodies of one tree each, as most pairs are. If their spheres meet, it begins with what the last
+// step found.
 void PairAnswerer::answer_coherently(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   record.parts = {};
   record.sweep.impact = false;
@@ -68,8 +69,8 @@ void PairAnswerer::answer(CachedPair& record, Step now, AnswerScratch& scratch) 
   if (record.sweep.possible) sweep(record, now, scratch, kNoLimit);
 }
 
-// Two parts that touched at the step before, where a triangle `guess` may have been nearest. Where others of these
-// shapes have met is no more than a guess.
+// Answers for two parts that touched at the step before. `guess` is the triangle that may be nearest. `record.trees`
+// may remember where two other parts of the same shapes met, because it is used as a first guess only.
 Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, const PartPair& pair,
                                    AnswerScratch& scratch) noexcept {
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
@@ -83,7 +84,7 @@ Verdict PairAnswerer::answer_again(CachedPair& record, std::uint32_t guess, cons
   return verdict;
 }
 
-// Of two parts of bodies, what is new.
+// Answers for two parts about which nothing is remembered. If they are trees that meet, the record remembers where.
 Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, AnswerScratch& scratch) noexcept {
   const Verdict verdict = answer_exactly(query_of(scratch.workspace.narrow), pair, scratch.work);
   record.met = verdict.answer == Answer::yes && !pair.simple();
@@ -93,8 +94,8 @@ Verdict PairAnswerer::answer_new(CachedPair& record, const PartPair& pair, Answe
   return verdict;
 }
 
-// Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
-// know how they are turned. Whether all answers are certain.
+// Compares all pairs of parts except `but`, until two of them touch. Most pairs are decided by their spheres, before
+// the poses of the parts are needed. Returns whether all answers are certain.
 bool PairAnswerer::answer_others(CachedPair& record, const std::optional<Parts>& but, PartPair& pair,
                                  AnswerScratch& scratch) const noexcept {
   const BodyPair& bodies = record.bodies;
@@ -127,7 +128,8 @@ bool PairAnswerer::answer_others(CachedPair& record, const std::optional<Parts>&
   return certain;
 }
 
-// Bodies of several parts: those that touched mostly still do, and then no other part is asked.
+// Answers any other pair. Two parts that touched at the last step mostly still touch, so they are compared first; if
+// they do, no other parts are compared.
 void PairAnswerer::answer_parts(CachedPair& record, Step now, AnswerScratch& scratch) const noexcept {
   const std::uint64_t before = scratch.work;
   PartPair pair;
@@ -170,7 +172,7 @@ void PairAnswerer::sweep(CachedPair& record, Step now, AnswerScratch& scratch, s
       if (scratch.work < most) {
         swept = detail::sweep(scratch.workspace, from, to, most, scratch.work);
       } else {
-        swept.answer = Answer::maybe;  // not looked at yet
+        swept.answer = Answer::maybe;  // not searched: the limit of work is reached
       }
       if (swept.answer == Answer::no) continue;
       earliest = std::min(earliest, swept.from);

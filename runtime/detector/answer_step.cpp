@@ -1,6 +1,6 @@
 #include "detector/detector_state.h"
 
-// The pairs of a step, matched with those of the step before, answered and reported.
+// Matches the pairs of a step with those of the step before, answers them and reports the events.
 namespace orchard::runtime {
 
 using detail::ActivePairs;
@@ -11,7 +11,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   const double begun = budget.clock();
   matcher.gather(step, now);
   matcher.match([&](CachedPair& pair) {
-    // What the filters exclude is no pair of the broad phase's any more.
+    // The broad phase no longer reports a pair that the filters exclude, so such a pair comes here, too.
     const bool there = matcher.is_there(pair) && matcher.allowed(pair);
     return reporter.part(pair, there, there && matcher.has_jumped(pair), step);
   });
@@ -37,7 +37,8 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   ++frame.steps;
 }
 
-// What belongs to this thread: the application's own filter, and the ends of touches.
+// Does what only the calling thread may do: asks the application's own filter, and ends touches of bodies that were
+// teleported.
 void Detector::State::begin_pairs(const ActivePairs& active, Step step) {
   reporter.begin_step(active);
   const bool jumps = std::exchange(world.any.jump, false);
@@ -47,7 +48,8 @@ void Detector::State::begin_pairs(const ActivePairs& active, Step step) {
   }
 }
 
-// With time set aside for what follows, and half of the rest for sweeps if there are any.
+// Answers the active pairs within the budget. It sets aside the time that the work after the answers takes and, if any
+// pair has to be swept, half of what is left then.
 void Detector::State::answer_within(const ActivePairs& active, Step step, double begun, StepBudget& budget,
                                     Frame& frame) {
   detail::PairCache& cache = matcher.cache();

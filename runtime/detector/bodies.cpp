@@ -34,7 +34,7 @@ bool is_valid(const BodyState& state) noexcept {
   return is_rigid(state.pose) && runtime::is_valid(motion_of(state, 0)) && state.angular_speed >= 0;
 }
 
-// Rotations are rotations to kRigidTolerance only.
+// The factor allows for rotations, which are exact to kRigidTolerance only.
 double reach_of(const PartRecord& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
 
 double reach_of(std::span<const PartRecord> parts) noexcept {
@@ -43,7 +43,7 @@ double reach_of(std::span<const PartRecord> parts) noexcept {
   return reach;
 }
 
-// Around the middle of a box around the parts' spheres.
+// For one part, the middle is the centre of its sphere. For several parts, it is that of the box around their spheres.
 void Body::find_middle() noexcept {
   constexpr double kWorthIt = 0.97;  // of the radius around the origin
   const std::span<const PartRecord> all = parts();
@@ -57,7 +57,7 @@ void Body::find_middle() noexcept {
   const Vec3 middle = all.size() == 1 ? all[0].center : 0.5 * (low + high);
   double reach = 0;
   for (const PartRecord& part : all) reach = std::max(reach, length(part.center - middle) + part.reach);
-  // As in reach_of(); the middle itself is off by what rotations are.
+  // The factor is that of reach_of(). The other term allows for the error of the rotation, which displaces the middle.
   reach = reach * (1 + 1e-11) + 4 * kRigidTolerance * length(middle);
   if (!(reach < kWorthIt * extent.reach)) return;
   extent.middle = middle;
@@ -65,17 +65,18 @@ void Body::find_middle() noexcept {
   extent.off_middle = length(middle) * (1 + 1e-11);
 }
 
-// The middle goes as the origin does, but for what it turns about that.
+// The middle moves as the origin does, except for its rotation about the origin, which is added to the drift.
 Motion Body::motion(double time_step, bool by_middle) const noexcept {
   Motion motion = motion_of(state, extent.reach * state.pose.scale + options.continuous_speed * time_step);
   if (by_middle) {
     motion.position = transform(state.pose, extent.middle);
     motion.radius = extent.middle_reach * state.pose.scale;
-    // And what the middle's place may be off by from step to step, which is much where it is near the world's origin.
-    constexpr double kRounding = 1e-11;  // of the way from the body's origin
+    // The drift also allows for the rounding error of the middle from step to step. If the middle is near the world's
+    // origin, that error is large for coordinates of its size.
+    constexpr double kRounding = 1e-11;  // of the distance from the body's origin
     motion.drift += (state.angular_speed + kRounding / time_step) * extent.off_middle * state.pose.scale;
   }
-  if (!valid) motion.radius = -1;  // refused
+  if (!valid) motion.radius = -1;  // the broad phase refuses it
   return motion;
 }
 
@@ -110,7 +111,7 @@ void BodyTable::forget_invalidated() noexcept {
   if (any_invalidated_.exchange(false)) std::fill(invalidated_.begin(), invalidated_.end(), std::uint8_t{0});
 }
 
-// A sum that is not rounded down, so that it never says too little.
+// The sum is rounded up, so that it remains an upper bound.
 void BodyTable::add_turn(BodyIndex body, double way) noexcept {
   constexpr double kUp = 1 + 0x1p-52;
   if (way == 0) return;
@@ -146,7 +147,7 @@ void BodyTable::move_part(BodyIndex index, std::size_t part, const PartRecord& t
   const double way = length(to.center - now.center) + (pose_change(now.local, to.local) + rounding) * shape.reach;
   add_turn(index, way * body.state.pose.scale);
   now = to;
-  if (body.several.empty()) return moved(index, body.state.pose);  // several have the body's origin as their middle
+  if (body.several.empty()) return moved(index, body.state.pose);  // the centre of several parts is the origin
   now.sphere = {transform(body.state.pose, to.center), to.reach * body.state.pose.scale};
 }
 

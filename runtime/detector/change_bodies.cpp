@@ -4,7 +4,7 @@
 #include "detector/detector_state.h"
 #include "math/vector_functions.h"
 
-// Bodies come, change and go between two steps.
+// Bodies are added, changed and removed between two steps.
 namespace orchard::runtime {
 
 using detail::Body;
@@ -47,7 +47,8 @@ Body& Detector::State::add(BodyId id, std::span<const BodyPart> parts, const Bod
   return body;
 }
 
-// A sweep relies on what origins do between steps, and not on middles, nor on where parts are at a step.
+// Sweeps rely on the motion of the origins between two steps. So middles are given up, and so is the search by parts,
+// which compares the spheres of one step only.
 void Detector::State::rely_on_origins() {
   world.any.continuous = true;
   part_pairs.choose_none();
@@ -73,7 +74,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
   });
 }
 
-// As a static body, which is where its state says.
+// A static body does not move, so the drift that motion() adds for a middle is removed.
 bool Detector::State::place_static(Body& body, const Pose& pose) {
   const Pose before = std::exchange(body.state.pose, pose);
   Motion place = body.motion(world.clock.time_step, body.has_middle());
@@ -100,7 +101,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
     body.is_static = true;
     s.world.half_space_times.forget(id.index);
     if (!s.place_static(body, pose)) {
-      remove(id);  // too large
+      remove(id);  // the body is too large
       return kNoBody;
     }
     s.world.any.static_body = true;
@@ -163,7 +164,7 @@ bool Detector::move_static(BodyId id, const Pose& pose) {
 }
 
 bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
-  constexpr double kStretchAhead = 1 + 0x1p-4;  // so that the broad phase need not be told of each step on the way
+  constexpr double kStretchAhead = 1 + 0x1p-4;  // so that a reach that grows slowly does not cancel bounds at each step
   State& s = *state_;
   return s.change(id, [&](Body& body) {
     if (part >= body.parts().size()) return false;
@@ -176,7 +177,7 @@ bool Detector::set_local(BodyId id, std::size_t part, const Pose& local) {
     const bool stretches = reach > before.reach, grows = stretches || body.has_middle();
     if (stretches) body.extent.reach = kStretchAhead * reach;
     body.forget_middle();
-    // What is too large is told before anything has changed.
+    // A body that has become too large is refused before anything else has changed.
     if (!(body.extent.reach <= kMaxNumber) ||
         (grows && body.is_static && !s.place_static(body, Pose(body.state.pose)))) {
       body.extent = before;
@@ -260,7 +261,7 @@ void Detector::set_pair_filter(PairFilter filter) {
   });
 }
 
-// Where the detector keeps the states.
+// The following functions are for detectors that keep the states of bodies.
 
 BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptions& options) {
   if (!state_->world.kept_states || !detail::is_valid(state)) return kNoBody;

@@ -3,7 +3,7 @@
 #include "detector/detector_state.h"
 #include "math/vector_functions.h"
 
-// How a detector is made, its shapes, and what it says of itself.
+// The construction of a detector, its shapes, and the functions that return facts about it.
 namespace orchard::runtime {
 
 namespace {
@@ -15,7 +15,9 @@ bool is_valid_option(const DetectorOptions& options) noexcept {
 }
 
 BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
-  constexpr std::size_t kMinBodies = 4096;  // fewer than elsewhere: answers leave little in the caches anyway
+  // This is less than the default. Answering pairs leaves little of the broad phase in the caches, so one thread has no
+  // advantage there.
+  constexpr std::size_t kMinBodies = 4096;
   return {.time_step = options.time_step,
           .start = options.start,
           .position_slack = options.position_slack,
@@ -29,7 +31,8 @@ detail::World::World(const DetectorOptions& wanted)
     : options(wanted),
       clock{is_valid_option(wanted) ? wanted.start : 0, is_valid_option(wanted) ? wanted.time_step : 1} {}
 
-// Jobs of the broad phase ask for motions; they may do so at once where all answers are there already.
+// The jobs of the broad phase ask for motions. They run at the same time only if the states of all bodies have been
+// sampled already; otherwise, they run one after another.
 Detector::State::State(StateSource source, const DetectorOptions& wanted)
     : world(wanted),
       broad([this](double time, std::span<const BodyIndex> asked,

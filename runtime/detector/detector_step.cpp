@@ -1,7 +1,7 @@
 #include "detector/detector_state.h"
 #include "execution/guarded.h"
 
-// A call of step(): the steps up to a time, each with the broad phase first, then the pairs that it reports.
+// A call of step() runs the steps up to a time. Each step first advances the broad phase, and then answers the pairs.
 namespace orchard::runtime {
 
 using detail::kNeverStep;
@@ -68,7 +68,7 @@ double Detector::State::next_time(bool steps_left) const noexcept {
                                                             : world.clock.time(std::max(next, answered + 1)));
 }
 
-// Nothing was sampled at the steps that are left out, so that no sweep of a continuous body begins there.
+// The steps that are left out sample no states, so no sweep of a continuous body begins at them.
 void Detector::State::leave_out_before(Step end, Frame& frame) {
   if (end <= world.answered + 1) return;
   frame.unfinished.skipped = static_cast<std::uint64_t>(end - 1 - world.answered);
@@ -76,12 +76,14 @@ void Detector::State::leave_out_before(Step end, Frame& frame) {
   world.answered = end - 1;
 }
 
-// The steps up to `last` that have anything. `end`: the last step of this call, among which the budget is shared.
+// Runs the steps up to `last` that may have pairs. `end` is the last step of this call. Each step gets an equal share
+// of the budget that is left.
 void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& frame) {
   const detail::Clock& clock = world.clock;
   while (world.answered < last && !reporter.full()) {
-    // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's, nor is what
-    // is found by parts.
+    // While there are pairs, which may part at any step, or bodies that are searched by parts, every step is run.
+    // Otherwise, the broad phase may advance to its next pair, but not beyond the step at which a body may reach a
+    // half-space, because it does not know half-spaces.
     const Step following = world.answered + 1;
     const bool under_way = !matcher.idle();
     const Step stop = std::min(last, under_way ? following : std::max(following, world.half_space_times.next()));
@@ -103,7 +105,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
   }
 }
 
-// The broad phase up to a step, with half of the budget at most.
+// Advances the broad phase up to a step, with at most half of the budget.
 Advance Detector::State::advance(Step stop, StepBudget& share) {
   const double time = world.clock.time(stop);
   const std::uint64_t before = broad.motions_asked();

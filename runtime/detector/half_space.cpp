@@ -7,7 +7,7 @@
 #include "math/vector_functions.h"
 #include "tree/tree_nodes.h"
 
-// Shapes against half-spaces: the least height of a shape over the plane decides.
+// Tests of shapes against half-spaces. The least height of the shape over the plane decides.
 namespace orchard::runtime::detail {
 
 SurfacePoint lowest_point(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept {
@@ -20,9 +20,9 @@ SurfacePoint lowest_point(const Shape& shape, const Pose& pose, const HalfSpace&
 
 namespace {
 
-// Of a tree's surface what is in the plane n . x + offset = 0, in the tree's frame and relative to its origin: calls
-// visit(place, triangle) for the ends of the lines in which triangles cut the plane, and for corners in it. `below`:
-// for all corners below it instead.
+// Calls visit(place, triangle) for the points at which the surface of a tree meets the plane n . x + offset = 0: the
+// ends of the lines in which triangles cut it, and corners of triangles in it. The plane is in the tree's frame,
+// relative to the tree's origin. If `below` is set, the points are all corners in the plane or below it instead.
 template <typename Visit>
 void each_cut_point(const TreeView& tree, const Vec3& n, double offset, bool below, Visit&& visit) noexcept {
   const double slack = 1e-12 * (tree.bounding_radius + std::fabs(offset));
@@ -65,7 +65,8 @@ struct CutPoint {
   std::uint32_t triangle = kNoTriangle;
 };
 
-// How high the lowest corner of the point's triangle is along the normal, or the point itself.
+// Returns the height, along the normal, of the lowest corner of the point's triangle; if it has none, that of the
+// point.
 double lowest_of(const Shape& shape, const Pose& pose, const HalfSpace& half, const CutPoint& point) noexcept {
   if (point.triangle == kNoTriangle) return dot(half.normal, point.place);
   double low = std::numeric_limits<double>::infinity();
@@ -77,8 +78,8 @@ double lowest_of(const Shape& shape, const Pose& pose, const HalfSpace& half, co
   return low;
 }
 
-// The outermost points of where the surface cuts the plane, seen along its normal; of a body that is wholly below it,
-// of all corners.
+// Finds the outermost points, seen along the normal, of those at which the surface cuts the plane. If there are none,
+// the body is wholly below the plane, and these are the outermost of all its corners.
 std::uint32_t cut_points(const Shape& shape, const Pose& pose, const HalfSpace& half,
                          std::array<CutPoint, kMaxContactPoints>& points) noexcept {
   const Vec3 normal = rotate(inverse(Pose{.rotation = pose.rotation}), half.normal), origin = shape.tree.origin;
@@ -96,7 +97,8 @@ std::uint32_t cut_points(const Shape& shape, const Pose& pose, const HalfSpace& 
   return count;
 }
 
-// Below each end of a capsule that is in the half-space; one point of a sphere.
+// Finds the lowest point of the sphere around each end of a capsule, if it is in the half-space; for a sphere, one
+// point.
 std::uint32_t end_points(const Shape& shape, const Pose& pose, const HalfSpace& half,
                          std::array<CutPoint, kMaxContactPoints>& points) noexcept {
   const double radius = shape.radius * pose.scale;
@@ -115,7 +117,7 @@ void half_space_contact(const Shape& a, const Pose& pose, const HalfSpace& b, Ma
   std::array<CutPoint, kMaxContactPoints> points;
   const std::uint32_t count =
       a.kind == ShapeKind::round ? end_points(a, pose, b, points) : cut_points(a, pose, b, points);
-  if (count == 0) return;  // by rounding only the verdict's lowest point reaches the plane
+  if (count == 0) return;  // because of rounding, only the lowest point of the verdict reaches the plane
   manifold.count = count;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double deep = b.offset - lowest_of(a, pose, b, points[i]);

@@ -7,19 +7,21 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// How high a body's sphere is over the plane, at least; and after how many seconds it may have come down: the root of
-// height + v s - drift s - M s^2 / 2 = 0.
+// Returns a lower bound on the height of the body's sphere over the plane.
 double height_over(const HalfSpace& half, const Motion& motion) noexcept {
   const double size = std::fabs(half.offset) + length(motion.position) + motion.radius;
   return dot(half.normal, motion.position) - half.offset - motion.radius - kMotionSlack * size;
 }
 
+// Returns the number of seconds for which the sphere certainly stays above the plane: the root of height + v s - drift
+// s - M s^2 / 2 = 0.
 double seconds_above(const HalfSpace& half, const Motion& motion, double height) noexcept {
   if (height <= 0) return 0;
   const double fall = (motion.drift - dot(half.normal, motion.velocity)) * (1 + 1e-12),
                half_m = motion.acceleration / 2;
   const double root = std::sqrt(std::max(0.0, fall * fall + 4 * half_m * height));
-  // Without cancellation, whichever sign `fall` has; 0 / 0 where it neither falls nor is pulled.
+  // The sign of `fall` decides which form of the root is used, so that nothing cancels. The first form would be 0 / 0
+  // if the body neither falls nor accelerates.
   const double below = fall + root;
   if (fall >= 0) return below > 0 ? 2 * height / below : kInfinity;
   return half_m > 0 ? (root - fall) / (2 * half_m) : kInfinity;
@@ -28,7 +30,7 @@ double seconds_above(const HalfSpace& half, const Motion& motion, double height)
 }  // namespace
 
 BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
-  // An index is never used again: half-spaces are few, and pairs may still name a removed one.
+  // An index is never reused, because pairs may still refer to a half-space that was removed. Half-spaces are few.
   Shape shape;
   shape.kind = ShapeKind::half_space, shape.half = half;
   planes_.push_back({std::move(shape), with});
@@ -81,7 +83,7 @@ void HalfSpaceTimes::update(const Body& body, Step now, const Clock& clock, Moti
                             std::vector<BodyPair>& pairs) {
   const BodyIndex index = body.id.index;
   slack_ = slack;
-  motion.radius += 2 * slack;  // one for where it is, one for where its bounds expect it
+  motion.radius += 2 * slack;  // one for the present position, one for the position that the bounds predict
   bounds_[index] = {clock.time(now), motion, body.relies_on_middle(clock.time_step)};
   Step due = now + 1;
   if (is_valid(motion)) {

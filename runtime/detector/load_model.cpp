@@ -4,10 +4,10 @@ namespace orchard::runtime::detail {
 
 namespace {
 
-constexpr double kSmoothing = 0.1;              // of what predict_load() goes by
-constexpr double kSlower = 0.5, kFaster = 0.1;  // of times: what takes longer than foreseen is believed sooner
-// No time is believed to have more than doubled, or grown by so much: else one step that the machine interrupts, for
-// milliseconds, would rule many that follow.
+constexpr double kSmoothing = 0.1;              // of the costs that predict() uses
+constexpr double kSlower = 0.5, kFaster = 0.1;  // of times; one that is longer than expected is learned sooner
+// A time counts as at most twice the mean, or as at most this much more than the mean, whichever is larger. Otherwise,
+// one step that the machine interrupts for milliseconds would dominate many that follow.
 constexpr double kMaxGrowthOfPair = 20, kMaxGrowthOfBroad = 5000;  // ns
 
 void smooth(double& mean, double value) noexcept { mean += kSmoothing * (value - mean); }
@@ -34,7 +34,8 @@ void LoadModel::learn_times(double before, double after, std::size_t pairs) noex
 
 void LoadModel::learn_broad_excess(double time) noexcept { learn_time(broad_excess_, time, kMaxGrowthOfBroad); }
 
-// The part of the meetings that overlap, and what a pair costs, are what they have been lately.
+// The share of meetings that overlap, the share of pairs that part and the work for a pair are assumed to stay as they
+// were at recent steps.
 void LoadModel::predict(std::span<const StepsAhead> ahead, std::size_t pairs,
                         std::span<StepLoad> loads) const noexcept {
   double overlaps = static_cast<double>(pairs);

@@ -7,8 +7,9 @@ using detail::PartPair;
 
 namespace {
 
-// Boxes are solid, as they are for answers, and as large as their trees store them, rounded up to floats: of a smaller
-// one a corner would be out before it meets a triangle. What is wholly inside one is in contact with it.
+// Returns the contacts of two shapes with trees. Boxes are solid, as they are for answers, and as large as their trees
+// store them, which is rounded up to floats. If the solid were smaller, a corner of the other shape could be outside of
+// it and not yet meet a triangle of the box. A shape that is wholly inside a box is in contact with it.
 Manifold tree_contacts(Workspace& workspace, const PartPair& pair, const ContactOptions& with) noexcept {
   const detail::Shape &a = *pair.a.shape, &b = *pair.b.shape;
   std::array<detail::SolidBox, 2> boxes{};
@@ -21,7 +22,7 @@ Manifold tree_contacts(Workspace& workspace, const PartPair& pair, const Contact
 
 }  // namespace
 
-// The places of the last step are still known.
+// Uses the poses of the last step, which are still known.
 Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions& with) noexcept {
   Manifold result;
   if (event.verdict.answer != Answer::yes || !contains(event.a) || !contains(event.b) ||
@@ -50,7 +51,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
     detail::half_space_contact(*pair.a.shape, pair.a.pose(), pair.b.shape->half, result);
   } else if (pair.simple()) {
     result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), result.normal);
-  } else {  // contacts need more memory than there is
+  } else {  // there is not enough memory for the contacts
     result.complete = false;
   }
   if (!half) result.points[0].depth = result.depth;

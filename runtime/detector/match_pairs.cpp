@@ -10,7 +10,7 @@ void PairMatcher::gather(Step step, const Advance& now) {
   gather_half_spaces(step);
   part_pairs_.find(step, cache_, others_);
   if (!std::is_sorted(others_.begin(), others_.end())) std::sort(others_.begin(), others_.end());
-  pairs_ = others_.empty() ? now.pairs : others_;  // the broad phase's own list stays where it is
+  pairs_ = others_.empty() ? now.pairs : others_;  // the list of the broad phase is not copied
   if (!others_.empty() && !now.pairs.empty()) {
     merged_.resize(now.pairs.size() + others_.size());
     std::merge(now.pairs.begin(), now.pairs.end(), others_.begin(), others_.end(), merged_.begin());

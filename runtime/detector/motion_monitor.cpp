@@ -8,8 +8,10 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kMaxAngle = 0.5;        // cosine: of accelerations that share a half-space, with their mean
-constexpr double kFasterHorizon = 1.25;  // how much longer bounds hold after bounds that were kept
+// The cosine of the largest angle between the mean acceleration and each acceleration for which a half-space is
+// suggested.
+constexpr double kMaxAngle = 0.5;
+constexpr double kFasterHorizon = 1.25;  // a horizon without a violation grows by this factor
 
 }  // namespace
 
@@ -72,8 +74,8 @@ bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, c
   return false;
 }
 
-// Accelerations go by differences of velocities; without these, of positions: (x2 - x1) / h is the velocity in the
-// middle of a step.
+// An acceleration is computed from the difference of two velocities. If velocities are not given, they are computed
+// from positions: (x2 - x1) / h is the velocity in the middle of a step.
 void MotionMonitor::learn(Track& t, double time, const Vec3& position, const Vec3* velocity) const noexcept {
   const double step = time - t.time;
   if (t.seen > 0 && !(step > 0)) return;
@@ -85,7 +87,7 @@ void MotionMonitor::learn(Track& t, double time, const Vec3& position, const Vec
   }
   const Vec3 moved = t.seen > 0 ? (1 / step) * (position - t.position) : Vec3{};
   const Vec3 now = velocity != nullptr ? *velocity : moved;
-  const std::uint32_t needed = velocity != nullptr ? 1 : 2;  // observations before
+  const std::uint32_t needed = velocity != nullptr ? 1 : 2;  // earlier observations
   if (t.seen >= needed) {
     const double between = velocity != nullptr ? step : (step + t.step) / 2;
     const Vec3 acceleration = (1 / between) * (now - t.velocity);
@@ -105,7 +107,7 @@ void MotionMonitor::learn(Track& t, double time, const Vec3& position, const Vec
 Motion MotionMonitor::suggest(BodyIndex body, double time, double radius) const {
   Motion motion;
   motion.radius = radius;
-  if (body >= tracks_.size() || tracks_[body].seen == 0) {  // nothing is known: until the next step
+  if (body >= tracks_.size() || tracks_[body].seen == 0) {  // nothing is known, so the bound is for this step only
     motion.expiry = time;
     return motion;
   }
@@ -121,7 +123,7 @@ Motion MotionMonitor::suggest(BodyIndex body, double time, double radius) const 
     count += part.count;
   }
   motion.acceleration = std::max(options_.min_acceleration, options_.safety * largest);
-  // A difference of positions is the velocity of half a step ago.
+  // A velocity that was computed from positions is that of half a step ago.
   if (!t.velocity_given) motion.drift = motion.acceleration * t.step;
   motion.expiry = count == 0 ? time : time + std::clamp(t.horizon, options_.min_horizon, options_.longest_horizon);
   const double size = length(sum);

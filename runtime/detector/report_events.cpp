@@ -7,7 +7,7 @@ namespace {
 
 BodyPair bodies_of(const PairEvent& event) noexcept { return {event.a.index, event.b.index}; }
 
-// Nothing is known of the pair at this step.
+// Resets the answer to what holds if nothing is known of the pair at this step.
 void forget_step(CachedPair& pair) noexcept {
   pair.verdict = unknown_verdict();
   pair.sweep.impact = false;
@@ -39,7 +39,7 @@ void EventReporter::end_by_teleport(CachedPair& pair, Step step) {
   pair.touching = false;
 }
 
-// What the answer makes of the pair, and which event that is.
+// Updates whether the pair touches, according to its answer at this step, and returns the event that follows, if any.
 EventReporter::Outcome EventReporter::begin_or_end(CachedPair& pair) const noexcept {
   const Answer answer = pair.verdict.answer;
   if (!pair.versions.allowed) {
@@ -69,10 +69,10 @@ void EventReporter::conclude(const ActivePairs& active, std::size_t i) noexcept 
   pair.apart_along = {};
 }
 
-// Each pair without a certain answer has an event that says so.
+// Every pair without a certain answer has an event, so Frame::certain can be counted from the events.
 void EventReporter::report(const ActivePairs& active, Step step, Frame& frame) {
   const auto by_bodies = [](const PairEvent& p, const PairEvent& q) { return bodies_of(p) < bodies_of(q); };
-  // Teleports come after all others.
+  // The ends by teleports were added after all others.
   if (!std::is_sorted(ended_.begin(), ended_.end(), by_bodies)) std::sort(ended_.begin(), ended_.end(), by_bodies);
   auto ended = ended_.begin();
   frame.certain += active.size();

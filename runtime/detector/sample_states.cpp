@@ -6,7 +6,7 @@ namespace orchard::runtime {
 
 StateSource states_of(const std::vector<BodyState>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
-    const BodyState none{.pose = {.rotation = {}}};  // refused
+    const BodyState none{.pose = {.rotation = {}}};  // it has no valid rotation, so the body is refused
     for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
   };
 }
@@ -14,7 +14,7 @@ StateSource states_of(const std::vector<BodyState>& values) {
 namespace detail {
 namespace {
 
-constexpr std::size_t kAhead = 8;  // bodies, in loops over them
+constexpr std::size_t kAhead = 8;  // loops over bodies prefetch so far ahead
 
 }  // namespace
 
@@ -49,11 +49,11 @@ void StateSampler::ask_all(Step step) {
   ask_source(step);
 }
 
-// For asking_. What follows from many answers is worked out by jobs.
+// Asks the source for the states of the bodies in asking_. Jobs process the answers if they are many.
 void StateSampler::ask_source(Step step) {
   if (asking_.empty()) return;
   constexpr std::size_t kAlone = 256,
-                        kPerJob = 256;  // a thread that is alone takes answers while they are in its cache
+                        kPerJob = 256;  // without an executor, answers are processed while they are still in the cache
   const Executor& executor = world_.options.executor;
   const std::size_t at_once = executor.run == nullptr ? std::min(asking_.size(), kAlone) : asking_.size();
   grow(answers_, at_once);
@@ -99,7 +99,7 @@ Motion StateSampler::given_motion(BodyIndex index, double time) const {
   return suggests ? monitor_.suggest(index, time, motion.radius) : motion;
 }
 
-// One that watches has sampled every body by now.
+// If the bodies are watched, all have been sampled by now.
 void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> asked, std::span<Motion> motions) {
   const Clock& clock = world_.clock;
   if (!sampled_all()) sample(std::llround((time - clock.start) / clock.time_step), asked);
@@ -114,7 +114,7 @@ void StateSampler::answer_broad_phase(double time, std::span<const BodyIndex> as
   for (std::size_t i = 0; i < asked.size(); ++i) world_.options.bound_given(time, asked[i], motions[i]);
 }
 
-// Nearly every body is asked about at this step anyway.
+// Nearly every body of such a step would be asked for anyway.
 void StateSampler::sample_all(Step step) {
   constexpr std::size_t kMinBodies = 256;
   const std::size_t slots = world_.bodies.slots();
@@ -123,8 +123,8 @@ void StateSampler::sample_all(Step step) {
   all_sampled_at_ = step;
 }
 
-// Where every body has been sampled and none is to be refused, which bodies are in pairs only matters for what is done
-// at the next steps.
+// If every body has been sampled and none has to be refused, the bodies in pairs matter only to sample_all() at later
+// steps. They are then found again every kKept steps only.
 void StateSampler::sample_pairs(Step step, std::span<const BodyPair> pairs) {
   constexpr Step kKept = 16;
   if (all_sampled_at_ == step && !any_flawed_.load(std::memory_order_relaxed) && step < paired_at_ + kKept) return;
@@ -146,13 +146,13 @@ void StateSampler::sample_pairs(Step step, std::span<const BodyPair> pairs) {
   }
 }
 
-// Section 4.4 of the dissertation.
+// See section 4.4 of the dissertation.
 void StateSampler::watch(Step step) {
   ask_all(step);
   for (BodyIndex i = 0; i < world_.bodies.slots(); ++i) {
     Body& body = world_.bodies[i];
     if (body.id == kNoBody || body.is_static || body.steps.asked != step) continue;
-    if (!is_valid(body.motion(world_.clock.time_step))) {  // it is refused, and its bounds do not hold any more
+    if (!is_valid(body.motion(world_.clock.time_step))) {  // the body is refused, and its bounds do not hold any more
       if (body.told.radius >= 0) cancel(body);
     } else if (!keeps_motion_bound(i, step)) {
       broken_.push_back(i);
@@ -161,7 +161,8 @@ void StateSampler::watch(Step step) {
   }
 }
 
-// Compares with the bounds of the last motion that was given, about the same point (origin or middle) as they were.
+// Compares the motion of the body with the bound that the broad phase was given last, about the same point (the origin
+// or the middle) as that bound.
 bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
   const Body& body = world_.bodies[index];
   const double time = world_.clock.time(step);
@@ -175,7 +176,8 @@ bool StateSampler::keeps_motion_bound(BodyIndex index, Step step) {
   return false;
 }
 
-// Whether the bounds hold that the monitor does not check: those of half-spaces, the radius, and continuous_speed.
+// Returns whether the body keeps the bounds that the monitor does not check: those of half-spaces, the radius, and
+// continuous_speed.
 bool StateSampler::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
   const BodyIndex index = body.id.index;
   const Clock& clock = world_.clock;

@@ -10,10 +10,10 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::uint64_t kFirstSlice = 1024;       // tests; each further slice is four times as large
-constexpr std::uint64_t kSearchShare = 8;         // of the budget, one part in so many is set aside for searches
-constexpr std::uint8_t kSearchesBeforeRoots = 4;  // of a pair that its roots have not told apart
-constexpr std::uint64_t kTask = 0xffffffffu;      // of a turn in the schedule
-constexpr std::size_t kAtOnce = 64;               // tasks, so that the turns depend on no number of threads
+constexpr std::uint64_t kSearchShare = 8;         // one part in so many of the budget is set aside for searches
+constexpr std::uint8_t kSearchesBeforeRoots = 4;  // for a pair whose roots did not separate it
+constexpr std::uint64_t kTask = 0xffffffffu;      // the bits of a schedule entry that are the task's index
+constexpr std::size_t kAtOnce = 64;               // tasks; fixed, so that turns do not depend on the threads
 
 }  // namespace
 
@@ -49,8 +49,9 @@ std::size_t PairScheduler::memory_bytes() const noexcept {
          bytes_of(tasks_, schedule_, order_);
 }
 
-// A task for each two parts, with what their spheres say: so much is known of every pair whatever the budget. Then
-// by importance, by who has waited longest, and in the order of tasks.
+// Makes a task for each two parts, with what their spheres say about them; this much is known of every pair, whatever
+// the budget. The tasks that spheres do not decide are then sorted by importance, by the number of steps that their
+// pairs have waited, longest first, and by index.
 void PairScheduler::begin_within(PairCache& records, std::span<const std::uint32_t> open) {
   const ShapePlacements& places = world_.places;
   tasks_.clear(), schedule_.clear();
@@ -89,8 +90,9 @@ void PairScheduler::answer_within(PairCache& records, StepBudget& budget) {
   }
 }
 
-// A search of `slice` tests for each of schedule_[begin, end) that is open; of none: what can be told without one. What
-// is done at once has its overshoot set aside, so that the budget holds. Returns whether another turn is of use.
+// Gives a turn to each open task of schedule_[begin, end): a search of at most `slice` tests or, if `slice` is 0, the
+// tests that need no search. No more tasks run at the same time than fit into what is left, each with its overshoot, so
+// that the budget holds. Returns true if every task has had its turn and some are still open.
 bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t slice, StepBudget& budget,
                                PairCache& records) {
   const bool alone = world_.options.executor.run == nullptr, searches = slice > 0;
@@ -112,7 +114,8 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
       task.work = 0;
       if (alone ? !(searches ? budget.may_refine() : budget.may_begin()) : budget.late()) return;
       if (!searches) return begin_one(task, record, scratch);
-      // The first search is short, and neither the clock ends it nor what it has done when another run ended.
+      // The first search is short, so neither the clock limits it nor, in a replay, the place at which another run was
+      // cut.
       const Budget within = slice == kFirstSlice ? Budget{most} : Budget{budget.piece(most), budget.time_left()};
       search_one(task, record, within, slice == kFirstSlice, scratch);
       if (alone) budget.refined(task.work);
@@ -127,12 +130,13 @@ bool PairScheduler::give_turns(std::size_t begin, std::size_t end, std::uint64_t
   return next == end && std::any_of(all.begin(), all.end(), is_open);
 }
 
-// What can be told without a search.
+// Does the tests that need no search: simple shapes, what the last step found, or the roots of both trees.
 void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scratch) const noexcept {
   if (task.simple) return search_one(task, record, {}, true, scratch);
   task.work = kPairWork;
   const bool remembers = record.coherent && CoherentPair::remembers(record.trees);
-  // Of bodies of several parts, whose tasks may run at once, all have their roots asked.
+  // Only pairs of bodies of one part skip the roots. The tasks of other pairs share a record and may run at the same
+  // time.
   if (record.coherent && !remembers && record.turn.roots_wait > 0) {
     --record.turn.roots_wait;
     return;
@@ -157,8 +161,8 @@ void PairScheduler::begin_one(Task& task, CachedPair& record, AnswerScratch& scr
   task.verdict.work = task.work;
 }
 
-// Begins with what the last step found, and again at each slice, which costs a third more than going on would, for the
-// few that need several.
+// The first search of a pair of trees begins with what the last step found. Each further slice begins again at the
+// roots, which costs a third more than continuing would, for the few pairs that need several slices.
 void PairScheduler::search_one(Task& task, CachedPair& record, const Budget& most, bool is_first,
                                AnswerScratch& scratch) const noexcept {
   PartPair pair;

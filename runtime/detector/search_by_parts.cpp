@@ -9,10 +9,11 @@ namespace orchard::runtime::detail {
 
 namespace {
 
-// Static bodies in the sphere around all parts, for each part. What keeping a pair of such spheres costs a step in the
-// broad phase and after it is a thirtieth or so of what a part costs here, where it is crowded.
+// The numbers of static bodies in the sphere around all parts, for each part, from which on and down to which a body is
+// searched by parts. To keep a pair of such spheres costs a step, in the broad phase and after it, about a thirtieth of
+// what a part costs here in a crowded place.
 constexpr std::size_t kWorthIt = 40, kNoLonger = 20;
-constexpr Step kSteps = 16;  // from one choice to the next
+constexpr Step kSteps = 16;  // from one choice of bodies to the next
 
 constexpr std::size_t kLanes = 32;  // spheres in a leaf, which are compared at once
 constexpr auto kLaneBits = [] {
@@ -21,7 +22,8 @@ constexpr auto kLaneBits = [] {
   return bits;
 }();
 
-// Which lanes of x, y, z and radii touch a sphere, as bits: no branches, so that it becomes comparisons of vectors.
+// Returns which lanes of `at`, which has the x, y, z and radii of spheres, touch a sphere, as bits. The loop has no
+// branches, so that it becomes comparisons of vectors.
 std::uint64_t touching_lanes(const std::array<const double*, 4>& at, const Vec3& center, double radius) noexcept {
   std::uint64_t bits = 0;
   per_machine([&]() ORCHARD_INLINE_LAMBDA {
@@ -60,7 +62,8 @@ void PartPairs::place_static() {
   static_changes_ = world_.static_changes;
 }
 
-// The static bodies one of whose parts has a sphere that touches this one; one may come up for each of its parts.
+// Appends to touching_ the static bodies with a part whose sphere touches this one. A body may occur once for each
+// part.
 void PartPairs::append_touching(const BoundingSphere& sphere) {
   const Vec3& center = sphere.center;
   const double most = sphere.reach * (1 + 1e-9);
@@ -88,7 +91,7 @@ void PartPairs::find(Step step, const PairCache& before, std::vector<BodyPair>& 
       for (const BodyIndex other : touching_) found.push_back({std::min(body, other), std::max(body, other)});
       continue;
     }
-    sampler_.refuse({&body, 1});  // it may be where it was
+    sampler_.refuse({&body, 1});  // it may still be where it was
     for (std::size_t place = 0; place < before.size(); ++place) {
       const BodyPair& pair = before.pair(place);
       if ((pair.a == body || pair.b == body) && finds(pair) &&

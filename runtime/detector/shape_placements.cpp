@@ -27,7 +27,7 @@ void ShapePlacements::place_before(BodyIndex body, std::uint32_t part, Step now,
                                    PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) return place(body, part, placed_part);
   const Body& of = (*bodies_)[body];
-  const bool moves = !of.is_static && of.steps.asked == now;  // one that falls asleep has come here first
+  const bool moves = !of.is_static && of.steps.asked == now;  // also for a body that falls asleep at `now`
   const Pose& pose = moves ? of.before : of.state.pose;
   const PartRecord& record = of.parts()[part];
   const bool was_elsewhere = !of.parts_before.empty() && of.parts_before[part].until == now - 1;
@@ -42,7 +42,7 @@ double ShapePlacements::bounds_gap(BodyIndex body, std::uint32_t part, const Bou
   if (!of.valid) return 0;
   double scale = 1, size = sphere.size;
   Vec3 at = sphere.center;
-  const auto enter = [&](const Pose& frame) {  // `at` in its coordinates
+  const auto enter = [&](const Pose& frame) {  // transforms `at` into its coordinates
     const Vec3 way = at - Vec3(frame.translation);
     const auto& r = frame.rotation;
     const double shrink = 1 / frame.scale;

@@ -9,14 +9,15 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// The least float that is not smaller.
+// Returns the least float that is not smaller than x.
 float float_above(double x) noexcept {
   const auto nearest = static_cast<float>(x);
   return double{nearest} < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
-// The corners are rounded outward, so that what does not touch the triangles, or lies at a distance from them, does so
-// of the box.
+// Builds the tree of a solid box. Its corners are rounded outward, so the triangles enclose the box: a shape outside of
+// them that does not touch them does not touch the box, and its distance from them is a lower bound on that from the
+// box.
 PackedSphereTree solid_box_tree(const Vec3& half) {
   Vec3 rounded{};
   for (std::size_t i = 0; i < 3; ++i) rounded[i] = double{float_above(half[i])};
@@ -25,7 +26,8 @@ PackedSphereTree solid_box_tree(const Vec3& half) {
   return tree;
 }
 
-// One vertex of each piece whose triangles share vertices, in the order of vertices.
+// Returns one vertex of each connected piece of the surface, in ascending order. Triangles that share a vertex are
+// connected.
 std::vector<std::uint32_t> pieces_of(const TreeView& tree) {
   std::vector<std::uint32_t> parent(tree.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -48,7 +50,7 @@ std::vector<std::uint32_t> pieces_of(const TreeView& tree) {
   return pieces;
 }
 
-// Precondition: there is room for all of them.
+// Computes the positions of the vertices in piece_vertices. Precondition: shape.pieces has as many elements.
 void place_pieces(Shape& shape) noexcept {
   for (std::size_t i = 0; i < shape.pieces.size(); ++i) {
     const auto& at = shape.tree.vertices[shape.piece_vertices[i]];
@@ -87,7 +89,7 @@ void ShapeTable::describe(Shape& shape) {
   const TreeView& tree = shape.tree;
   const SiblingBlock& root = tree.blocks[0];
   shape.center = Vec3{double{root.x[0]}, double{root.y[0]}, double{root.z[0]}} + tree.origin;
-  // What is stored may be rounded away from the mesh, and the tree's ball holds both.
+  // The stored vertices may differ from those of the mesh by rounding. The sphere contains both.
   shape.reach = double{root.radius[0]} + tree.vertex_error;
   shape.reach += 1e-15 * (shape.reach + length(shape.center));
   const SupportBox box = support_box(tree);
@@ -143,12 +145,12 @@ std::size_t ShapeTable::memory_bytes() const noexcept {
   return bytes;
 }
 
-// compose() of poses that are rigid is off by at most twice the tolerance, which made_rigid() mends.
+// compose() of two rigid poses is off by at most twice the tolerance, which made_rigid() corrects.
 Pose placed(const Pose& body, const Pose& local) noexcept {
   const Pose pose = compose(body, local);
   if (is_rigid(pose) || !is_rigid(body) || !is_rigid(local)) {
     if (is_rigid(body)) return pose;
-    return {.rotation = {}};  // two wrongs, mirrors for one, can make a right
+    return {.rotation = {}};  // otherwise, two mirrors, which are not rigid, could have a rigid product
   }
   return made_rigid(pose).value_or(pose);
 }

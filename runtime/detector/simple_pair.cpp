@@ -7,7 +7,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Of distances computed from a few operations on coordinates of that size.
+// A bound on the rounding error of a distance from a few operations, relative to the size of the coordinates.
 constexpr double kSimpleRounding = 1e-14;
 
 struct Round {  // in the world
@@ -24,7 +24,7 @@ struct Nearest {
   Vec3 way() const noexcept { return on_b - on_a; }
 };
 
-// Of two segments (Ericson 2005, 5.1.9).
+// Returns the nearest points of two segments (Ericson 2005, 5.1.9).
 Nearest nearest_of_segments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) noexcept {
   const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
   const double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r);
@@ -42,7 +42,7 @@ Vec3 unit(const Vec3& v, const Vec3& otherwise) noexcept {
   return size > 0 ? (1 / size) * v : otherwise;
 }
 
-// Into the box's frame at scale 1; the components' sizes say which side is nearest.
+// Transforms a point into the box's frame at scale 1.
 Vec3 in_box(const Pose& pose, const Vec3& point) noexcept { return transform(inverse(pose), point); }
 
 bool holds(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
@@ -53,7 +53,7 @@ bool holds(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
   return true;
 }
 
-// From a point inside outwards, through the nearest side.
+// Returns the direction from a point inside the box outwards, through the nearest side.
 Vec3 way_out(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
   const Vec3 at = in_box(pose, point);
   std::size_t axis = 0;
@@ -65,15 +65,16 @@ Vec3 way_out(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
   return rotate(pose, way);
 }
 
-// Of a solid box, at on_a, and the segment from p to q, in the box's frame at scale 1. The square of the distance along
-// the segment is convex, and quadratic between the places where a coordinate enters or leaves the box.
+// Returns the nearest points of a solid box (on_a) and of the segment from p to q (on_b), in the box's frame at scale
+// 1. The square of the distance, as a function along the segment, is convex, and quadratic between the places where a
+// coordinate enters or leaves the box.
 Nearest nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
   const Vec3 way = q - p;
   if (const double inside = enters_box(-half, half, p, way, 1); inside <= 1) {
     const Vec3 at = point_of(p, q, inside);
     return {at, at};
   }
-  const auto slope = [&](double t, double& square) {  // half of it; `square`: how fast it grows
+  const auto slope = [&](double t, double& square) {  // half of the slope at t; sets `square` to its derivative
     double sum = square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double x = p[i] + t * way[i], beyond = x - std::clamp(x, -half[i], half[i]);
@@ -106,7 +107,8 @@ Verdict yes_at(const Vec3& center, const Vec3& normal) noexcept {
   return {.answer = Answer::yes, .contact = {.center = center, .normal = normal}, .level = 1};
 }
 
-// Known is a gap less what computing it may have added, from coordinates of that size.
+// Returns "no" with a gap that was computed from coordinates of this size. The lower bound allows for the rounding
+// error.
 Verdict no_with(double gap, double size) noexcept {
   return {.answer = Answer::no,
           .separation_bound = gap,
@@ -122,12 +124,12 @@ Verdict of_rounds(const Round& a, const Round& b) noexcept {
     return no_with(distance - a.radius - b.radius, length(near.on_a) + length(near.on_b) + distance);
   }
   const Vec3 normal = unit(near.way(), {0, 0, 1});
-  // In the middle of what both have in common along the way.
+  // The contact is in the middle of what both shapes have in common along the normal.
   const double from = std::max(0.0, distance - b.radius), to = std::min(distance, a.radius);
   return yes_at(near.on_a + 0.5 * (from + to) * normal, normal);
 }
 
-// The normal from the box to the round shape.
+// The normal of a contact points from the box to the round shape.
 Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept {
   const Pose back = inverse(pose);
   const Nearest near = nearest_of_box(box.p, transform(back, round.p), transform(back, round.q));
@@ -141,7 +143,7 @@ Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept 
   return yes_at(at, way_out(box, pose, at));
 }
 
-// The normal from the tree to the round shape.
+// The normal of a contact points from the tree to the round shape.
 Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::uint32_t guess) noexcept {
   if (shape.kind == ShapeKind::box) return of_box(shape, pose, round);
   if (shape.tree.obb_nodes.empty()) return unknown_verdict();
@@ -159,7 +161,7 @@ Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::u
   return verdict;
 }
 
-// The normal into the half-space.
+// The normal of a contact points into the half-space.
 Verdict of_half_space(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept {
   const SurfacePoint lowest = lowest_point(shape, pose, half);
   if (!std::isfinite(lowest.distance)) return unknown_verdict();
@@ -206,17 +208,21 @@ bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& 
   return false;
 }
 
-// Where their extents along the normal are free of each other, both are. Before that the second one is moved to where
-// it has certainly left what it touches now, again and again, and every third time to half of the rest, since many
-// surfaces may be in the way one after another. A gap lasts for as long a way back, and what is in common for a way on.
+// Searches for the least movement of `b` along the normal at which the shapes are apart. `free` is a movement at which
+// they are apart; at first, it is the one at which their extents along the normal no longer overlap. `touching` is the
+// largest movement at which they are known to touch. Each step tests a movement in between:
+// - If the shapes are apart there by some gap, they are apart for as long a way back.
+// - If they touch, they touch for as long a way on as the contact is deep in the round shape.
+// The movement is just beyond `touching`, or, at every third step, in the middle, because many surfaces may be in the
+// way one after another.
 double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     const Vec3& normal) noexcept {
   constexpr int kSteps = 120;
-  constexpr double kRounding = 1e-12;  // of coordinates and lengths, in what is known from others
+  constexpr double kRounding = 1e-12;  // of coordinates and lengths, in the results of other functions
   const double most = std::max(
       0.0, -lowest_point(a, pose_a, {-1.0 * normal, 0}).distance - lowest_point(b, pose_b, {normal, 0}).distance);
   if (!a.has_tree() && !b.has_tree()) return most;
-  const bool second = a.has_tree();  // is the round one
+  const bool second = a.has_tree();  // whether `b` is the round shape
   const Round round(second ? b : a, second ? pose_b : pose_a);
   const double slack = kRounding * (most + round.radius + length(round.p) + length(round.q) +
                                     length(Vec3(pose_a.translation)) + length(Vec3(pose_b.translation)));

@@ -6,10 +6,10 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::uint32_t kNoRecordYet = 0x80000000u;  // beyond all places
+constexpr std::uint32_t kNoRecordYet = 0x80000000u;  // a bit that no place has
 
-// Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: no
-// processor predicts them.
+// Returns whether the spheres of the only parts of two bodies are apart, as sphere_gap() does, except that it allows
+// slightly more for rounding. It has no branches, because no processor could predict them.
 bool spheres_apart(const BoundingSphereCache& a, const BoundingSphereCache& b) noexcept {
   const Vec3 way = b.sphere.center - a.sphere.center;
   const double reach = (a.sphere.reach + b.sphere.reach) + kRoundingOfGaps * (a.slack + b.slack),
@@ -27,8 +27,8 @@ RelativePlacement PairSkipper::relative_placement(const BodyPair& pair) const no
   return {a.slack + b.slack, b.sphere.center - a.sphere.center, a.turned + b.turned, a.changes + b.changes};
 }
 
-// Whether they have come closer since the last certain "no" by less than what was between them then: in the direction
-// in which that was, if it is known; else in any.
+// Returns whether the bodies have come closer to each other since the last certain "no" by less than their distance
+// then. If the direction of that distance is known, only the motion along it counts; otherwise, the whole motion does.
 bool PairSkipper::moved_less_than_gap(const PairCache::Known& known) const noexcept {
   const RelativePlacement now = relative_placement(known.pair);
   const Clearance& then = known.clearance;
@@ -40,7 +40,8 @@ bool PairSkipper::moved_less_than_gap(const PairCache::Known& known) const noexc
   return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 
-// Whether each part of the one is apart from each of the other: for bodies of several parts.
+// Returns whether each part of one body is apart from each part of the other. It is for bodies of several parts, and
+// returns false for others.
 bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
   const Body &a = world_.bodies[pair.a], &b = world_.bodies[pair.b];
   if (!world_.any.parts || (a.several.empty() && b.several.empty()) || !a.valid || !b.valid || a.is_continuous() ||
@@ -54,8 +55,9 @@ bool PairSkipper::parts_apart(const BodyPair& pair) const noexcept {
   return true;
 }
 
-// Those of cache.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
-// records would be changed by that. Plus kNoRecordYet where there is none.
+// Writes to `near` the places in [begin, end) of the pairs that may not be skipped. A pair is skipped if its clearance
+// shows that it is apart or, unless it is busy, if its spheres do. kNoRecordYet is added to the places of pairs without
+// a record. Returns the number of places.
 std::size_t PairSkipper::find_near(PairCache& cache, std::size_t begin, std::size_t end,
                                    std::uint32_t* near) const noexcept {
   constexpr std::size_t kAhead = 16;
@@ -118,8 +120,9 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) co
     return body.is_static || (body.frozen && body.steps.asked < step) || body.steps.known_before == step - 1;
   };
   pair.sweep.possible = continuous && pair.versions.jumps == jumps && known_before(a) && known_before(b);
-  // As spheres reach as far as a step leads, a body that was not sampled at the step before had nothing near it then:
-  // unless the broad phase was interrupted, or the body's parts go farther now. Nothing was between it and a new body.
+  // The sphere of a continuous body reaches as far as the body can move in a step. So if a body was not sampled at the
+  // step before, nothing was near it then, unless the broad phase was interrupted or the parts of a body reach farther
+  // out now. A new body was not there at the step before, so no sweep of it is missing.
   const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
   const bool both_before = std::max(a.since, b.since) < step;
   pair.sweep.unseen =
@@ -133,7 +136,7 @@ bool PairSkipper::needs_answer(CachedPair& pair, Step step, bool interrupted) co
   return !rest || pair.sweep.impact;
 }
 
-// After a certain "no". What is swept is asked at each step.
+// A pair with a continuous body keeps no clearance, because it is swept at each step.
 void PairSkipper::keep_clearance(PairCache::Known& known, const CachedPair& pair) const noexcept {
   const Body &a = world_.places.body(pair.bodies.a), &b = world_.places.body(pair.bodies.b);
   const bool lasts = pair.verdict.answer == Answer::no && !pair.touching && !a.is_continuous() && !b.is_continuous() &&
@@ -152,7 +155,7 @@ void PairSkipper::keep_clearance(PairCache::Known& known, const CachedPair& pair
                                                          world_.bodies.sphere_cache(known.pair.b).sphere.reach;
   if (dot(pair.apart_along, pair.apart_along) > 0 && std::isfinite(reach)) {
     kept.along = rounded(pair.apart_along);
-    distance -= kRoundedToFloat * (way + reach);  // no two of their points are farther from each other
+    distance -= kRoundedToFloat * (way + reach);  // no two of their points are farther apart than that
   }
   kept.distance = distance > 0 ? distance : 0;
   kept.way = rounded(now.way);

@@ -6,7 +6,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// The smaller root of a t^2 + 2 b t + c, if it is not below 0; else infinite.
+// Returns the smaller root of a t^2 + 2 b t + c, or infinity if there is none or it is negative.
 double first_root(double a, double b, double c) noexcept {
   const double h = b * b - a * c;
   if (!(a > 0) || !(h >= 0)) return kInfinity;
@@ -14,7 +14,7 @@ double first_root(double a, double b, double c) noexcept {
   return t >= 0 ? t : kInfinity;
 }
 
-// When a ray comes within `radius` of the segment from p to q.
+// Returns the first t >= 0 at which origin + t way is within `radius` of the segment from p to q, or infinity.
 double enters_capsule(const Vec3& p, const Vec3& q, double radius, const Vec3& origin, const Vec3& way) noexcept {
   const Vec3 from = origin - nearest_of_segment(p, q, origin);
   if (dot(from, from) <= radius * radius) return 0;

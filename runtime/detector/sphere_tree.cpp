@@ -7,9 +7,9 @@
 namespace orchard::runtime::detail {
 
 void SphereTree::add(const BoundingSphere& sphere, BodyIndex body, std::uint32_t part) {
-  constexpr double kRoom = 1e-9;  // of coordinates and radii
+  constexpr double kRoom = 1e-9;  // relative to coordinates and radii
   const double reach = sphere.reach + kRoom * sphere.size;
-  const bool known = std::isfinite(reach);  // else it may be anywhere
+  const bool known = std::isfinite(reach);  // otherwise, it may be anywhere
   parts_.push_back({known ? sphere.center : Vec3{}, known ? reach : kInfinity, body, part});
 }
 
@@ -19,7 +19,8 @@ void SphereTree::build(std::uint32_t leaf) {
   if (!parts_.empty()) build(0, static_cast<std::uint32_t>(parts_.size()));
 }
 
-// Across the axis along which its box is longest, so that all leaves but one are full.
+// Divides a node across the longest axis of its box. The first child gets a power of two of the parts, so all leaves
+// but one are full.
 std::uint32_t SphereTree::build(std::uint32_t begin, std::uint32_t end) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   Node node{parts_[begin].center, parts_[begin].center, begin, end};

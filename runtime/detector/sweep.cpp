@@ -7,21 +7,24 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kCloseness = 1e-5;  // of the smaller size above 0: nearer than that is told from a contact by probing
-constexpr int kMaxSteps = 512;       // towards a half-space
-constexpr double kSkip = 4;          // closenesses passed over where a graze is not told from a contact,
-constexpr double kSkipGrowth = 4;    // and times that, each time,
-constexpr double kMinSkip = 1e-9;    // but so much of the way at least,
-constexpr double kMaxSkip = 1.0 / 64;    // and so much of it at most the first time
-constexpr double kSpeedRounding = 1e-9;  // of speeds
+// The distance below which two parts are probed for a contact, relative to the smaller of their radii that is above 0.
+constexpr double kCloseness = 1e-5;
+constexpr int kMaxSteps = 512;  // towards a half-space
+// How far a search moves on if it cannot distinguish a graze from a contact: kSkip times the distance above at first,
+// and kSkipGrowth times as far each further time. The first move is at least kMinSkip and at most kMaxSkip of the way.
+constexpr double kSkip = 4;
+constexpr double kSkipGrowth = 4;
+constexpr double kMinSkip = 1e-9;
+constexpr double kMaxSkip = 1.0 / 64;
+constexpr double kSpeedRounding = 1e-9;  // relative to speeds
 
-// The tree of a segment has its ends rounded to floats.
+// Returns the radius of a round shape, including the rounding of its segment, whose tree has floats; otherwise 0.
 double margin_of(const PlacedPart& part) noexcept {
   const Shape& shape = *part.shape;
   return shape.kind == ShapeKind::round ? (shape.radius + shape.tree.vertex_error) * part.pose().scale : 0;
 }
 
-// No point of the part moves faster.
+// Returns an upper bound on the speed of the points of a part.
 double speed_of(const Travel& travel, double reach) noexcept {
   return (length(Vec3(travel.velocity)) + length(Vec3(travel.spin)) * reach) * (1 + kSpeedRounding);
 }
@@ -34,13 +37,14 @@ Travel travel_of(const PlacedPart& from, const PlacedPart& to) noexcept {
   return travel_between(from.pose(), to.pose(), from.shape->center);
 }
 
-// What is known at the time of an impact.
+// Returns the verdict about two parts at the time of an impact.
 Verdict touch_at(Workspace& workspace, const PartPair& pair, const Impact& impact, std::uint64_t most,
                  std::uint64_t& work) noexcept {
   Verdict verdict;
   if (work < most) verdict = answer_exactly(query_of(workspace.narrow), pair, work, most);
   if (verdict.answer == Answer::yes) return verdict;
-  // Rounding, or the end of the budget: what the search knows of the place.
+  // The exact test does not confirm the contact, because of rounding or the end of the budget. The search has its
+  // place.
   const Vec3 way = Vec3(impact.on_b) - Vec3(impact.on_a);
   const double size = length(way);
   return {.answer = Answer::yes,
@@ -50,14 +54,14 @@ Verdict touch_at(Workspace& workspace, const PartPair& pair, const Impact& impac
                       .triangle_b = impact.triangle_b}};
 }
 
-// Two shapes that have, or are around, trees.
+// Sweeps two shapes that have trees or, if they are round, are around the tree of a segment.
 Swept sweep_trees(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
                   std::uint64_t& work) noexcept {
   Swept result;
   const Travel a = travel_of(from.a, to.a), b = travel_of(from.b, to.b);
   const double speed = speed_of(a, from.a.reach) + speed_of(b, from.b.reach);
   if (speed == 0) return result;
-  // A box is solid, and what lies wholly in it touches it although the surfaces are apart.
+  // A box is solid, so a shape that lies wholly in it touches it, although the surfaces are apart.
   if (from.a.shape->kind == ShapeKind::box || from.b.shape->kind == ShapeKind::box) {
     result.verdict = answer_exactly(query_of(workspace.narrow), from, work, most);
     result.answer = result.verdict.answer;
@@ -85,14 +89,15 @@ Swept sweep_trees(Workspace& workspace, const PartPair& from, const PartPair& to
       return result;
     }
     if (impact.answer == Answer::no && certain) result.answer = Answer::no;
-    // So near that rounding decides; later they may be nearer still.
+    // The parts are so near that rounding decides. The search goes on later, when they may be nearer still.
     options.begin = impact.t0 + skip;
     if (impact.answer == Answer::no || !impact.finished || impact.refused || !(options.begin < options.end)) break;
   }
   return result;
 }
 
-// The height over the plane shrinks no faster than the centre sinks, and what turns about it.
+// Sweeps a part to a half-space. The height over the plane shrinks no faster than the centre sinks, plus the speed at
+// which points that turn about the centre sink.
 Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
                           std::uint64_t& work) noexcept {
   Swept result;

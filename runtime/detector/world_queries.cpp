@@ -24,11 +24,12 @@ void take_nearer(std::optional<WorldPoint>& best, const WorldPoint& found) noexc
 
 }  // namespace
 
-// Static bodies, those that the detector moves, those that the last step has asked for; the source knows the others.
+// Finds the poses of all bodies at the last step. The detector knows those of static bodies, of bodies whose states it
+// keeps, and of bodies that the last step has sampled or that sleep. It asks the source for the others.
 void WorldQueries::find_poses() {
   const BodyTable& bodies = world_.bodies;
   const double time = world_.time_of_last_step();
-  poses_.assign(bodies.slots(), {.rotation = {}});  // nowhere
+  poses_.assign(bodies.slots(), {.rotation = {}});  // not rigid: the body is nowhere
   asked_.clear();
   for (BodyIndex i = 0; i < bodies.slots(); ++i) {
     const Body& body = bodies[i];
@@ -51,7 +52,7 @@ void WorldQueries::find_poses() {
 
 void WorldQueries::update() {
   if (at_ == world_.answered && changes_ == world_.changes) return;
-  at_ = kNotAsked;  // where memory runs out, all is found again
+  at_ = kNotAsked;  // if memory runs out below, the next query begins again
   find_poses();
   tree_.clear();
   for (BodyIndex i = 0; i < poses_.size(); ++i) {
@@ -66,7 +67,8 @@ void WorldQueries::update() {
   at_ = world_.answered, changes_ = world_.changes;
 }
 
-// use(target) for the half-spaces, and for the parts for whose boxes bound(low, high) is at most most().
+// Calls use(target) for the half-spaces, and for the parts in boxes for which bound(low, high) is at most most(), as
+// far as the filter allows them.
 template <typename Bound, typename Most, typename Use>
 void WorldQueries::each_target(const QueryFilter& filter, const Bound& bound, const Most& most, const Use& use) {
   update();
@@ -88,7 +90,7 @@ void WorldQueries::each_target(const QueryFilter& filter, const Bound& bound, co
   });
 }
 
-// use(target, point) for those that are at most most() away, and where.
+// Calls use(target, point) for the targets whose distance from `to` is at most most(), with their nearest points.
 template <typename Most, typename Use>
 void WorldQueries::each_near(const QueryFilter& filter, const Vec3& to, const Most& most, const Use& use) {
   const auto bound = [&](const Vec3& low, const Vec3& high) { return std::sqrt(square_to_box(low, high, to)); };
