@@ -31,7 +31,7 @@ void StaticBodies::remove(BodyIndex body) noexcept {
   slots_[body] = kNoSlot;
 }
 
-// First all that may throw, then the change.
+// All that may throw comes first, so that a failure changes nothing.
 BodyIndex BodyPool::add(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
   if (free_.empty() && slots() >= kMaxBodies) return kNoIndex;
   const bool again = !free_.empty();
@@ -104,7 +104,7 @@ void MotionQueries::ask(Step step, std::span<const BodyIndex> bodies, std::span<
   }
 }
 
-// Those of them that move.
+// Asks the source for the motions of the bodies that move; those of static bodies are stored here.
 void MotionQueries::ask_some(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions,
                              Answers& answers) const {
   answers.moving.clear();

@@ -14,7 +14,8 @@ void BoxIndex::rebuild(std::size_t slots, std::size_t lines, const Executor& exe
   }
 }
 
-// In the order of the timing wheel bodies are all over memory: their boxes are loaded some bodies ahead.
+// The bodies come in the order of the timing wheel and are scattered in memory, so their boxes are loaded some bodies
+// ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   constexpr std::size_t kAtOnce = SweptGrid::kRemovedAtOnce;
   std::array<BodyIndex, kAtOnce> inside;
@@ -47,7 +48,7 @@ void compare(BodyIndex body, const QuantizedAabb& box, BodyIndex other, const Qu
 
 }  // namespace
 
-// Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
+// Oversized boxes are compared with all others, which costs O(oversized x all) per window.
 void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) const {
   if (oversized_.empty()) return;
   for (const BodyIndex body : bodies) {

@@ -2,17 +2,17 @@
 
 #include "broad_phase/box_index.h"
 
-// Which bodies a query may concern, by the boxes: these hold each sphere from the step of its update to the end of its
-// window.
+// Queries find the bodies that they may concern by the boxes. A box contains the sphere of its body from the step of
+// its update to the end of its window.
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kSpare = 1;           // quanta: more than all rounding within the quantized grid comes to
-constexpr double kFarOrigin = 0x1p44;  // quanta: beyond, rounding comes to too many of them
+constexpr double kSpare = 1;           // quanta; more than all rounding errors within the grid
+constexpr double kFarOrigin = 0x1p44;  // quanta; farther away, rounding errors are too large
 constexpr double kBeyond = std::numeric_limits<double>::infinity();
-constexpr std::size_t kPortion = 16;    // bodies, about, that are visited together
-constexpr std::size_t kFewCells = 64;   // that are read even if there are fewer bodies
-constexpr double kCellsPerSlab = 2.25;  // of a ray, on average at most
+constexpr std::size_t kPortion = 16;    // about so many bodies are visited together
+constexpr std::size_t kFewCells = 64;   // so many cells may be read even if there are fewer bodies
+constexpr double kCellsPerSlab = 2.25;  // the most cells of a ray in a slab, on average
 
 std::uint32_t quantum_below(double q) noexcept {
   const double down = std::floor(q - kSpare);
@@ -23,7 +23,7 @@ std::uint32_t quantum_above(double q) noexcept {
   return !(up > 0) ? 0 : up >= kLastQuantum ? kLastQuantum : static_cast<std::uint32_t>(up);
 }
 
-// What both have in common; empty (a lower end above its upper one) if nothing.
+// Returns what both boxes have in common. It is empty (a lower end is above its upper end) if there is nothing.
 QuantizedAabb common(const QuantizedAabb& a, const QuantizedAabb& b) noexcept {
   QuantizedAabb both{};
   for (std::size_t d = 0; d < 3; ++d) {
@@ -33,7 +33,7 @@ QuantizedAabb common(const QuantizedAabb& a, const QuantizedAabb& b) noexcept {
   return both;
 }
 
-// The lines that have to be read; 0 for an empty box.
+// Returns the number of cells that have to be read; 0 for an empty box.
 double cells_in(const QuantizedAabb& box) noexcept {
   double cells = 1;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -45,16 +45,16 @@ double cells_in(const QuantizedAabb& box) noexcept {
 
 }  // namespace
 
-// In quanta, from `begin` to `end` along a direction of length 1.
+// A ray in quanta, from `begin` to `end` along a direction of length 1.
 struct BoxIndex::GridRay {
   std::array<double, 3> origin, way;
   double begin, end;
-  std::size_t axis = 0;  // along which it is fastest
+  std::size_t axis = 0;  // the axis along which it is fastest
 
   double at(std::size_t d, double t) const noexcept { return origin[d] + t * way[d]; }
   void clip(const QuantizedAabb& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
-      // What reaches an end of the quantized grid may reach beyond it.
+      // A box at an end of the quantized grid may stand for one that reaches beyond it.
       const double lower = box.lower[d] == 0 ? -kBeyond : box.lower[d] - 2 * kSpare,
                    upper = box.upper[d] == kLastQuantum ? kBeyond : box.upper[d] + 2 * kSpare;
       if (way[d] == 0) {
@@ -106,8 +106,8 @@ Near BoxIndex::near_box(const QuantizedGrid& grid, const Vec3& lower, const Vec3
   return whole ? Near::all : Near::some;
 }
 
-// Slab after slab of cells across the axis along which the ray is fastest: it crosses few cells in each. False if the
-// visit has had enough.
+// Visits the bodies near the ray in one slab of cells after another. Slabs are across the axis along which the ray is
+// fastest, because it crosses few cells in each. Returns false if visit() has returned false.
 bool BoxIndex::walk_slabs(const QuantizedGrid& grid, const GridRay& ray, std::vector<BodyIndex>& portion,
                           const VisitPortion& visit) const {
   const std::size_t m = ray.axis;

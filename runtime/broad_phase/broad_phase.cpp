@@ -12,7 +12,7 @@ using detail::Step;
 
 MotionSource values_of(const std::vector<Motion>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
-    const Motion none{.radius = -1};  // refused
+    const Motion none{.radius = -1};  // the radius is not valid, so the body is refused
     for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
   };
 }
@@ -47,12 +47,13 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
 BroadPhase::~BroadPhase() = default;
 
-// The last one not after what everything has been reported up to; -1: none yet.
+// Returns the last step up to which everything has been reported; -1 if there is none yet.
 Step BroadPhase::step_reported() const noexcept {
   return std::isinf(seen_time_) ? -1 : std::max<Step>(-1, state_->pool.clock.step_at(seen_time_));
 }
 
-// While we slept, the caller's time went on: the change counts from the first step after it.
+// The caller's time may have advanced since the last step that was processed, so the change counts from the first step
+// that has not been reported.
 void BroadPhase::wake_for_change() {
   if (state_->woken) return;
   state_->woken = true;
@@ -65,7 +66,8 @@ void BroadPhase::note_next_step() {
   const bool any = state_->next != kNeverStep;
   next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
   wake_time_ = any ? clock.earliest(state_->next) : next_time_;
-  if (state_->pool.motions.check() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
+  // To check bounds, every call has to process the steps up to its time.
+  if (state_->pool.motions.check() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();
 }
 
 void BroadPhase::validate_up_to(Step step) {
@@ -80,7 +82,8 @@ Advance BroadPhase::process(double t_now, const Budget* budget, std::uint64_t re
   if (!(std::fabs(t_now) <= max_time_) || state_->busy) {
     return {.time = next_time_, .time_refused = true};
   }
-  // A step that is left half-way cannot be taken up again: what is reported after it would be wrong.
+  // A step that an exception ends half-way cannot be resumed, and later reports would be wrong. So the broad phase is
+  // not valid any more.
   const auto fail = [this] {
     max_time_ = -1;
     next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
@@ -183,7 +186,7 @@ bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   return true;
 }
 
-// A window update finds all near pairs again, and those found before become void.
+// The change causes a window update, which finds all near pairs of the body again; those found before become void.
 bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
   if (!may_change() || !contains(body)) return false;
   detail::BodyPool& pool = state_->pool;
@@ -213,7 +216,7 @@ void BroadPhase::set_pair_filter(PairFilter filter) {
   state_->pool.filters.set_function(std::move(filter));
 }
 
-// What was due at the steps in between is void once each body has been asked for again.
+// All bodies are asked for again, so what was due at the steps in between is void.
 std::uint64_t BroadPhase::skip_to(double t) {
   if (!may_change() || !(std::fabs(t) <= max_time_)) return 0;
   const Step from = step_reported() + 1, to = state_->pool.clock.step_at(t);

@@ -11,8 +11,8 @@ namespace {
 using detail::Near;
 
 constexpr std::size_t kAskedAtOnce = 64;
-constexpr double kFirstReach = 0.5;       // of a cell, for the nearest body: half of the cube that is searched first
-constexpr double kQueryRounding = 1e-12;  // of the coordinates: more than the tests' own
+constexpr double kFirstReach = 0.5;       // in cells; half the width of the cube that nearest() searches first
+constexpr double kQueryRounding = 1e-12;  // relative to coordinates; more than the rounding errors of the tests
 
 bool fits(double x) noexcept { return std::fabs(x) <= kMaxNumber; }  // not NaN
 bool fits(const Vec3& v) noexcept { return fits(v[0]) && fits(v[1]) && fits(v[2]); }
@@ -25,7 +25,7 @@ bool admits(const QueryFilter& query, const BodyFilter& body) noexcept {
   return (query.mask & body.category) != 0 && (query.category & body.mask) != 0;
 }
 
-// From the point to the nearest one of the box.
+// Returns the distance of the point from the box.
 double distance_to_box(const Vec3& lower, const Vec3& upper, const Vec3& point) noexcept {
   Vec3 off;
   for (std::size_t d = 0; d < 3; ++d) off[d] = point[d] - std::clamp(point[d], lower[d], upper[d]);
@@ -34,13 +34,13 @@ double distance_to_box(const Vec3& lower, const Vec3& upper, const Vec3& point) 
 
 }  // namespace
 
-// A direction of 0 makes a point of length 0, whose way does not matter.
+// A line of a query. A direction of 0 makes it a point of length 0, whose `way` does not matter.
 struct BodyQueries::Line {
   Vec3 origin, way;
-  double unit, length;  // of what `along` counts, and as many of it
+  double unit, length;  // the length of a unit of `along`, and the length of the line
 
   Line(const Vec3& from, const Vec3& direction, double longest) noexcept : origin(from), way{1, 0, 0} {
-    const double size = max_coordinate(direction);  // squares of very small ones vanish
+    const double size = max_coordinate(direction);  // the squares of very small numbers underflow
     const Vec3 scaled = size > 0 ? (1 / size) * direction : Vec3{};
     const double norm = runtime::length(scaled);
     if (size > 0) way = (1 / norm) * scaled;
@@ -48,7 +48,7 @@ struct BodyQueries::Line {
     length = size > 0 ? longest * unit : 0;
   }
 
-  // Where it enters the sphere, as a length; infinity: nowhere.
+  // Returns the distance along the line at which it enters the sphere, or infinity if it does not.
   double enters(const Vec3& center, double radius) const noexcept {
     const Vec3 to_center = center - origin;
     if (dot(to_center, to_center) <= radius * radius) return 0;
@@ -62,14 +62,14 @@ struct BodyQueries::Line {
   double along(double at) const noexcept { return unit > 0 ? at / unit : 0; }
 };
 
-// That queries are about.
+// Returns the step that queries are about.
 std::int64_t BodyQueries::step() const noexcept { return std::max<detail::Step>(0, world_->step_reported()); }
 
 double BodyQueries::time() const noexcept { return world_->state_->pool.clock.time(step()); }
 
 bool BodyQueries::begin(bool valid) {
   refused_ = !valid || !world_->may_change();
-  if (world_->state_->busy) return false;  // this may be the object whose query is under way
+  if (world_->state_->busy) return false;  // a query of this object may be under way
   candidates_.clear(), found_.clear(), hits_.clear(), near_.clear();
   if (refused_) return false;
   detail::grow(seen_, world_->state_->pool.slots());
@@ -80,7 +80,7 @@ bool BodyQueries::begin(bool valid) {
   return true;
 }
 
-// Those that are there, count, and have not come up in this query.
+// Returns the bodies that exist, that the filter admits and that have not come up in this query yet.
 std::span<const BodyIndex> BodyQueries::new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter) {
   const detail::BodyPool& pool = world_->state_->pool;
   asked_.clear();
@@ -92,7 +92,7 @@ std::span<const BodyIndex> BodyQueries::new_ones(std::span<const BodyIndex> bodi
   return asked_;
 }
 
-// use(body, motion) for each that is new, with its motion at time().
+// Calls use(body, motion) for each of the new_ones() with a valid motion, which is that at time().
 template <typename Use>
 void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilter& filter, const Use& use) {
   std::span<const BodyIndex> rest = new_ones(bodies, filter);
@@ -104,7 +104,7 @@ void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilt
       const BroadPhase::Busy busy(*world_->state_);
       world_->state_->pool.motions.ask(now, rest.first(count), std::span(motions_).first(count));
     }
-    refused_ = false;  // what the source has asked of this object was
+    refused_ = false;  // queries that the source has tried meanwhile were refused, but not this one
     for (std::size_t i = 0; i < count; ++i) {
       if (is_valid(motions_[i])) use(rest[i], motions_[i]);
     }
@@ -118,7 +118,8 @@ std::span<const BodyIndex> BodyQueries::all_bodies() {
   return candidates_;
 }
 
-// Of all bodies on the line, or of those that may be the first one.
+// Returns the hits of all bodies on the line or, if `first` is set, those of bodies that may be the first one, with the
+// distance as BodyHit::along.
 std::span<const BodyHit> BodyQueries::along(const Line& line, const QueryFilter& filter, bool first) {
   double best = std::numeric_limits<double>::infinity();
   const auto visit = [&](std::span<const BodyIndex> bodies, double until) {
@@ -165,7 +166,7 @@ std::span<const BodyHit> BodyQueries::all_on_segment(const Vec3& p, const Vec3& 
   return along({p, q - p, 1}, filter, false);
 }
 
-// touches(motion) decides about those whose spheres may meet the box.
+// Returns the bodies for which touches(motion) is true, among those whose spheres may meet the box.
 template <typename Touches>
 std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& upper, const QueryFilter& filter,
                                                  const Touches& touches) {
@@ -195,7 +196,7 @@ std::span<const BodyIndex> BodyQueries::touching_box(const Vec3& lower, const Ve
   });
 }
 
-// In cubes, each twice as large as the one before, until the k-th is nearer than the cube's faces.
+// Searches cubes, each twice as large as the one before, until the k-th body is nearer than the faces of the cube.
 std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k, const QueryFilter& filter) {
   if (!begin(fits(point))) return {};
   k = std::min(k, world_->size());

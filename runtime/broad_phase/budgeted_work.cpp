@@ -18,7 +18,7 @@ void BudgetedWork::reclassified(BodyIndex body) {
   reclassified_ = true;
 }
 
-// Pairs go to the class that they now belong to.
+// Moves bodies and pairs to the classes that they now belong to.
 void BudgetedWork::sort_pairs_again() {
   reclassified_ = false;
   tests_.clear();
@@ -41,11 +41,12 @@ void BudgetedWork::join(std::span<const BodyIndex> due, std::span<const PairEven
   };
   for (const PairEvent& event : events) {
     if (!state_.windows.valid(event)) continue;
-    state_.overlaps.drop(event.pair);  // unless it is tested at this step
+    state_.overlaps.drop(event.pair);  // the pair leaves the list unless it is tested at this step
     test_later(event.pair, event.created);
   }
   if (backlog_.no_body_waits()) return;
-  // No bound says any more that these overlap still.
+  // The bounds of bodies that wait may not hold any more, so it is not known whether their pairs still overlap. These
+  // pairs leave the list and wait for a test.
   unsure_.clear();
   state_.overlaps.take_out([&](const BodyPair& pair) { return backlog_.waits(pair.a) || backlog_.waits(pair.b); },
                            unsure_);
@@ -62,7 +63,7 @@ unsigned BudgetedWork::work(Step now, BudgetTracker& tracker) {
   return kNoClass;
 }
 
-// All that waits in a class; false if the budget ends before.
+// Does all work that waits in a class. Returns false if the budget ends before that.
 bool BudgetedWork::work_through(Step now, unsigned importance, BudgetTracker& tracker) {
   for (;;) {
     Backlog::Rank& rank = backlog_.rank(importance);
@@ -74,7 +75,7 @@ bool BudgetedWork::work_through(Step now, unsigned importance, BudgetTracker& tr
     }
     if (tracker.spent()) return false;
     if (!updating || !testing) rank.lead = 0;
-    // Half of what is left at a time: the other half is for the others.
+    // Each kind of work gets half of what is left at a time, so that the other half remains for the other kind.
     const std::size_t left = tracker.grant(kWorkPerClock), most = updating && testing ? (left + 1) / 2 : left;
     if (!updating || (testing && rank.lead > 0)) {
       rank.lead -= static_cast<std::int64_t>(test_waiting(now, rank.due, false, most, tracker));
@@ -86,7 +87,7 @@ bool BudgetedWork::work_through(Step now, unsigned importance, BudgetTracker& tr
   }
 }
 
-// Both return the units of work, which are about `most` at most.
+// This function and the next one return the units of work that they have done, which are at most about `most`.
 std::size_t BudgetedWork::update_waiting(Step now, unsigned importance, std::size_t most, BudgetTracker& tracker) {
   std::array<BodyIndex, kWorkPerClock> bodies;
   const std::size_t count = backlog_.take(importance, std::span(bodies).first(std::min(most, bodies.size())));
@@ -104,7 +105,7 @@ std::size_t BudgetedWork::update_waiting(Step now, unsigned importance, std::siz
   return count;
 }
 
-// What has been found is tested even if one of the two has been updated since.
+// Pairs that an update has found (`found`) are tested even if one of their bodies has been updated since.
 std::size_t BudgetedWork::test_waiting(Step now, WorkQueue<PairEvent>& queue, bool found, std::size_t most,
                                        BudgetTracker& tracker) {
   tests_.clear();

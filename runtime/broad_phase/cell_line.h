@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kLastInEntry = (1u << kEntryBits) - 1;
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
-// `from` has the three fields of the lower ends, `below` those of the upper ends.
+// Returns an entry. `from` has the three fields of the lower ends, `below` those of the upper ends.
 ORCHARD_INLINE std::uint64_t entry_of(std::uint64_t from, std::uint64_t below, BodyIndex body) noexcept {
   return std::uint64_t{body} << kIdShift | below << 3 * kFieldBits | from;
 }
@@ -32,12 +32,12 @@ constexpr BodyIndex body_of(std::uint64_t entry) noexcept { return static_cast<B
 template <typename Of>
 ORCHARD_INLINE std::uint64_t zeros(const CellLine& line, const Of& of) noexcept {
   std::uint64_t bits = 0;
-#if defined(ORCHARD_VECTORS) && defined(__SSE2__)  // signs of two are one instruction
+#if defined(ORCHARD_VECTORS) && defined(__SSE2__)  // one instruction reads the signs of two numbers
   using Two __attribute__((vector_size(16))) = std::uint64_t;
   for (std::size_t i = 0; i < 4; ++i) {
     Two entries;
     std::memcpy(&entries, reinterpret_cast<const char*>(&line) + i * sizeof entries, sizeof entries);
-    const Two signs = -of(entries);  // set unless it is 0
+    const Two signs = -of(entries);  // the sign is set unless the value is 0
     bits |= static_cast<std::uint64_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(signs))) << 2 * i;
   }
   bits = ~bits & ((1u << kLineRoom) - 1);
@@ -116,14 +116,14 @@ class BoxInCell {
   }
 
  private:
-  // The fourth places are 0.
+  // Unpacks a box. The fourth numbers are 0.
   ORCHARD_INLINE static void read(const PackedAabb& box, Numbers& lower, Numbers& upper) noexcept {
 #ifdef ORCHARD_VECTORS
     using Bytes __attribute__((vector_size(16))) = std::uint8_t;
     using Shorts __attribute__((vector_size(16))) = std::uint16_t;
     const auto all = load<Numbers>(box);
     lower = all & Numbers{~0u, ~0u, ~0u, 0};
-    // The last four bytes, each as a number, in two steps that are one instruction each.
+    // The last four bytes become a number each, in two steps of one instruction each.
     const auto shorts = reinterpret_cast<Shorts>(__builtin_shufflevector(
         reinterpret_cast<Bytes>(all), Bytes{}, 8, 16, 9, 17, 10, 18, 11, 19, 12, 20, 13, 21, 14, 22, 15, 23));
     upper = lower + reinterpret_cast<Numbers>(__builtin_shufflevector(shorts, Shorts{}, 4, 8, 5, 9, 6, 10, 7, 11));

@@ -10,7 +10,7 @@ namespace detail {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping early is early, not late
+constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping makes the time early, not late
 
 template <typename Kind>
 ORCHARD_INLINE auto reach_of(const MotionLanes<typename Kind::Numbers>& m,
@@ -29,12 +29,12 @@ ORCHARD_INLINE auto slack_of(const MotionLanes<typename Kind::Numbers>& a, const
          all_of<Kind>(kMinLength);
 }
 
-// The first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0, where the gap is positive; infinity if there is
-// none. acceleration >= 0.
+// Returns the first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0, or infinity if there is none. The result
+// has no meaning where the gap is not positive. Precondition: acceleration >= 0.
 template <typename Kind, typename Numbers = typename Kind::Numbers>
 ORCHARD_INLINE Numbers closing(const Numbers& gap, const Numbers& slope, const Numbers& acceleration) noexcept {
   const Numbers root = Kind::sqrt(slope * slope + 2 * acceleration * gap);
-  const auto down = slope < 0;  // no cancellation in either form
+  const auto down = slope < 0;  // no cancellation occurs in either form
   const Numbers above = Kind::choose(down, 2 * gap, slope + root),
                 below = Kind::choose(down, root - slope, acceleration);
   return Kind::choose(below > 0, above / below, all_of<Kind>(kNever));
@@ -56,13 +56,14 @@ ORCHARD_INLINE Numbers contact_of(const Horns<Numbers>& p, typename Kind::Mask o
     found = Kind::choose(open, Kind::choose(apart, Kind::choose(in_time, next, never), t), found);
     open = open & apart & in_time & (step > all_of<Kind>(resolution));
     if (!Kind::any(open)) break;
-    t = Kind::choose(open, next, t);  // that of the others may be infinite
+    t = Kind::choose(open, next, t);  // the next time of other lanes may be infinite
   }
   return found;
 }
 
-// As the root is concave, |offset + v t| <= |offset| + (t offset . v + t^2 v^2 / 2) / |offset|; it is at most
-// |offset| + t |v|, too. `radius`: less all slack.
+// Returns how long two bodies that touch certainly overlap, at most `limit`. `p.radius` is the sum of the radii less
+// all slack. As the root is concave, |offset + v t| <= |offset| + (t offset . v + t^2 v^2 / 2) / |offset|; it is also
+// at most |offset| + t |v|.
 template <typename Kind, typename Numbers = typename Kind::Numbers>
 ORCHARD_INLINE Numbers lasting_of(const Horns<Numbers>& p, const Numbers& limit) noexcept {
   const Numbers distance = Kind::sqrt(dot_of(p.offset, p.offset)), speed = Kind::sqrt(dot_of(p.velocity, p.velocity));
@@ -76,8 +77,8 @@ ORCHARD_INLINE Numbers lasting_of(const Horns<Numbers>& p, const Numbers& limit)
   return least<Kind>(limit, Kind::choose(better, tangent, sure));
 }
 
-// Lemma 4.2 for one body of the pair: its sphere stays behind a plane, so that the other one has to cross it. 0 if it
-// has no half-space.
+// Returns the earliest contact by Lemma 4.2 for body a: its sphere stays behind a plane, so the other body has to cross
+// that. Returns 0 if a has no half-space, or if there is no gap along its normal.
 template <typename Kind, typename Numbers = typename Kind::Numbers>
 ORCHARD_INLINE Numbers half_space_contact(const MotionLanes<Numbers>& a, const MotionLanes<Numbers>& b,
                                           const Numbers& slack) noexcept {
@@ -89,7 +90,7 @@ ORCHARD_INLINE Numbers half_space_contact(const MotionLanes<Numbers>& a, const M
     d[i] = unit * a.half_space[i], way[i] = b.position[i] - a.position[i], speed[i] = b.velocity[i] - a.velocity[i];
   }
   const Numbers gap = dot_of(way, d) - a.radius - b.radius - slack;
-  // How much of b's acceleration can point along -d, given its own half-space.
+  // `share` is the part of b's acceleration that can point along -d, given b's own half-space.
   const Numbers cosine = dot_of(d, b.half_space) / other;
   const Numbers sine = Kind::sqrt(most<Kind>(zero, one - cosine * cosine));
   const Numbers some = least<Kind>(one, Kind::choose(cosine < zero, sine, one) + all_of<Kind>(1e-7));  // a root's error
@@ -99,7 +100,8 @@ ORCHARD_INLINE Numbers half_space_contact(const MotionLanes<Numbers>& a, const M
   return Kind::choose(both(length > zero, gap > zero), contact, zero);
 }
 
-// A contact by the two bodies' half-spaces, too: not before both allow it, and infinity if that is after the limit.
+// Returns the contact as delayed by the half-spaces of the two bodies: it is not before both allow it, and infinity if
+// that is after the limit.
 template <typename Kind, typename Numbers = typename Kind::Numbers>
 ORCHARD_INLINE Numbers tightened(const MotionLanes<Numbers>& a, const MotionLanes<Numbers>& b, const Numbers& contact,
                                  const Numbers& limit, const Numbers& slack) noexcept {
@@ -108,7 +110,7 @@ ORCHARD_INLINE Numbers tightened(const MotionLanes<Numbers>& a, const MotionLane
   return Kind::choose(tight <= limit, tight, all_of<Kind>(kNever));
 }
 
-// Of as many pairs as the kind has numbers. False if a motion may not be valid.
+// Computes the times of as many pairs as the kind has numbers. Returns false if a motion may be invalid.
 template <typename Kind, typename Numbers = typename Kind::Numbers>
 ORCHARD_INLINE bool find_times(const Motion* motions, const double* limits, const PairPrecision& precision,
                                double* seconds, bool* touching) noexcept {

@@ -7,11 +7,12 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kManyPairs = 0.5;                    // per body: so many are worth a note of each body's sphere
-constexpr std::size_t kMinBodiesAtCommonExpiry = 32;  // that are worth a step more
-constexpr Step kMinStepsBeforeCommonExpiry = 4;       // half of an update ahead of each would be half an update more
-constexpr std::size_t kAskedAhead = 8;                // bodies, to see whether the next bounds are known
-constexpr Step kNotSorted = 256;                      // steps for which nothing is sorted once that has not suited
+constexpr double kManyPairs = 0.5;                    // near pairs per body from which on it pays to note spheres
+constexpr std::size_t kMinBodiesAtCommonExpiry = 32;  // so many bodies are worth another step
+// In shorter windows, updating half of the bodies ahead would cost half an update more for each window.
+constexpr Step kMinStepsBeforeCommonExpiry = 4;
+constexpr std::size_t kAskedAhead = 8;  // bodies that are asked whether their next bounds are known
+constexpr Step kNotSorted = 256;        // steps without sorting after one for which it was not suitable
 
 }  // namespace
 
@@ -28,17 +29,17 @@ void KineticBroadPhase::changed(BodyIndex body) {
   state_.changes.note(body);
 }
 
-// The next step takes its box out, with those of the others that change.
+// The next step removes the box of the body, together with those of other bodies that are gone.
 void KineticBroadPhase::removed(BodyIndex body) {
   budgeted_.leave(body);
   state_.changes.note(body);
   state_.overlaps.mark(body, OverlapList::kUpdated);
 }
 
-// Those that have changed, or were added, are due; those that are gone leave, together.
+// Makes the bodies due that have changed or were added. The boxes of bodies that are gone leave the grid together.
 void KineticBroadPhase::take_changes() {
   const bool all_alive = state_.pool.size() == state_.pool.slots();
-  std::size_t count = due_.bodies.size(), gone = count + state_.changes.size();  // these from the end on
+  std::size_t count = due_.bodies.size(), gone = count + state_.changes.size();  // those that are gone, from the end on
   make_room(due_.bodies, gone);
   due_.bodies.resize(gone);
   const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
@@ -50,7 +51,7 @@ void KineticBroadPhase::take_changes() {
       return;
     }
     due_.bodies[--gone] = body;
-    state_.windows[body].end = kNeverStep;  // no next update, until the slot's next body
+    state_.windows[body].end = kNeverStep;  // no update is due until another body gets the slot
     state_.windows.void_events(body);
   });
   state_.boxes.take_away(std::span(due_.bodies).subspan(gone));
@@ -65,34 +66,36 @@ void KineticBroadPhase::collect_due(Step now) {
       prefetch(&state_.windows[body]), prefetch(state_.boxes.at(body)), prefetch(state_.changes.at(body));
     }
     Window& window = state_.windows[due_.entries[i]];
-    if (window.end != now || state_.changes.has(due_.entries[i])) continue;  // updated since
+    if (window.end != now || state_.changes.has(due_.entries[i])) continue;  // void, or among the changes
     window.end = kUpdateDue;
     due_.bodies.push_back(due_.entries[i]);
   }
   take_changes();
 }
 
-// What has not been updated for this step yet is in due_.bodies already; the rest changed since, or was added.
+// Adds the bodies that have changed since the step before, or were added, to due_.bodies, which already has those that
+// were not updated ahead. Those that are gone leave it.
 void KineticBroadPhase::complete_due() {
-  if (state_.changes.empty() && state_.pool.size() == state_.pool.slots()) return;  // nor is anybody gone
+  if (state_.changes.empty() && state_.pool.size() == state_.pool.slots()) return;  // and no body is gone
   std::erase_if(due_.bodies, [&](BodyIndex body) { return !state_.pool.alive(body) || state_.changes.has(body); });
   const std::size_t before = due_.bodies.size();
   take_changes();
   state_.boxes.take_away(std::span(due_.bodies).subspan(before));
 }
 
-// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
+// Returns whether to rebuild all boxes. If at least half of the bodies are due, that is cheaper, and it lets the plan
+// follow the bodies.
 bool KineticBroadPhase::worth_a_rebuild(std::size_t due) const noexcept {
   const std::size_t n = state_.pool.size();
-  if (state_.windows.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
+  if (state_.windows.rounds_run_out()) return true;  // rounds of bodies that seldom update have to stay comparable
   if (due == 0 || n == 0) return false;
   return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(state_.counts);
 }
 
-// False if a budget interrupted it.
+// Makes a new plan and a new grid if the old ones do not fit any more. Returns false if a budget interrupted it.
 bool KineticBroadPhase::replan(Step now, BudgetTracker& tracker) {
   GridCounts counts = state_.counts;
-  if (sorting_) {  // balls of the same size touch in so many of the cases in which their boxes meet
+  if (sorting_) {  // if boxes of balls of one size meet, the balls touch in this share of the cases
     constexpr double kBallOfBox = std::numbers::pi / 6;
     const double met = static_cast<double>(sorted_.pairs().size()) / kBallOfBox;
     counts = {.bodies = state_.pool.size(), .pairs = static_cast<std::uint64_t>(met)};
@@ -137,7 +140,8 @@ void KineticBroadPhase::make_room_for_boxes() {
   pairs_.spheres().make_room(state_.pool.slots());
 }
 
-// Everything that is due, and what a budget left over before.
+// Does everything that is due, and what budgets have left over. `completing`: a part of the updates was done one step
+// ahead.
 void KineticBroadPhase::step_in_full(Step now, bool completing) {
   if (!budgeted_.nothing_left()) {
     for (const BodyIndex body : due_.bodies) budgeted_.leave(body);  // changed while it waited: one update is enough
@@ -170,7 +174,7 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
   common_expiry_ = planner_.plan().window >= kMinStepsBeforeCommonExpiry ? find_common_expiry(now) : kNeverStep;
 }
 
-// Where most windows end, if these are many.
+// Returns the step at which most windows end, if these are many; otherwise kNeverStep.
 Step KineticBroadPhase::find_common_expiry(Step now) const noexcept {
   for (Step step = state_.wheel.next_after(now); step != kNeverStep; step = state_.wheel.next_after(step)) {
     const std::size_t bodies = state_.wheel.bodies_due(step);
@@ -180,8 +184,9 @@ Step KineticBroadPhase::find_common_expiry(Step now) const noexcept {
   return kNeverStep;
 }
 
-// A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
-// speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
+// Does as much as the budget allows. A rebuild removes all boxes. It is necessary after sorting, when rounds run out,
+// and if there are many more bodies than were planned for. If it only saves time, it is done only if no budget has
+// interrupted a step for as long as a window lasts; otherwise, nothing would ever be finished.
 unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
   const bool has_to = sorting_ || state_.windows.rounds_run_out();
@@ -199,7 +204,8 @@ unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   return budgeted_.work(now, tracker);
 }
 
-// Static bodies have windows without end, which are worth keeping if there are many.
+// Returns whether to sort the spheres instead of using boxes. Static bodies have windows without end, which are worth
+// keeping if more than half of the bodies are static.
 bool KineticBroadPhase::worth_sorting(Step now) const noexcept {
   return planner_.plan().window == 1 && state_.pool.slots() > kFewBodies && now >= sorts_from_ &&
          2 * state_.pool.statics.count() <= state_.pool.size();
@@ -233,9 +239,9 @@ void KineticBroadPhase::step_by_sorting(Step now) {
   if (!sorted_.suits()) sorts_from_ = now + kNotSorted;
 }
 
-// A step ahead of the common expiry: the present bounds have answered for this step, and hold no longer than that. If
-// the next ones are known already, half of the work is done now, in updates with windows that begin at the common
-// expiry.
+// Does about half of the updates of the common expiry one step ahead. The present bounds have answered for this step,
+// and hold no longer than that. If the next ones are known already, the updates are done now, with windows that begin
+// at the common expiry; otherwise, it returns false.
 bool KineticBroadPhase::prepare(Step now) {
   const Step from = now + 1;
   common_expiry_ = kNeverStep;
@@ -263,7 +269,7 @@ bool KineticBroadPhase::prepare(Step now) {
   return true;
 }
 
-// Nothing is left to plan for, nor to wake up for.
+// Without bodies, nothing is left to plan for or to wake up for.
 void KineticBroadPhase::forget_all() noexcept {
   state_.wheel.clear();
   state_.overlaps.clear();
@@ -282,7 +288,7 @@ void KineticBroadPhase::begin(Step now) {
   if (prepared_) return complete_due();
   due_.bodies.clear();
   collect_due(now);
-  if (sorting_) all_are_due();  // all windows were of one step
+  if (sorting_) all_are_due();  // all windows had one step
 }
 
 StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
@@ -310,7 +316,7 @@ StepReport KineticBroadPhase::step(Step now, BudgetTracker& tracker) {
 
 StepReport KineticBroadPhase::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
   StepReport report{now + 1, state_.overlaps.pairs()};
-  if (state_.wheel.crowded(state_.pool.size())) {  // as where bounds are cancelled again and again
+  if (state_.wheel.crowded(state_.pool.size())) {  // for example, if bounds are cancelled again and again
     const auto end_of = [&](BodyIndex body) -> Step& { return state_.windows[body].end; };
     state_.wheel.tidy(now, end_of, [&](const PairEvent& event) { return state_.windows.valid(event); });
   }
@@ -338,8 +344,8 @@ std::size_t KineticBroadPhase::predict_load(Step now, std::span<StepsAhead> step
   return known;
 }
 
-// New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one: they
-// have no box, or an old one, and may be anywhere.
+// Appends the bodies that have no box, or an old one, and may be anywhere: new ones, cancelled ones, those that wait
+// for a budget, and those that are updated at the step after this one.
 void KineticBroadPhase::append_loose(std::vector<BodyIndex>& bodies) const {
   state_.changes.append_to(bodies);
   budgeted_.append_bodies(bodies);

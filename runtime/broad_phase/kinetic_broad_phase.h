@@ -5,20 +5,22 @@
 
 namespace orchard::runtime::detail {
 
-// The default method. Each body is updated once per window of steps: a box around all that its bound allows until the
-// window's end goes into a grid, and every other body whose box it meets makes a near pair. A near pair has an event at
-// the first step at which the two bounds can touch; no event lies beyond the earlier end of the two windows, as the
-// update due there finds the pair again. A pair that overlaps has an event at the first step at which it can have
-// parted; until then it stays in the list that is reported.
+// The default algorithm. Each body is updated once per window of steps. An update makes a box around all places that
+// the motion bound of the body allows until the window ends, and inserts it into a grid. Every body whose box it meets
+// there forms a near pair with it. A near pair has an event at the first step at which the two bounds can touch. No
+// event lies beyond the earlier end of the two windows, because the update that is due there finds the pair again. A
+// pair that overlaps has an event at the first step at which it can have parted; until then, it stays in the list that
+// is reported.
 //
-// Where bounds are cancelled at every step, windows have one step. Where none is longer, boxes and events are of no
-// use: the spheres are sorted again at each step.
+// If bounds are cancelled at every step, windows have one step. If no window is longer, boxes and events have no use:
+// the spheres are sorted again at each step.
 //
-// Where most windows end at one step, the *common expiry*, all boxes are rebuilt then, and half of that work is done
-// a step ahead: a bound that holds up to the step before the common expiry still answers for it, while the next bound
-// is known already.
+// If most windows end at one step, the *common expiry*, all boxes are rebuilt there, and about half of that work is
+// done one step ahead. That step can do it because a bound that holds up to the step before the common expiry still
+// answers for it, while the next bound is already known.
 //
-// Here is what a step does and when everything is rebuilt; each part owns what it needs for that.
+// This class decides what a step does and when everything is rebuilt. Each part owns the state that it needs for its
+// task.
 class KineticBroadPhase final : public BroadPhaseAlgorithm {
  public:
   KineticBroadPhase(BodyPool& pool, const BroadPhaseOptions& options);
@@ -68,12 +70,12 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
 
   bool sorting_ = false;               // the last step was done by sorting: there are no boxes, and all bodies are due
   Step sorts_from_ = kNeverStep / -2;  // at steps before, nothing is sorted
-  Step interrupted_at_ = kNeverStep / -2;    // by a budget
+  Step interrupted_at_ = kNeverStep / -2;    // by a budget, at the last such step
   bool prepared_ = false;                    // half of the updates for the next step have been done ahead
   Step common_expiry_ = kNeverStep;          // the step at which most windows end
-  struct Due {                               // at the step under way
-    std::vector<BodyIndex> bodies, entries;  // entries: what the wheel had for it
-    std::vector<PairEvent> pairs;            // that wait for their tests
+  struct Due {                               // what is due at the step under way
+    std::vector<BodyIndex> bodies, entries;  // entries: the bodies that the timing wheel had for it
+    std::vector<PairEvent> pairs;            // pairs that wait for their tests
   };
   Due due_;
 };

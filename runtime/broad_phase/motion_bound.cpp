@@ -6,15 +6,15 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kOwnRounding = 1e-9;      // of velocities and radii: the application's own arithmetic
-constexpr double kTimeRounding = 0x1p-50;  // of times
+constexpr double kOwnRounding = 1e-9;      // relative to velocities and radii, for the application's own arithmetic
+constexpr double kTimeRounding = 0x1p-50;  // relative to times
 
 double above(double value, double bound) noexcept { return value > bound ? value - bound : 0; }
 
 }  // namespace
 
 bool is_valid(const Motion& m) noexcept {
-  // Without branches, and mostly enough: NaN stays in a sum and fails the comparison.
+  // This test has no branches and mostly suffices. NaN stays in a sum and fails the comparison.
   const double squares = dot(m.position, m.position) + dot(m.velocity, m.velocity) + dot(m.half_space, m.half_space) +
                          (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
   const bool in_range = squares <= kMaxNumber * kMaxNumber, signs = m.radius >= 0 && m.acceleration >= 0;
@@ -43,7 +43,8 @@ MotionBoundExcess motion_bound_excess(const Motion& bound, double bound_time, co
   if (!(seconds >= 0) || time > bound.expiry) return excess;
   const double reach = bound.drift * seconds + bound.acceleration * seconds * seconds / 2;
   const Vec3 foreseen = bound.position + seconds * bound.velocity, off = given.position - foreseen;
-  // Of all that has been added up: a body on its way through the world's origin is not more exact there.
+  // The slack is relative to all numbers that have been added up, because a body that flies through the world's origin
+  // is not more exact there.
   const double coordinates = length(given.position) + length(bound.position) + seconds * length(bound.velocity) + reach;
   const double slack = kMotionSlack * coordinates + 2 * position_slack;
   const double size = length(bound.half_space);

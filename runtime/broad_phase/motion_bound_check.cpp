@@ -5,7 +5,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Whether a body that keeps the bounds of `newer` also keeps those of `older`.
+// Returns whether a body that keeps the bounds of `newer` also keeps those of `older`.
 bool implies(const Motion& newer, const Motion& older) noexcept {
   const bool any = dot(older.half_space, older.half_space) > 0;
   const bool side = !any || older.half_space == newer.half_space;
@@ -26,7 +26,7 @@ bool MotionBoundCheck::kept(BodyId body, const MotionBound& bound, const Motion&
 void MotionBoundCheck::given(BodyId body, const Motion& motion, double time) {
   grow(tracks_, std::size_t{body.index} + 1);
   Track& track = tracks_[body.index];
-  if (!is_valid(motion)) {  // refused: nothing relies on it, nor on what was given before
+  if (!is_valid(motion)) {  // it is refused, so nothing relies on it or on earlier bounds
     track = {};
     return;
   }

@@ -5,7 +5,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
+constexpr double kEventResolution = 0.125;  // of a step; the time of a contact need not be known better
 
 }  // namespace
 
@@ -25,8 +25,9 @@ void NearPairs::begin_step(bool within_budget) {
   doubtful_.clear();
 }
 
-// A pair that both have just been updated: true if nothing is to be done but what this does. It is found again at the
-// end of the earlier window, and until then the spheres surely overlap, or surely do not.
+// Decides a pair by the spheres that were noted when both bodies were updated in this round. Returns false if these do
+// not suffice. Otherwise, the pair needs no event: it is found again at the end of the earlier window, and until then
+// the spheres certainly overlap, or certainly do not.
 bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, Outcome& outcome) const {
   const bool over = std::min(state_.windows[pair.a].end, state_.windows[pair.b].end) <= now + 1;
   const SphereNotes::Answer answer = spheres_.compare(pair, over);
@@ -34,7 +35,7 @@ bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, Outcome& outco
   return answer != SphereNotes::Answer::unknown;
 }
 
-// What has been updated ahead is of the next step: this one has been reported already.
+// A test ahead is for the next step, because this one has been reported already.
 void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure, Outcome& outcome) const {
   const Round round = state_.windows.round();
   const bool parting = !ahead_ || sure > 0;
@@ -44,31 +45,33 @@ void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Ste
     outcome.touching.push_back(event.pair);
     if (within_budget_) outcome.doubtful.emplace_back(event.pair, round, parting);
   }
-  // A pair with a body that waits is tested at the next step in any case.
+  // A pair with a body that waits for its update is tested at the next step in any case.
   const bool waits = state_.windows[event.pair.a].end == kUpdateDue || state_.windows[event.pair.b].end == kUpdateDue;
   if (sure + 1 < left && !waits) outcome.later.emplace_back(event.pair, round, parting, now + sure + 1);
 }
 
-// For how many whole steps both motions hold, until the next update of one of them, or until a bound expires. Written
-// where it stays: as a result it would be copied in pieces of another size than it was written in.
+// Finds for how many whole steps both motions hold: until the next update of one of the bodies, or until a bound
+// expires. The result is written where it stays. If it were returned, it would be copied in pieces of another size than
+// it was written in, and would wait for these writes.
 inline void NearPairs::find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b,
                                     Horizon& horizon) const noexcept {
   const Clock& clock = state_.pool.clock;
-  const auto known_until = [&](BodyIndex body) {  // one that waits for its update by its present motion only
+  const auto known_until = [&](BodyIndex body) {  // if the body waits for its update, only its motion sets a limit
     const Step end = state_.windows[body].end;
     return end == kUpdateDue ? now + kLongestWindow : end;
   };
   const Step sooner = std::min(known_until(pair.a), known_until(pair.b));
   const Step left = std::min(sooner, now + kLongestWindow) - now;
   const double expiry = std::min(a.expiry, b.expiry);
-  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
+  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly true, and faster to compute
   const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
   horizon.left = left;
   horizon.safe = safe;
   horizon.whole = std::max<Step>(0, std::min(left - 1, safe));
 }
 
-// They overlap, surely for a while, or they cannot for a while.
+// Records the result of a test, and when the pair has to be tested again. The bodies touch and certainly still overlap
+// for `seconds`, or they cannot touch sooner than that.
 void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching,
                        double seconds, Outcome& outcome) const {
   const Clock& clock = state_.pool.clock;
@@ -83,7 +86,7 @@ void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon,
   if (ahead < horizon.left) outcome.later.emplace_back(event.pair, state_.windows.round(), false, now + ahead);
 }
 
-// Those with a motion that is not valid leave; returns how many stay, at the front.
+// Refuses bodies whose motions are not valid, and removes their pairs. Returns how many pairs stay, at the front.
 std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, Outcome& outcome) {
   std::size_t front = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -99,11 +102,11 @@ std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Mot
   return front;
 }
 
-// Pair i, of at most kTestsAtOnce, has the motions 2 i and 2 i + 1 at this step.
+// Tests at most kTestsAtOnce pairs. Pair i has the motions 2 i and 2 i + 1 of `outcome`, which are those at this step.
 void NearPairs::settle_all(Step now, std::span<PairEvent> events, Outcome& outcome) const {
   const std::span<Motion> motions = outcome.motions;
   PairPrecision precision{kEventResolution * state_.options.time_step,
-                          4 * state_.options.position_slack};  // of two bodies, now and later
+                          4 * state_.options.position_slack};  // for two bodies, now and later
   std::array<Horizon, kTestsAtOnce> horizons;
   std::array<double, kTestsAtOnce> limits;
   PairTimes times;
@@ -161,7 +164,7 @@ void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& ou
 }
 
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
-  constexpr std::size_t kAtOnce = 1024;  // so that what is known of them is still in the cache when it is taken over
+  constexpr std::size_t kAtOnce = 1024;  // so that the outcome is still in the cache when it is applied
   for (; !pairs.empty(); pairs = pairs.subspan(std::min(kAtOnce, pairs.size()))) {
     test_near(now, pairs.first(std::min(kAtOnce, pairs.size())), own_);
     take(own_);
@@ -194,7 +197,7 @@ void NearPairs::take_overlaps_ahead(std::vector<PairEvent>& events) {
   overlaps_ahead_.clear();
 }
 
-// Of what was added in this step, the pairs of which no test has come after the last update of both bodies.
+// Keeps those overlaps of this step as doubtful that no test has confirmed since the last updates of both bodies.
 void NearPairs::keep_doubtful() {
   sure_.clear();
   for (const PairEvent& event : doubtful_) {

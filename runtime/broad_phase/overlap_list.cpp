@@ -4,12 +4,12 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kFewPairs = 64;
-constexpr std::size_t kPairsWithRoom = 16;  // for each body
+constexpr std::size_t kPairsWithRoom = 16;  // per body
 
 }  // namespace
 
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
-  // For very many, room for as many more would be too much.
+  // A copy of very many pairs would take too much memory.
   const std::size_t count = pairs.size();
   const bool few = 2 * count < slots || count < kFewPairs;
   const bool many = count > kPairsWithRoom * slots;
@@ -19,7 +19,7 @@ void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vec
   sort_by_body(room, pairs, slots, &BodyPair::a);
 }
 
-// Those of one body stay in the order in which they come.
+// Sorts pairs by one of their bodies. Pairs of the same body stay in their order.
 void OverlapList::sort_by_body(std::span<const BodyPair> from, std::span<BodyPair> to, std::size_t slots,
                                BodyIndex BodyPair::*body) {
   begins_.assign(slots + 2, 0);
@@ -51,7 +51,8 @@ void OverlapList::start_over(std::span<const BodyPair> pairs) {
   from_scratch_ = true;
 }
 
-// Both sorted. From the end, so that each part of the list moves once, and what lies before all changes not at all.
+// Applies added_ and dropped_, which are sorted, to the list. It proceeds from the end, so that each part of the list
+// moves once, and what lies before all changes does not move.
 void OverlapList::apply_changes() {
   const std::size_t count = pairs_.size();
   grow(pairs_, count + added_.size());
@@ -61,7 +62,7 @@ void OverlapList::apply_changes() {
   while (added != added_.begin() || dropped != dropped_.begin()) {
     const bool adds = dropped == dropped_.begin() || (added != added_.begin() && !(added[-1] < dropped[-1]));
     const BodyPair pair = adds ? *--added : *--dropped;
-    if (adds && dropped != dropped_.begin() && dropped[-1] == pair) --dropped;  // it touches
+    if (adds && dropped != dropped_.begin() && dropped[-1] == pair) --dropped;  // it touches, so it stays
     const auto after = std::upper_bound(begin, from, pair);
     to = to == from ? after : std::move_backward(after, from, to);
     from = after;
@@ -77,7 +78,7 @@ void OverlapList::update(std::size_t slots) {
     clear_marks();
   }
   if (from_scratch_) {
-    sort(pairs_, slots, added_);  // where nothing is
+    sort(pairs_, slots, added_);  // which is empty, so it can be scratch
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   } else if (!added_.empty() || !dropped_.empty()) {
     sort(added_, slots, room_);

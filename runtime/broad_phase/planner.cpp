@@ -5,14 +5,14 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kSmallSample = 16;   // bodies of few that a plan asks
-constexpr double kCrowding = 4;            // lines read per entry from which on the cells are too large
-constexpr double kStepsToTell = 3;         // fewer do not tell how often bounds are cancelled
-constexpr double kNearlyAll = 0.9;         // of many, at each step so far: one step is enough
-constexpr double kStepsCounted = 256;      // that tell how often bounds are cancelled
+constexpr std::size_t kSmallSample = 16;   // bodies that a plan asks at least
+constexpr double kCrowding = 4;            // lines read per entry, from which on the cells are too large
+constexpr double kStepsToTell = 3;         // fewer steps do not show how often bounds are cancelled
+constexpr double kNearlyAll = 0.9;         // of many bodies at each step; even one step shows such a share
+constexpr double kStepsCounted = 256;      // steps after which older ones count less for the share
 constexpr unsigned kPlansKept = 8;         // a plan that fits is made again after so many updates of all windows
-constexpr double kFarthestWay = 0x1p20;    // spacings, which cells are not much smaller than
-constexpr double kFewPairsPerBody = 1e-3;  // per body: too few to say anything about the prediction
+constexpr double kFarthestWay = 0x1p20;    // in spacings; cells are not much smaller than a spacing
+constexpr double kFewPairsPerBody = 1e-3;  // fewer do not show whether the prediction is right
 
 }  // namespace
 
@@ -34,9 +34,9 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
   const bool tells = steps >= kStepsToTell || (share > kNearlyAll && n > kFewBodies);
   const double cancelled = tells ? share : cancelled_;
-  const bool few = n < kSmallSample;  // of whom asking more than once would cost more than any plan saves
+  const bool few = n < kSmallSample;  // to ask these more than once would cost more than any plan saves
   if (!too_crowded && !other_number && (few || !outdated(off, cancelled))) {
-    if (steps > kStepsCounted) {  // what was long ago counts less and less
+    if (steps > kStepsCounted) {  // older steps count less and less
       cancellations_ /= 2;
       planned_at_ = now - (now - planned_at_) / 2;
     }
@@ -51,13 +51,13 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
     crowding_ = correction_ = 1;
     plans_ = 0;
   } else if (too_crowded) {
-    crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
+    crowding_ *= 2;  // bodies are in clusters, whose density counts
   }
   spread_.spacing /= crowding_;
   if (!other_number && !too_crowded && before > 0) off *= std::pow(spread_.spacing / before, 3);
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
-  // Static bodies have windows without end only where they stay in the same cells. Rounding stays below a quantum where
-  // a window's way is within the quantized grid's range.
+  // The grid does not move if there are static bodies: their windows have no end only if they stay in the same cells.
+  // Nor does it move so far in a window that it leaves the range in which rounding stays below a quantum.
   velocity_ = pool_.statics.any() ? Vec3{} : crowd_velocity(sample_);
   if (!(length(velocity_) * kLongestWindow * options_.time_step < kFarthestWay * spread_.spacing)) velocity_ = {};
   plan_ =
@@ -71,7 +71,8 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   return Outcome::rebuild;
 }
 
-// `off`: pairs seen to pairs predicted. Bounds that are cancelled more often than they were, or less, count as well.
+// Returns whether the plan does not fit any more, or is old. `off` is the ratio of the pairs seen to the pairs
+// predicted. Bounds that are cancelled more often than the plan assumes, or less often, count as well.
 bool Planner::outdated(double off, double cancelled) noexcept {
   constexpr double kSeldom = 0.005;  // a share that makes no difference
   const bool fits = 0.5 < off && off < 2;
@@ -79,8 +80,8 @@ bool Planner::outdated(double off, double cancelled) noexcept {
   return !fits || !as_often || plans_++ % kPlansKept == 1;
 }
 
-// A sample of the bodies. False if a budget ended it before it was complete: it goes on with the bodies after those
-// seen.
+// Asks for the motions of a sample of the bodies. Returns false if a budget ended it before it was complete. The next
+// call then continues with the bodies after those that were asked for.
 bool Planner::survey(Step now, BudgetTracker& tracker) {
   const std::size_t wanted = std::clamp(pool_.size() / 8, kSmallSample, kSample), stride = pool_.slots() / wanted;
   if (sample_.empty()) survey_next_ = 0;
@@ -107,8 +108,8 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   return true;
 }
 
-// Of the bodies, so that both steps take about the same time: what is done once, with code and grid that have left the
-// cache, is done ahead, and takes as long as so many updates. Of few bodies that is much of it.
+// All that is done once, with code and a grid that have left the cache, is done in the step ahead. It takes as long as
+// kOnce updates and kOncePerBody for each of at most kMostOnce bodies, which is a large part if bodies are few.
 double Planner::share_ahead() const noexcept {
   constexpr double kOnce = 20, kOncePerBody = 0.13, kMostOnce = 1000, kLeastShare = 0.1;
   const double bodies = static_cast<double>(std::max<std::size_t>(1, pool_.size()));

@@ -10,13 +10,13 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr double kMiddle = 0x1p30 + 0.5 * kQuanta;  // the origin's quantum: in the middle of a cell
-constexpr double kRoundingQuanta = 0x1p-8;          // covers some roundings of numbers below 2^32
+constexpr double kRoundingQuanta = 0x1p-8;          // covers some rounding errors of numbers below 2^32
 
 }  // namespace
 
 void BoxBlock::store(std::span<const std::uint32_t> places, std::span<PackedAabb> to) const noexcept {
   std::size_t i = 0;
-#ifdef ORCHARD_VECTORS  // four at a time, transposed
+#ifdef ORCHARD_VECTORS  // four boxes at a time, which are transposed
   using Four __attribute__((vector_size(16))) = std::uint32_t;
   for (; i + 4 <= places.size(); i += 4) {
     const auto at = [&](const auto& row) {
@@ -69,7 +69,8 @@ double QuantizedGrid::quantum(double coordinate, std::size_t axis) const noexcep
   return kMiddle + (coordinate - origin_[axis]) * per_length_;
 }
 
-// What is told of them together. Quanta are below 2^31: comparisons may take them for signed numbers, which is faster.
+// Sets BoxBlock::around and more_cells. Quanta are below 2^31, so they can be compared as signed numbers, which is
+// faster.
 ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
   std::uint32_t more_cells = 0;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -87,9 +88,10 @@ ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
   boxes.more_cells = more_cells;
 }
 
-// The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
-// that does not lie within the quantized grid is everything: rounding would no longer be under control. Returns where
-// it lies within, and the motion is valid.
+// Makes the boxes of as many bodies as the kind has numbers. Along an axis, the offset of the centre is at most v t +
+// wide(t), which is convex and so largest at an end of the duration. The same holds for the least offset. A box that
+// does not lie within the quantized grid becomes the whole grid, because rounding would no longer be bounded. Returns
+// for which bodies the box lies within the grid and the motion is valid.
 template <typename Kind, typename Row>
 ORCHARD_INLINE typename Kind::Mask QuantizedGrid::make_some(const Row& row, const double* durations, BoxBlock& boxes,
                                                             std::size_t first) const noexcept {
@@ -117,7 +119,7 @@ ORCHARD_INLINE typename Kind::Mask QuantizedGrid::make_some(const Row& row, cons
   return inside & are_valid<Kind>(of);
 }
 
-// The last ones with copies of the very last one.
+// The last vector is filled up with copies of the last body.
 template <typename Kind>
 ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std::span<const double> durations,
                                             BoxBlock& boxes) const noexcept {

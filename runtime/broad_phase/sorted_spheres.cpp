@@ -9,13 +9,13 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kCellSpare = 1 + 0x1p-12;  // of a cell: more than what coordinates within the grid are rounded by
-constexpr double kOriginCell = 0x1p30;      // cells: the origin's; beyond twice as many there is no other
+constexpr double kCellSpare = 1 + 0x1p-12;  // a factor; more than the rounding errors of coordinates in the grid
+constexpr double kOriginCell = 0x1p30;      // coordinate of the origin's cell; the largest is twice as much
 constexpr double kCellsPerSpacing = 2;      // smaller cells do not have fewer bodies
 constexpr std::size_t kLargeShare = 256;    // one in so many bodies may be larger than a cell
-constexpr std::size_t kMaxTests = 64;       // for each body and pair: with more of them boxes are the better choice
-constexpr std::size_t kLanes = 4;           // that may be read beyond the last sphere
-constexpr std::uint32_t kLarge = ~0u;       // in no line
+constexpr std::size_t kMaxTests = 64;       // per body and pair; with more tests, boxes are the better choice
+constexpr std::size_t kLanes = 4;           // so many numbers may be read beyond the last sphere
+constexpr std::uint32_t kLarge = ~0u;       // the line of spheres that are larger than a cell
 
 }  // namespace
 
@@ -35,7 +35,8 @@ void SortedSpheres::begin(std::size_t bodies, const Vec3& origin, double spacing
   per_length_ = cell_ > 0 ? 1 / cell_ : 0;
 }
 
-// Monotone. What lies too far away is taken for nearer: neighbours remain neighbours.
+// Returns the coordinate of a cell. It is monotone, and clamped for what is too far away, so neighbours remain
+// neighbours.
 std::uint32_t SortedSpheres::coordinate(double x, std::size_t axis) const noexcept {
   const double cells = (x - origin_[axis]) * per_length_ + kOriginCell;
   return static_cast<std::uint32_t>(std::clamp(cells, 1.0, 2 * kOriginCell));
@@ -63,7 +64,7 @@ void SortedSpheres::add(std::span<const BodyIndex> bodies, std::span<const Motio
   }
 }
 
-// So that few are larger, and all from scratch.
+// Chooses the width of a cell so that few spheres are larger, and enters all spheres again.
 void SortedSpheres::choose_cell() {
   sorted_.x.clear();
   for (const Sphere& sphere : spheres_) sorted_.x.push_back(sphere.radius);
@@ -103,7 +104,8 @@ void SortedSpheres::sort() {
   }
 }
 
-// Where the four rows of three cells each begin that come after a cell, apart from its own row.
+// Returns how many lines after that of a cell the four rows of three neighbours begin that come after it, apart from
+// its own row.
 std::array<std::uint32_t, 4> SortedSpheres::neighbour_rows() const noexcept {
   return {factors_[1] - 1, factors_[2] - factors_[1] - 1, factors_[2] - 1, factors_[2] + factors_[1] - 1};
 }
@@ -151,7 +153,7 @@ void SortedSpheres::compare_large() {
     const Sphere& large = spheres_[index];
     for (std::uint32_t other = 0; other < spheres_.size(); ++other) {
       const Sphere& sphere = spheres_[other];
-      if (sphere.line == kLarge && other >= index) continue;  // the other one comes to it
+      if (sphere.line == kLarge && other >= index) continue;  // the pair is found from the other sphere
       const Vec3 apart = sphere.center - large.center;
       const double reach = sphere.radius + large.radius;
       if (dot(apart, apart) > reach * reach) continue;

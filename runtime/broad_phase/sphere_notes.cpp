@@ -7,8 +7,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kMaxFloat = 0x1p120;   // what is below is finite in float
-constexpr double kMinFloat = 0x1p-126;  // below, floats are rounded by more than their last place
+constexpr double kMaxFloat = 0x1p120;   // numbers below it are finite in float
+constexpr double kMinFloat = 0x1p-126;  // below it, floats are rounded by more than their last place
 
 }  // namespace
 
@@ -16,12 +16,12 @@ void SphereNotes::begin(bool wanted, std::size_t slots) {
   if (wanted) {
     grow(spheres_, slots);
   } else {
-    spheres_.clear();  // their room stays: the next plan may want them again
+    spheres_.clear();  // the memory is kept, because the next plan may need it
   }
 }
 
 void SphereNotes::note(BodyIndex body, const Motion& m, const QuantizedGrid& quantized_grid, double duration) noexcept {
-  constexpr double kOutward = 1 + 1e-6;  // for what is rounded here
+  constexpr double kOutward = 1 + 1e-6;  // for the rounding errors of this function
   const Vec3 &origin = quantized_grid.origin(), &way = quantized_grid.velocity();
   const auto square = [](double x) { return x * x; };
   const double squares =
@@ -35,7 +35,7 @@ void SphereNotes::note(BodyIndex body, const Motion& m, const QuantizedGrid& qua
 }
 
 SphereNotes::Answer SphereNotes::compare(const BodyPair& pair, bool now_only) const noexcept {
-  constexpr double kRounding = 0x1p-21;  // of the largest number, of two spheres: a float's last place eight times
+  constexpr double kRounding = 0x1p-21;  // relative to `largest`: eight times the rounding of a float
   const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
   double squared = 0, largest = double{a.radius} + b.radius;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -48,7 +48,7 @@ SphereNotes::Answer SphereNotes::compare(const BodyPair& pair, bool now_only) co
   if (!(largest < kMaxFloat)) return Answer::unknown;
   const auto below = [&](double length) { return length > 0 && squared < length * length; };
   if (below(radii - off)) return now_only || below(radii - reach - off) ? Answer::touching : Answer::unknown;
-  if (below(radii + off)) return Answer::unknown;  // as spheres_touch() says
+  if (below(radii + off)) return Answer::unknown;  // only spheres_touch() can decide
   return now_only || !below(radii + reach + off) ? Answer::apart : Answer::unknown;
 }
 

@@ -8,10 +8,10 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// For tables of 2^6 lines, 2^7 and so on: what the second and the third coordinate of a cell are multiplied by; the
-// first one is added as it is. Found by trying at random such that cells that share a line lie far apart: about as far
-// as is possible in space, and in each plane of two axes from 2^10 lines on, but nowhere less than four cells along
-// some axis, so that the cells of one body never share a line.
+// The factors of the second and the third coordinate of a cell, for tables of 2^6 lines, 2^7 and so on; the first
+// coordinate is added as it is. They were found by a random search, so that cells that share a line lie far apart:
+// about as far as is possible in space, and in each plane of two axes from 2^10 lines on, but nowhere less than four
+// cells along some axis, so that the cells of one body never share a line.
 constexpr std::array<std::array<std::uint32_t, 2>, kMaxLineBits - kMinLineBits + 1> kLineFactors = {{
     {4u, 16u},
     {25u, 5u},
@@ -38,8 +38,8 @@ constexpr std::array<std::array<std::uint32_t, 2>, kMaxLineBits - kMinLineBits +
     {47377195u, 86274897u},
 }};
 
-// The neighbours of a cell that lie further along some axes, a bit each: which fields of what lies before the begin of
-// a box that goes on to one of them are 0 there, and the steps to there.
+// Returns a table by the neighbours of a cell that lie further along some axes, with a bit for each of these axes. It
+// has the sum of of(d) over them.
 template <typename Of>
 constexpr std::array<std::uint32_t, 8> by_corner(const Of& of) noexcept {
   std::array<std::uint32_t, 8> all{};
@@ -48,21 +48,22 @@ constexpr std::array<std::uint32_t, 8> by_corner(const Of& of) noexcept {
   }
   return all;
 }
+// For a box that goes on to a neighbour: the fields of its lower ends that are 0 there, and the steps to there.
 constexpr auto kFieldsOf = by_corner([](std::uint32_t d) { return kLastInEntry << kFieldBits * d; });
 constexpr auto kStepsOf = by_corner([](std::uint32_t d) { return 1u << 2 * d; });
 
-// Where bodies' boxes lie in their first cells.
+// The boxes of the bodies of a block in their first cells.
 struct Coded {
   using Numbers = std::array<std::uint32_t, kBlock>;
-  Numbers from, below;                        // in fields, as of a box that takes one cell
+  Numbers from, below;                        // fields, as of a box that takes one cell
   Numbers beyond;                             // the fields of the axes along which the box takes the next cell, too
-  Numbers lines;                              // those with the same last bits are one
-  Numbers axes;                               // these axes, a bit each, and one above for more than two cells along any
+  Numbers lines;                              // the lines of the first cells, not masked yet
+  Numbers axes;                               // a bit for each of these axes; bit 3: more than two cells along an axis
   std::array<std::uint64_t, kBlock> entries;  // in the first cells
-  std::uint32_t cells;                        // that all take together
+  std::uint32_t cells;                        // the number that all boxes take together
 };
 
-// A loop without branches that depend on the data.
+// Computes `coded`. The loop has no branches that depend on the data.
 ORCHARD_INLINE void code(Coded& coded, const BoxBlock& block, std::span<const BodyIndex> bodies,
                          const std::array<std::uint32_t, 3>& factors) noexcept {
   const std::size_t count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
@@ -107,10 +108,11 @@ void SweptGrid::reset(std::size_t lines, const Executor& executor) {
   const std::size_t wanted = std::size_t{1} << bits;
   if (lines_.capacity() > 4 * wanted) give_back(lines_);
   if (lines_.size() != wanted) {
-    lines_.clear();  // what is there need not move
+    lines_.clear();  // old lines need not move
     lines_.resize(wanted);
   }
-  // All lines are written in order: those that have not been used for long come faster this way than one by one later.
+  // All lines are written in order, because lines that have left the cache are loaded faster this way than one by one
+  // later.
   constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
   const std::size_t size = wanted / kParts;
   auto empty = [&](std::size_t part) {
@@ -144,7 +146,7 @@ void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block,
     *visit++ = {entry_of(from, below, bodies[i]), (coded.lines[i] + corner_lines_[corner]) & mask_,
                 static_cast<Steps>(kStepsOf[corner])};
   };
-  // Which take more than a cell cannot be predicted, so no branch depends on it. Most of them take two.
+  // Which boxes take more than one cell cannot be predicted, so no branch depends on it. Most of these take two cells.
   std::array<std::uint32_t, kBlock> more;
   std::size_t mores = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -162,7 +164,7 @@ void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block,
   }
 }
 
-// All cells but the first one.
+// Writes the visits of all cells of a box but the first one. Returns their end.
 SweptGrid::Visit* SweptGrid::visit_rest(BodyIndex body, const QuantizedAabb& box, Visit* visit) const noexcept {
   for_each_cell(box, [&](const Cell& cell, std::uint32_t line) {
     std::uint32_t from = 0, below = 0, steps = 0;
@@ -179,14 +181,14 @@ SweptGrid::Visit* SweptGrid::visit_rest(BodyIndex body, const QuantizedAabb& box
 
 void SweptGrid::split(const Visits& visits, VisitsByPart& parts) const {
   const std::span<const Visit> all = visits.visits();
-  std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
+  std::array<Visit*, kParts> ends;  // a copy, because what is written might be the vectors
   std::array<std::size_t, kParts> counts{};
   for (const Visit& visit : all) ++counts[part_of(visit.line)];
   for (std::size_t i = 0; i < kParts; ++i) ends[i] = parts[i].append(counts[i]);
   for (const Visit& visit : all) *ends[part_of(visit.line)]++ = visit;
 }
 
-// What is found waits on the stack for room in the vector.
+// The state of insert(). Pairs are collected on the stack and appended to the vector many at a time.
 struct SweptGrid::Insertion {
   static constexpr std::size_t kFound = 256;
 
@@ -205,8 +207,8 @@ struct SweptGrid::Insertion {
   }
 };
 
-// Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
-// the boxes: in dense worlds no branch can be predicted.
+// Collects the pairs of the visit's body with those entries of `hits` whose boxes meet its box, if this cell has the
+// lower corner of the intersection. No branch depends on the boxes, because in dense worlds none could be predicted.
 void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t hits, const Visit& visit) {
   const BodyIndex body = body_of(visit.entry);
   const BoxInCell box(insertion.boxes[body], visit.steps);
@@ -220,7 +222,7 @@ void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t
   insertion.count = count;
 }
 
-// Where the line is full: in those that it overflows to.
+// Inserts a visit whose line is full into the lines that this overflows to.
 ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& visit) {
   Overflow& overflow = overflow_[part_of(visit.line)];
   CellLine* line = &lines_[visit.line];
@@ -234,18 +236,18 @@ ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& 
   line->entries[line->count++] = visit.entry;
 }
 
-// First all are put into their lines, without branches; those that meet others there, and those that find their line
-// full, are put off until then. Entries stay where they are meanwhile.
+// First puts all entries into their lines, without branches. Visits that meet other entries there, or find their line
+// full, are dealt with afterwards. Entries do not move meanwhile.
 void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb> boxes, std::vector<BodyPair>& pairs,
                        GridCounts& counts) {
   constexpr std::size_t kAtOnce = 512, kAhead = 32;
-  constexpr unsigned kHitsAt = 16;                  // bits, above the visit's number
-  std::array<std::uint32_t, kAtOnce + 1> meetings;  // what does not count is written, too
+  constexpr unsigned kHitsAt = 16;                  // the first bit of the hits, above the visit's number
+  std::array<std::uint32_t, kAtOnce + 1> meetings;  // one more, because what does not count is written, too
   std::array<std::uint16_t, kAtOnce + 1> full;
   Insertion insertion(boxes, pairs, counts);
   counts.entries += visits.size();
   counts.lines_read += visits.size();
-  CellLine* const lines = lines_.data();  // by themselves: what is written might be where they are
+  CellLine* const lines = lines_.data();  // a copy, because what is written might be the vector
   for (const Visit& visit : visits.first(std::min(visits.size(), kAhead))) prefetch(&lines[visit.line]);
   for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), kAtOnce))) {
     const std::size_t count = std::min(visits.size(), kAtOnce);
@@ -279,8 +281,8 @@ void SweptGrid::insert(std::span<const Visit> visits, std::span<const PackedAabb
   insertion.hand_over();
 }
 
-// Appends the lines of a box. A body takes one or two cells along most axes, which no processor predicts, so there are
-// no branches: what does not count is written, too. The lines begin to be loaded.
+// Appends the lines of a box, prefetches them, and returns the end of the list. Whether a body takes one or two cells
+// along an axis cannot be predicted, so there are no branches for it: what does not count is written, too.
 ORCHARD_INLINE SweptGrid::Removal* SweptGrid::list_removals(BodyIndex body, const QuantizedAabb& box,
                                                             Removal* end) const noexcept {
   std::uint32_t axes = 0, more = 0, first = 0;
@@ -306,7 +308,7 @@ ORCHARD_INLINE SweptGrid::Removal* SweptGrid::list_removals(BodyIndex body, cons
   return end;
 }
 
-// After the last one of a chain.
+// Appends an overflow line to a chain, after its last line, and returns it.
 CellLine& SweptGrid::add_line(CellLine& last, Overflow& overflow) {
   std::vector<CellLine>& lines = overflow.lines;
   std::uint32_t added = overflow.free;
@@ -323,12 +325,12 @@ CellLine& SweptGrid::add_line(CellLine& last, Overflow& overflow) {
   return lines[added - 1] = kEmptyLine;
 }
 
-// The last entry of the chain takes the place.
+// Removes the entry of a body from a chain of lines. The last entry of the chain takes its place.
 ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
   CellLine *line = &first, *before_last = nullptr;
   std::uint64_t* found = nullptr;
   for (;; line = &overflow.lines[line->overflow - 1]) {
-    if (found == nullptr) {  // without branches that depend on where it is
+    if (found == nullptr) {  // no branch depends on the place of the entry
       const std::uint64_t bits = 1u << line->count | those_of(*line, body);
       const auto index = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (index < line->count) found = &line->entries[index];
@@ -347,7 +349,7 @@ ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Over
 }
 
 void SweptGrid::remove(std::span<const BodyIndex> bodies, std::span<const PackedAabb> boxes) noexcept {
-  constexpr std::size_t kMostLines = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis;  // of a body
+  constexpr std::size_t kMostLines = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis;  // at most, of a body
   std::array<Removal, kRemovedAtOnce * kMostLines + 1> removals;
   Removal* end = removals.data();
   for (const BodyIndex body : bodies) end = list_removals(body, boxes[body].whole(), end);

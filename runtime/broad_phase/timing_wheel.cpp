@@ -17,7 +17,7 @@ void TimingWheel::set_due(std::span<const BodyIndex> bodies, Step step) {
 
 void TimingWheel::set_due(BodyIndex body, Step step) {
   std::uint32_t& head = buckets_[bucket_of(step)].bodies;
-  if (head != kNone) {  // what its last part has room for
+  if (head != kNone) {  // the first part may have room
     for (BodyIndex& id : bodies_[head].ids) {
       if (id == kNoIndex) return void(id = body);
     }

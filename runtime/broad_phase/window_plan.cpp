@@ -5,28 +5,29 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Costs relative to each other, in nanoseconds of one machine (2023, 2 GHz class). Off by a factor of two, the window
-// is off by less, and the time hardly changes: it is flat around the minimum.
+// Costs in nanoseconds of one machine (2023, 2 GHz class); only their ratios matter. If one is off by a factor of two,
+// the window is off by less, and the time hardly changes, because it is flat around the minimum.
 constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
-// Smaller cells: more of them per body; larger: more bodies in each. By the number of axes that set bodies apart; in
-// space from the first one, where boxes are small, to the second one.
+// The width of a cell in spacings, by the number of axes that separate bodies. With smaller cells, a body takes more of
+// them; with larger ones, each has more bodies. In space, the width is between kCellPerSpacing[3], if boxes are small,
+// and kMostCellPerSpacing.
 constexpr std::array<double, 4> kCellPerSpacing = {1, 2.6, 1.65, 1.45};
 constexpr double kMostCellPerSpacing = 1.7;
-constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
-constexpr double kMostLines = 0.5;       // for each body
-// More of them where boxes take several cells each, so that fewer lines overflow: as many as a core's cache holds well,
-// and not where pairs take much memory as it is.
+constexpr double kLinesPerVolume = 1.9;  // the box of a ball has 1.9 times its volume
+constexpr double kMostLines = 0.5;       // per body
+// There are more lines if boxes take several cells each, so that fewer lines overflow: at most as many as a core's
+// cache holds well, and only if pairs do not take much memory anyway.
 constexpr double kLinesPerCell = 0.9, kCellsAsEver = 1.2, kLinesInCache = 11000, kManyPairsPerBody = 1;
-constexpr double kMostCells = 0x1p23;  // along the world, as a sample shows it: a quarter of the quantized grid's
-// Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
-// evenly one in each unit of space, have another one nearer than this.
+constexpr double kMostCells = 0x1p23;  // along the extent of a sample; a quarter of those of the quantized grid
+// The median distance of a point from its nearest neighbour in one, two and three dimensions, if points are spread at
+// random, on average one in each unit of space.
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
-constexpr double kClustered = 0.6;           // that distance, to what it would be were they spread evenly: they are not
-constexpr std::size_t kMinClustered = 2000;  // bodies, of which it is worth looking at
-constexpr double kWorthLonger = 0.9;         // cost: a long window makes the step at which it ends a slow one
-constexpr double kWindowGrowth = 1.4;        // between the windows tried
+constexpr double kClustered = 0.6;           // in clusters, the spacing is below this share of that of an even spread
+constexpr std::size_t kMinClustered = 2000;  // clusters are looked for from so many bodies on
+constexpr double kWorthLonger = 0.9;         // of the cost; the step at which a long window ends is slow
+constexpr double kWindowGrowth = 1.4;        // from one window that is tried to the next
 
-// Of the box of a mean body, along each axis.
+// Returns the size of the box of a mean body along each axis.
 Vec3 box_of(const MeanMotion& mean, double duration) noexcept {
   const double spread = duration * (mean.drift + duration * mean.acceleration / 2);
   Vec3 box;
@@ -34,7 +35,7 @@ Vec3 box_of(const MeanMotion& mean, double duration) noexcept {
   return box;
 }
 
-// For how many of a window's steps a bound holds, on average.
+// Returns for how many steps of a window a bound holds on average.
 double lasting(double window, double cancelled) noexcept {
   return cancelled > 0 ? (1 - std::pow(1 - cancelled, window)) / cancelled : window;
 }
@@ -53,7 +54,7 @@ MeanMotion mean_of(std::span<const Motion> sample, const Vec3& velocity) noexcep
   return mean;
 }
 
-// The median along each axis: a few that fly elsewhere do not matter.
+// The median along each axis is used, so a few bodies that fly elsewhere do not matter.
 Vec3 crowd_velocity(std::span<const Motion> sample) noexcept {
   constexpr double kMuchSlower = 0.5;
   if (sample.empty()) return {};
@@ -74,7 +75,7 @@ Vec3 crowd_velocity(std::span<const Motion> sample) noexcept {
 
 namespace {
 
-// The spacing of most of them, where they lie in clusters.
+// Returns the spacing of most bodies if they lie in clusters, from the distances of nearest neighbours in the sample.
 double spacing_in_clusters(std::span<const Motion> sample, std::size_t bodies, std::size_t axes) {
   std::array<double, kSample> nearest{};
   for (std::size_t i = 0; i < sample.size(); ++i) {
@@ -91,14 +92,14 @@ double spacing_in_clusters(std::span<const Motion> sample, std::size_t bodies, s
   return std::sqrt(*middle) / kNearest[axes - 1] * std::pow(share, 1 / static_cast<double>(axes));
 }
 
-// With spacing and thin of bodies spread evenly.
+// Returns the spread with the spacing and the thin axes that hold if bodies are spread evenly.
 Spread spread_evenly(std::span<const Motion> sample, std::size_t bodies) {
   const std::size_t n = sample.size();
   Spread spread;
   if (n > 0) spread.middle = sample[0].position;
   if (n < 2) return spread;
   Vec3 lower{}, upper{};
-  std::array<double, kSample> sorted;  // as far as is needed
+  std::array<double, kSample> sorted;  // sorted as far as is needed
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i].position[axis];
     const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -124,7 +125,7 @@ Spread spread_evenly(std::span<const Motion> sample, std::size_t bodies) {
   std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return extent[a] < extent[b]; });
   const double shortest = extent[axes[0]], middle = extent[axes[1]], longest = extent[axes[2]];
   spread.spacing = std::cbrt(shortest * middle * longest / there);
-  // An axis without extent is thin, too: of products with 0 nothing follows.
+  // An axis without extent is thin, too, because a product with 0 determines no spacing.
   if (spread.spacing <= shortest && shortest > 0) return spread;
   spread.thin[axes[0]] = true;
   spread.spacing = std::sqrt(middle * longest / there);
@@ -150,8 +151,8 @@ WindowPlan plan_window(const MeanMotion& mean, std::size_t bodies, const Spread&
                        double correction, Step fixed_window, double cancelled) noexcept {
   double spacing = spread.spacing;
   if (!(spacing > 0) || !std::isfinite(spacing)) spacing = std::max(4 * mean.radius, 1e-300);
-  // Where clusters are tiny in their world, cells as small as these would leave the others outside of the quantized
-  // grid, and those are compared with everything.
+  // If clusters are tiny compared with the world, cells of their spacing would leave other bodies outside of the
+  // quantized grid, and those are compared with all bodies.
   const double least_cell = *std::max_element(spread.extent.begin(), spread.extent.end()) / kMostCells;
 
   const auto axes = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), false));
@@ -165,10 +166,10 @@ WindowPlan plan_window(const MeanMotion& mean, std::size_t bodies, const Spread&
     const double wanted =
         axes == 3 ? std::clamp(1.2 + filled, kCellPerSpacing[3], kMostCellPerSpacing) : kCellPerSpacing[axes];
     const double share = std::max(wanted, filled), cell = share * spacing;
-    double cells = 1, pairs = correction / 2, in_cell = 1;  // of a body; bodies whose box begins in a cell
+    double cells = 1, pairs = correction / 2, in_cell = 1;  // per body; in_cell: the bodies whose boxes begin in a cell
     double per_line = 1;
     for (std::size_t d = 0; d < 3; ++d) {
-      // A cell's middle is in the world's: what is thin fits in there.
+      // The middle of the world is in the middle of a cell, so boxes may fit into one cell along a thin axis.
       if (!spread.thin[d] || spread.extent[d] + box[d] > cell) cells *= 1 + box[d] / cell;
       if (spread.thin[d]) continue;
       pairs *= 2 * box[d] / spacing;

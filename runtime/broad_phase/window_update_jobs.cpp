@@ -3,12 +3,12 @@
 #include "broad_phase/window_updates.h"
 #include "execution/guarded.h"
 
-// Window updates of many bodies by jobs.
+// Updates the windows of many bodies by jobs.
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kChunks = 8;       // in a wave
-constexpr std::size_t kMaxWave = 32768;  // bodies; waves are as large as each other, so that none is a rest
+constexpr std::size_t kMaxWave = 32768;  // bodies; all waves but the last have one size, and none is a small rest
 
 }  // namespace
 
@@ -36,7 +36,7 @@ std::size_t WindowUpdates::memory_bytes() const noexcept {
   return bytes;
 }
 
-// Nothing may be thrown through an executor: lack of memory is told when all jobs have ended.
+// Runs jobs. Nothing may be thrown through an executor, so a lack of memory is thrown when all jobs have ended.
 template <typename Job>
 void WindowUpdates::run_all(std::size_t count, const Job& job) {
   if (state_.options.executor.run == nullptr) {
@@ -77,13 +77,13 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
     Block block = update;
     place_chunk(shared_->chunks[i], block, bodies.subspan(begin, end - begin));
   });
-  run_all(1 + SweptGrid::kParts, [&](std::size_t i) {  // what a part's job uses is none of what folding changes
+  run_all(1 + SweptGrid::kParts, [&](std::size_t i) {  // find_in_part() uses nothing that fold() changes
     if (i > 0) return find_in_part(now, i - 1);
     for (Chunk& chunk : shared_->chunks) fold(chunk);
   });
   for (GridPart& part : shared_->parts) {
     state_.counts += part.counts;
-    if (state_.pool.filters.has_function()) {  // it is asked by one thread
+    if (state_.pool.filters.has_function()) {  // only one thread may call it
       near_.insert(near_.end(), part.near.begin(), part.near.end());
     } else {
       pairs_.take(part.outcome);

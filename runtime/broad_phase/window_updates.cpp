@@ -16,7 +16,7 @@ std::span<Motion> WindowUpdates::ask(Step now, std::span<const BodyIndex> bodies
   return motions;
 }
 
-// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
+// Moves the bodies whose motion bounds hold up to `from`, with their motions, to the front. Returns their number.
 std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept {
   std::size_t front = 0;
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
@@ -62,10 +62,10 @@ WindowUpdates::Block WindowUpdates::block_at(Step now, Step from) const noexcept
   return block;
 }
 
-// False if a motion has no time of expiry.
+// Sets the ends and the durations of the windows. Returns false if an expiry is NaN.
 bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
                              std::span<const Motion> motions) const noexcept {
-  std::uint64_t other = 0;  // bits of expiries that differ
+  std::uint64_t other = 0;  // the bits in which expiries differ
   for (const Motion& motion : motions) {
     other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
   }
@@ -81,7 +81,7 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   return all;
 }
 
-// Boxes until the ends of the windows; false if a motion is not valid.
+// Makes the boxes of bodies until the ends of their windows. Returns false if a motion is not valid.
 bool WindowUpdates::make_boxes(Block& block, std::span<const BodyIndex> bodies,
                                std::span<const Motion> motions) const noexcept {
   const bool timed = set_ends(block, bodies, motions);
@@ -91,7 +91,7 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const BodyIndex> bodies,
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
 
-// Those of a block that can be placed now; the others are left.
+// Places the bodies of a block that can be placed now. The others are added to chunk.left.
 void WindowUpdates::place(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const {
   std::size_t count = bodies.size();
   const auto leave_unless = [&](const auto& good) {
@@ -150,12 +150,12 @@ void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const Body
   }
 }
 
-// What one thread has to do for all.
+// Applies what place_chunk() has found to the state that all chunks share. Only one thread may do that.
 void WindowUpdates::fold(Chunk& chunk) {
   std::span<const BodyIndex> placed = chunk.placed;
   state_.overlaps.mark_updated(placed);
   state_.boxes.meet_oversized(placed, near_);
-  while (!placed.empty()) {  // those one after the other whose windows end together
+  while (!placed.empty()) {  // successive bodies whose windows end together
     const Window first = state_.windows[placed[0]];
     const auto other = [&](BodyIndex body) {
       const Window& window = state_.windows[body];
@@ -171,8 +171,8 @@ void WindowUpdates::fold(Chunk& chunk) {
   state_.pool.motions.count_asked(chunk.asked);
 }
 
-// What is faster than the others is updated again sooner, so that its box takes few enough cells, unless it is too
-// large for that in any case.
+// Shortens the window of a body that is faster than others until its box takes few enough cells, unless it is too large
+// even for one step. Returns the box.
 QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& motion) const noexcept {
   Step steps = window.end == kNeverStep ? 1 : window.end - block.from;
   QuantizedAabb box = block.boxes.get(0);
@@ -192,7 +192,7 @@ QuantizedAabb WindowUpdates::shrink(Block& block, Window& window, const Motion& 
   return box;
 }
 
-// One by one what a chunk has left, once what it has placed is in the grid.
+// Places the bodies that a chunk has left, one by one. Call it when those that it has placed are in the grid.
 void WindowUpdates::place_left(Chunk& chunk, Block& block) {
   for (const Chunk::Left& left : chunk.left) {
     const std::span<const BodyIndex> body(&left.body, 1);
@@ -245,7 +245,7 @@ std::span<const BodyPair> WindowUpdates::find_near(Step now, std::span<const Bod
   return near_;
 }
 
-// Pairs that the filters exclude. The plan does not count them: they cost next to nothing.
+// Drops the near pairs that the filters exclude. They do not count for the plan, because they cost next to nothing.
 void WindowUpdates::drop_what_is_none() {
   const BodyPool& pool = state_.pool;
   const std::size_t dropped = std::erase_if(near_, [&](const BodyPair& pair) { return !pool.may_pair(pair); });

@@ -3,11 +3,11 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kLongerWindow = 0.4;  // a window may exceed the plan's by as much of it: one update, not two
+constexpr double kLongerWindow = 0.4;  // a window may be longer than planned by this share, to save an update
 
 }  // namespace
 
-// Until a bound expires windows are equal parts.
+// The time until a bound expires is divided into windows of equal length.
 Step Windows::end_of(Step from, BodyIndex body, const Motion& motion) const noexcept {
   if (!all_end_ && (pool_.statics.has(body) || rests(motion))) return kNeverStep;
   const Step last = pool_.clock.last_before_expiry(motion.expiry);
