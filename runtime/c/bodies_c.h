@@ -13,7 +13,7 @@ inline BodyId id_of(orchard_body body) noexcept { return {body.index, body.gener
 inline orchard_body body_of(BodyId id) noexcept { return {id.index, id.generation}; }
 inline constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 
-// Without a filter: the default one.
+// These return the filter of the C++ interface, or the default one if `from` is null.
 inline BodyFilter filter_of(const orchard_body_filter* from) noexcept {
   return from == nullptr ? BodyFilter{} : converted<BodyFilter>(*from);
 }
@@ -26,7 +26,7 @@ inline PairFilter filter_of(orchard_pair_filter filter, void* context) {
   return [filter, context](BodyId a, BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
 }
 
-// Fills `results` by a source in C, a few at a time, each by convert(answer).
+// Fills `results` with the answers of a source in C, a few at a time. convert(answer) makes a result of an answer.
 template <typename InC, typename Source, typename Result, typename Convert>
 void ask_in_c(Source source, void* context, double time, std::span<const BodyIndex> bodies, std::span<Result> results,
               const Convert& convert) {
@@ -38,7 +38,7 @@ void ask_in_c(Source source, void* context, double time, std::span<const BodyInd
   }
 }
 
-// 1 if a change has been made, else 0.
+// Returns 1 if a change has been made, otherwise 0, also if there is no memory for it.
 template <typename Change>
 int changed(Change&& change) noexcept {
   return made_or(0, [&] { return change() ? 1 : 0; });

@@ -1,4 +1,4 @@
-// The C interface of the broad phase, function after function as orchard_broad_phase.h has them.
+// The C interface of the broad phase, in the order of orchard_broad_phase.h.
 #include <algorithm>
 #include <array>
 
@@ -54,7 +54,7 @@ int first(orchard_broad_phase* world, orchard_body_hit* hit, const Ask& ask) noe
   });
 }
 
-// Those that ask() gives, as far as there is room.
+// Stores the results of ask() as far as there is room. Returns the number of all of them, or ORCHARD_REFUSED.
 template <typename InC, typename Ask>
 std::size_t written(orchard_broad_phase* world, InC* to, std::size_t room, const Ask& ask) noexcept {
   return made_or(std::size_t{ORCHARD_REFUSED}, [&]() -> std::size_t {

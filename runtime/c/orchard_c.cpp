@@ -27,7 +27,7 @@ int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
   return int{from.has_value()};
 }
 
-// A tree that load(tree) has filled, or null and why there is none.
+// Returns a tree that load(tree) has filled. If there is none, returns null and sets `error` to the reason.
 template <typename Load>
 orchard_tree* opened(const char** error, const Load& load) noexcept {
   std::unique_ptr<orchard_tree> tree;
@@ -44,7 +44,7 @@ orchard_tree* opened(const char** error, const Load& load) noexcept {
   return tree.release();
 }
 
-// A tree made here, or null where `make` gives none or there is no memory for it.
+// Returns the tree that make() returns, or null if it returns no valid one or there is no memory for it.
 template <typename Make>
 orchard_tree* made(const Make& make) noexcept {
   return opened(nullptr, [&](orchard_tree& tree) {
@@ -55,7 +55,8 @@ orchard_tree* made(const Make& make) noexcept {
   });
 }
 
-// Whether there is a nearest point, and where.
+// Stores a nearest point, where the arguments are not null. Returns 1 if there is one, 0 if not, -1 if nothing is
+// known.
 int given(const rt::SurfacePoint& from, double* distance, double* point, uint32_t* triangle) noexcept {
   if (distance != nullptr) *distance = from.distance;
   if (point != nullptr) std::copy_n(from.point.begin(), 3, point);

@@ -12,7 +12,7 @@
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
 
-// What all C interfaces share.
+// Types that all C interfaces share.
 struct orchard_tree {
   orchard::runtime::MappedTree mapped;
   orchard::runtime::PackedSphereTree loaded;
@@ -27,8 +27,8 @@ struct orchard_workspace {
 
 namespace orchard::runtime::detail {
 
-// A struct of one language as the one of the other. Both have the same members in the same order. The longer one may
-// have further members behind them, which are 0.
+// Converts a struct of C to that of C++, or back. Both have the same members in the same order. The longer one may have
+// further members behind them, which are 0 in a result.
 template <typename To, typename From>
 To converted(const From& from) noexcept {
   static_assert(std::is_standard_layout_v<To> && std::is_standard_layout_v<From>);
@@ -64,12 +64,12 @@ inline Budget budget_of(const orchard_budget& from) noexcept {
   return {from.tests, limited ? std::chrono::nanoseconds(from.nanoseconds) : longest};
 }
 
-// Without an executor: one job after the other.
+// Returns the executor of the C++ interface. If there is none, jobs run one after the other.
 inline Executor executor_of(const orchard_executor* from) noexcept {
   return from == nullptr ? Executor{} : converted<Executor>(*from);
 }
 
-// 1, 0, or -1 for "maybe".
+// Returns 1 for "yes", 0 for "no", and -1 for "maybe".
 inline int in_c(Answer answer) noexcept { return answer == Answer::yes ? 1 : answer == Answer::no ? 0 : -1; }
 
 }  // namespace orchard::runtime::detail

@@ -4,14 +4,15 @@
 #include "c/orchard_c.h"
 #include "orchard/runtime/time_of_impact.h"
 
-// The C interface: pairs of trees in a workspace, and many at once.
+// The C interface of queries about pairs of trees in a workspace, and about many pairs at once.
 namespace rt = orchard::runtime;
 
 namespace {
 
 using namespace rt::detail;
 
-// Question i in the workspace of the job that it falls to: ask(workspace, pair, pose of a, pose of b, i).
+// Calls ask(workspace, pair, pose of a, pose of b, i) for each pair i of a batch, with the workspace of the job that
+// gets it.
 template <typename Ask>
 void ask_all(const orchard_batch& of, const Ask& ask) noexcept {
   rt::share_among(executor_of(of.executor), of.workspace_count, of.count, [&](size_t job, size_t i) {
@@ -20,7 +21,7 @@ void ask_all(const orchard_batch& of, const Ask& ask) noexcept {
   });
 }
 
-// A motion that a C function gives, as one that a C++ function gives.
+// A Travel that is converted from C. If a function in C returns its poses, it calls this function.
 struct CTravel {
   explicit CTravel(const orchard_travel& from) noexcept : travel_in_c(from), travel(converted<rt::Travel>(from)) {
     static_assert(sizeof(orchard_travel) == sizeof(rt::Travel));
@@ -28,7 +29,7 @@ struct CTravel {
     travel.context = &travel_in_c;
     travel.pose_at = [](const void* context, double time) {
       const auto& own = *static_cast<const orchard_travel*>(context);
-      orchard_pose pose{};  // of zeros, which no query answers for
+      orchard_pose pose{};  // all zeros, which every query refuses
       if (own.pose_at(own.context, time, &pose) == 0) pose = {};
       return pose_of(pose);
     };

@@ -52,7 +52,7 @@ Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, con
 
 Closeness closer_with_points(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
                              double margin) noexcept {
-  constexpr double kFirst = 0.01, kClosest = 1e-9;  // relative tolerances: the second one where the first leaves doubt
+  constexpr double kFirst = 0.01, kClosest = 1e-9;  // relative tolerances: the second one if the first leaves doubt
   Closeness result;
   result.answer = closer_than(workspace, pair, a, b, margin);
   if (result.answer != Answer::yes) return result;

@@ -14,9 +14,10 @@ using detail::minus;
 
 namespace {
 
-constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
+constexpr double kMargin = 1 - 1e-9;  // covers the rounding of a few operations
 
-// How far a point of the tree's triangles is at most from where it was, both places relative to the other body.
+// Returns a bound on how far any point of the tree's triangles has moved from `before` to `now`. Both are poses in the
+// frame of the other body.
 double displacement(const PreparedTree& tree, const Pose& before, const Pose& now) noexcept {
   const detail::Ball all = detail::ball_around(tree.tree);
   const Vec3 middle = all.middle + tree.tree.origin;
@@ -24,7 +25,8 @@ double displacement(const PreparedTree& tree, const Pose& before, const Pose& no
          detail::pose_change(before, now) * all.radius;
 }
 
-// What poses may be off by, in the first body's units: as NarrowPhase's error.
+// Returns a bound on the rounding errors of two placements of the pair together, in the first body's units; see
+// PlacedTrees::exact_error().
 double slack(const PreparedTree& a, const PreparedTree& b, const Pose& pose_a, const Pose& pose_b) noexcept {
   const double places = detail::one_norm(pose_a.translation) + detail::one_norm(pose_b.translation);
   return 2 * (a.error + b.error * pose_b.scale / pose_a.scale) + 4e-14 * places / pose_a.scale;
@@ -32,7 +34,8 @@ double slack(const PreparedTree& a, const PreparedTree& b, const Pose& pose_a, c
 
 }  // namespace
 
-// Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
+// The verdict is constructed in place: a copy made at once would have to wait, because the verdict would still be in
+// the processor's store queue.
 bool CoherentPair::recall(Verdict& verdict) noexcept {
   if (!remembers(pair_)) return false;
   if (!find_rigid()) {

@@ -32,7 +32,8 @@ struct PosePair {
   Pose a, b;
 };
 
-// All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
+// Finds all pairs of triangles that meet, and stores the first kCuts of them in scratch.cuts. Returns the number of
+// all.
 std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
   std::size_t found = 0;
   detail::walk_candidates(
@@ -53,10 +54,11 @@ std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexc
   return found;
 }
 
-// From the triangles that meet: what the second surface faces, on the whole, to leave the first one. Nothing where
-// normals cancel out but for their rounding.
+// Returns the direction in which, judging by the normals of the triangles that meet, the second body has to move to
+// leave the first one: the mean of the first triangle's normal less the second one's. Each pair has the weight `least`
+// plus the length of the common segment. Returns 0 if the normals cancel out up to rounding.
 Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
-  constexpr double kLeastFacing = 1e-6;  // of all weights
+  constexpr double kLeastFacing = 1e-6;  // relative to the sum of the weights
   Vec3 sum{};
   double weights = 0;
   for (const Cut& cut : cuts) {
@@ -67,7 +69,8 @@ Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
   return length(sum) > kLeastFacing * weights ? unit_or_zero(sum) : Vec3{};
 }
 
-// Across the plane that the curves of contact lie in, nearly: the direction in which they extend least.
+// Returns the normal of the plane near which the curves of contact lie: the direction in which they extend least.
+// Returns 0 if they lie on a line.
 Vec3 flattest(std::span<const Cut> cuts) noexcept {
   Vec3 mean{};
   double sum = 0;
@@ -105,7 +108,8 @@ struct Directions {
   std::span<const Vec3> all() const noexcept { return {some.data(), count}; }
 };
 
-// The directions to begin with, the most promising last.
+// Collects the directions from which the search starts. The first one is the best guess; it is the direction of the
+// result if no depth is asked for.
 void first_directions(const MinimumTranslationSearch& search, Directions& directions) noexcept {
   const std::span<const Cut> cuts = search.cuts;
   const Vec3 by_normals = facing(cuts, 1e-9 * search.size), by_plane = flattest(cuts);
@@ -114,12 +118,12 @@ void first_directions(const MinimumTranslationSearch& search, Directions& direct
     const bool same_side = dot(by_plane, by_normals) >= 0;
     directions.add(same_side ? by_plane : -by_plane);
   }
-  // Where normals cancel out, as those of open surfaces may, either side may be the way out.
+  // If the normals cancel out, which those of open surfaces may, the shortest way may lead to either side.
   if (directions.count < 2 || std::fabs(dot(by_plane, by_normals)) < 0.3) {
     directions.add(directions.count > 0 ? -directions.some[directions.count - 1] : Vec3{0, 0, 1});
   }
   if (!cuts.empty()) return;
-  for (const SolidBox& solid : search.solids) {  // out through a box's faces
+  for (const SolidBox& solid : search.solids) {  // the normals of the box's faces
     for (std::size_t i = 0; i < 6; ++i) {
       Vec3 face{};
       face[i / 2] = i % 2 == 0 ? 1 : -1;
@@ -128,14 +132,16 @@ void first_directions(const MinimumTranslationSearch& search, Directions& direct
   }
 }
 
-// Of the bodies' size, and what rounding does to poses on their way into the first tree's frame and back.
+// Returns the nudge for the search: a fraction of the bodies' size, plus the rounding of poses that are converted to
+// the first tree's frame and back.
 double least_nudge(const PlacedTrees& trees, double size) noexcept {
   const double places =
       detail::one_norm(trees.first_pose().translation) + detail::one_norm(trees.second_pose().translation);
   return 1e-12 * size + 2e-15 * places / trees.first_pose().scale;
 }
 
-// Where surfaces do not meet: a point of one that is inside a box, as the only point. False if there is none.
+// If the surfaces do not meet: sets the only contact point to a point of one body that is inside the other one, a solid
+// box. Returns false if there is no such point.
 bool add_piece_inside(const MinimumTranslationSearch& search, const Pose& world, Manifold& manifold) noexcept {
   const PreparedTree &first = search.pair.first, &second = search.pair.second;
   for (const SolidBox& solid : search.solids) {
@@ -152,7 +158,7 @@ bool add_piece_inside(const MinimumTranslationSearch& search, const Pose& world,
   return false;
 }
 
-// Up to four of the curves' points that span them, seen along the normal.
+// Adds up to four ends of common segments as contact points: the outermost ones, as seen along the normal.
 void add_points(std::span<const Cut> cuts, const PlacedPair& pair, const Vec3& normal, const Pose& world,
                 bool exchanged, Manifold& manifold) noexcept {
   const auto end = [&cuts](std::size_t i) { return i % 2 == 0 ? cuts[i / 2].p : cuts[i / 2].q; };
@@ -173,7 +179,9 @@ void add_points(std::span<const Cut> cuts, const PlacedPair& pair, const Vec3& n
   }
 }
 
-// Of the two triangles that meet at each point, until they are apart along the way; in the first tree's units.
+// Sets the depth of each contact point: how far the second one of its two triangles has to move along the normal until
+// they are apart, at most `most`. `normal` is in the first tree's frame; `scale` converts lengths of this frame to
+// world units, in which depths and `most` are.
 void add_depths(const PlacedPair& pair, const Vec3& normal, bool exchanged, double most, double scale,
                 Manifold& manifold) noexcept {
   for (std::uint32_t i = 0; i < manifold.count; ++i) {
@@ -191,14 +199,15 @@ void add_depths(const PlacedPair& pair, const Vec3& normal, bool exchanged, doub
   }
 }
 
-// The nearest points of surfaces that do not meet.
+// If the surfaces do not meet, but are nearer than `margin`: adds a contact point halfway between their nearest points.
+// Its depth is the negative distance.
 void add_point_before(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
                       Manifold& manifold) noexcept {
   const Closeness near = closer_with_points(workspace, pair, poses.a, poses.b, margin);
   const double apart = near.distance.upper;
   if (near.answer != Answer::yes || !(apart > 0)) return;
   const Vec3 way = minus(near.distance.points.on_b, near.distance.points.on_a);
-  if (!(length(way) > 0)) return;  // nearer than rounding can tell
+  if (!(length(way) > 0)) return;  // the distance is below the rounding error
   manifold.count = 1;
   manifold.points[0] = {along(near.distance.points.on_a, way, 0.5), near.distance.points.triangle_a,
                         near.distance.points.triangle_b, -apart};
@@ -207,8 +216,9 @@ void add_point_before(Workspace& workspace, const TreePair& pair, const PosePair
   manifold.error = apart - near.distance.lower;
 }
 
-// Where the way ends close beside triangles, as those of faces that slide along each other, they may touch by rounding
-// once the body is placed in the world. The answer about the body as it is moved by the depth decides.
+// If the translation ends close to triangles, for example of faces that slide along each other, rounding may make them
+// touch once the body is placed in the world. So the depth is increased until collide() no longer answers "yes" for the
+// body moved by it.
 void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PosePair& poses, double step,
                          Manifold& manifold) noexcept {
   constexpr int kMaxSteps = 64;
@@ -221,16 +231,16 @@ void lengthen_until_free(Workspace& workspace, const TreePair& pair, const PoseP
   }
 }
 
-// Of the walk: what the search for the shortest way out may take. An effort below 0, or one that is not a number,
-// counts as 0.
+// Returns the work that the search for the shortest translation may do: `effort` times the work `found` that it took to
+// find the triangles that meet. An effort below 0, or one that is not a number, counts as 0.
 std::uint64_t search_work(double effort, double found) noexcept {
-  constexpr double kLeast = 400, kMost = 1e18;  // kLeast: bodies of few triangles
+  constexpr double kLeast = 400, kMost = 1e18;  // kLeast is for bodies of few triangles
   const double work = effort * std::max(found, 1.0);
   if (!(work > kLeast)) return static_cast<std::uint64_t>(kLeast);
   return static_cast<std::uint64_t>(std::min(work, kMost));
 }
 
-// Without triangles, or without an answer: what the spheres say.
+// Answers by the levels of spheres: for trees without triangles, for poses that are refused, and if there is no memory.
 Manifold by_spheres(PairQuery& narrow) noexcept {
   while (!narrow.finished()) narrow.refine();
   Manifold result;
@@ -324,7 +334,7 @@ SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const
     return result;
   }
   const Manifold manifold = contacts(workspace, pair, a, b);
-  if (manifold.answer != Answer::yes) {  // nearer than rounding can tell
+  if (manifold.answer != Answer::yes) {  // the distance is below the rounding error
     return {0, apart.upper, apart.points.on_a, apart.points.on_b,
             unit_or_zero(minus(apart.points.on_b, apart.points.on_a))};
   }

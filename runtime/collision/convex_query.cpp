@@ -6,7 +6,7 @@
 #include "orchard/runtime/shape_query.h"
 #include "tree/box_facets.h"
 
-// Half-spaces and convex solids against one tree.
+// Queries about half-spaces and convex solids against one tree.
 namespace orchard::runtime {
 
 using namespace detail;
@@ -16,7 +16,7 @@ namespace {
 // A convex solid in a body's frame.
 class Solid {
  public:
-  // False if it cannot be asked about.
+  // Returns false if the shape is not valid, or so far away that no query can answer.
   bool place(const Frame& frame, const ConvexShape& shape, const Pose& pose) noexcept {
     if (shape.corners.empty() || shape.corners.size() > kMaxCorners || shape.facets.size() > kMaxFacets) return false;
     corners_ = shape.corners.size(), facets_ = shape.facets.size();
@@ -56,14 +56,14 @@ class Solid {
         return false;
       }
     }
-    bool inside = true;  // the triangle's first corner
+    bool inside = true;  // whether the triangle's first corner is inside
     for (std::size_t f = 0; f < facets_; ++f) {
       const int first = outside(f, t[0]);
       inside = inside && first <= 0;
       if (first > 0 && outside(f, t[1]) > 0 && outside(f, t[2]) > 0) return false;
     }
     if (inside && facets_ > 0) return true;
-    // Some of the triangle is outside, so it meets the solid only where it meets its surface.
+    // Some of the triangle is outside of the solid, so it meets the solid only if it meets the surface.
     return std::any_of(facet_.begin(), facet_.begin() + static_cast<std::ptrdiff_t>(facets_),
                        [&t](const TrianglePoints& facet) { return triangles_intersect(facet, t, nullptr); });
   }

@@ -9,14 +9,15 @@
 #include "math/vector_functions.h"
 #include "tree/tree_nodes.h"
 
-// Depth first through the two trees of triangles, the nearest pair of ball slabs first, leaving out what is not nearer
-// than the best so far. Lower bounds are floats with their rounding taken off; distances of triangles are doubles.
+// The search goes depth first through the triangle BVHs of both trees, the nearest pair of nodes first, and leaves out
+// pairs that are not nearer than the best so far. Lower bounds are floats from which their rounding error has been
+// subtracted; distances of triangles are doubles.
 namespace orchard::runtime {
 
 namespace {
 
-constexpr double kDistanceRounding = 1e-12;  // of distances in double, relative to them
-constexpr double kSmallMargin = 0.125;       // of two leaves' radii: then most of their triangles are farther apart
+constexpr double kDistanceRounding = 1e-12;  // the relative rounding error of distances in double
+constexpr double kSmallMargin = 0.125;       // relative to two leaves' radii; most of their triangles are farther apart
 
 }  // namespace
 
@@ -49,11 +50,12 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
   nearest_.triangle_first = nearest_.triangle_second = kNoTriangle;
   upper_ = std::numeric_limits<double>::infinity();
   limit_ = {};
-  finished_ = !has_room() || answer == Roots::Answer::refused || lower_ > limit ||  // or the roots are enough
+  finished_ = !has_room() || answer == Roots::Answer::refused || lower_ > limit ||  // level 0 has decided
               !trees_.place(a, b);
   if (finished_) return;
   if (limit < std::numeric_limits<double>::infinity()) {
-    // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
+    // The search goes beyond the limit by as much as the bounds lose to rounding when they are reported, so that
+    // "farther" is certain.
     const double error = trees_.exact_error(), scale = trees_.first_pose().scale;
     limit_.length = (limit + 2 * error) / scale * (1 + 4 * kDistanceRounding);
     limit_.enough = std::max(0.0, (limit - error) / scale * (1 - 4 * kDistanceRounding));
@@ -62,7 +64,8 @@ void DistanceSearch::begin(const Pose& a, const Pose& b, double limit) noexcept 
   stack_.start({{0, 0}, 0});
 }
 
-// What is farther need not be looked at.
+// Sets the bound beyond which pairs are left out: they are farther than the limit, or not nearer than the nearest
+// triangles by more than the tolerance.
 void DistanceSearch::find_cut() noexcept {
   const double absolute = tolerance_.absolute > 0 ? tolerance_.absolute / trees_.first_pose().scale : 0;
   cut_ = std::min(limit_.length, (nearest_.distance - absolute) / (1 + tolerance_.relative));
@@ -97,14 +100,14 @@ void DistanceSearch::refine(const Budget& budget) noexcept {
   report();
 }
 
-// Near enough: what has not been looked at still counts for the lower bound.
+// Ends the search at a distance that is near enough. The pairs on the stack still count for the lower bound.
 void DistanceSearch::leave_the_rest() noexcept {
   for (const Apart& pair : stack_.all()) min_lower_ = std::min(min_lower_, double{pair.lower});
   stack_.clear();
 }
 
-// In place of a pair, those of its children that may be nearer than the best, the nearest last; of those that overlap
-// the deepest.
+// Replaces a pair by those of its children that may be nearer than the best, the nearest last. Among children that
+// overlap, the deepest overlap comes last.
 void DistanceSearch::expand(const detail::PlacedViews& trees, const Apart& pair) noexcept {
   const detail::Opened opened = trees.open(pair);
   detail::BoxGaps gaps;
@@ -119,7 +122,7 @@ void DistanceSearch::expand(const detail::PlacedViews& trees, const Apart& pair)
       [](const Apart& apart, std::uint32_t) ORCHARD_INLINE_LAMBDA { return apart.lower; });
 }
 
-// The nearest ones first: each found makes fewer of the others worth a test.
+// The nearest triangles come first, because each distance that is found rules out others.
 void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apart& pair) noexcept {
   const TriangleBlock &lanes = trees.lanes(pair), &rows = trees.rows(pair);
   if (limit_.length < kSmallMargin * double{trees.radii(pair)}) return find_within(trees, pair);
@@ -128,7 +131,7 @@ void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apar
   detail::triangle_gaps(lanes, rows, trees.placement, nearest_.direction, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
   const float left_out = detail::each_nearest_first(gaps, [&](std::uint32_t lane, std::uint32_t row, float lower) {
-    // The rest of the pair is no nearer than this one and than its boxes.
+    // The remaining triangles are no nearer than these two, and no nearer than the boxes of the leaves.
     if (nearest_.distance <= limit_.enough || !may_be_nearer(double{std::max(lower, least)})) return false;
     compare_triangles(lanes, lane, rows, row, lower <= 0);
     return true;
@@ -138,7 +141,8 @@ void DistanceSearch::compare_leaves(const detail::PlacedViews& trees, const Apar
   }
 }
 
-// Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
+// Finds only whether some triangles are within the limit. It uses the test for triangles that may meet, with a margin
+// that includes the limit.
 void DistanceSearch::find_within(const detail::PlacedViews& trees, const Apart& pair) noexcept {
   detail::Placement near = trees.placement;
   near.margin = detail::next_float((double{near.margin} + limit_.length) * (1 + 1e-6));
@@ -171,14 +175,14 @@ void DistanceSearch::compare_triangles(const TriangleBlock& lanes, std::uint32_t
   }
 }
 
-// Bounds never get worse, whatever rounding does.
+// Updates the bounds. They never get worse from call to call, even if rounding makes new ones worse.
 void DistanceSearch::report() noexcept {
   double least = std::min(min_lower_, nearest_.distance);
   for (const Apart& pair : stack_.all()) least = std::min(least, double{pair.lower});
   const double scale = trees_.first_pose().scale, error = trees_.exact_error();
   if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kDistanceRounding) - error);
   upper_ = std::min(upper_, nearest_.distance * scale * (1 + kDistanceRounding) + error);
-  lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose ball slabs do not hold their triangles
+  lower_ = std::min(lower_, upper_);  // they cross only for a file whose ball slabs do not contain their triangles
 }
 
 DistanceSearch::Points DistanceSearch::points() const noexcept {

@@ -5,16 +5,16 @@
 #include "collision/impact_search.h"
 #include "collision/triangle_distance.h"
 
-// Which triangles of two moving bodies can meet first.
+// Finds the triangles of two moving bodies that can meet first.
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kEnough = 0.5;  // of the earliest time found: what may meet later than that is not looked at
+constexpr double kEnough = 0.5;  // relative to the earliest time found: what cannot meet before it is left out
 
 }  // namespace
 
-// When triangles can meet first, within what is left of the time. False if the budget ends before all was looked at:
-// critical.time then holds for what was left, too.
+// Finds the triangles that can meet first, within the remaining time. Returns false if the budget ends the search;
+// critical.time then holds for the pairs that were not looked at, too.
 bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexcept {
   TreeStack<Scratch::TimedPair>& stack = workspace_.scratch()->timed;
   const PlacedViews trees = trees_.views();
@@ -38,7 +38,7 @@ bool ImpactSearch::find_critical(PairBudget& tracker, Critical& critical) noexce
   return true;
 }
 
-// In place of a pair, those of its children that may meet in time, the earliest last.
+// Replaces a pair by those of its children that may meet in time, the earliest last.
 void ImpactSearch::expand(const PlacedViews& trees, const Scratch::TimedPair& top, Critical& critical) noexcept {
   const Opened opened = trees.open(top);
   const auto margin = static_cast<float>((double{trees.placement.box_margin} + limits_.margin) * (1 + 1e-6));
@@ -72,7 +72,7 @@ void ImpactSearch::compare_leaves(const PlacedViews& trees, const Scratch::Timed
   const double fastest = length(motion_.velocity) + motion_.speed +
                          (motion_.first.spin + motion_.first.turning) * first_reach +
                          (motion_.second.spin + motion_.second.turning) * second_reach;
-  // Before that no gap closes, whatever its direction.
+  // Returns a time before which no gap of at least `lower` can close, whatever its direction.
   const auto earliest = [&](float lower) {
     const double gap = double{lower} - limits_.margin;
     return gap > 0 ? gap / (fastest * (1 + kImpactRounding)) : 0;
@@ -81,7 +81,7 @@ void ImpactSearch::compare_leaves(const PlacedViews& trees, const Scratch::Timed
   TriangleGaps gaps;
   triangle_gaps(lanes, rows, trees.placement, direction_,
                 static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
-  // Each found makes fewer of the others worth a look.
+  // The nearest triangles come first, because each time that is found rules out others.
   const float others = each_nearest_first(gaps, [&](std::uint32_t lane, std::uint32_t row, float lower) {
     if (critical.leaves(earliest(lower))) return false;
     compare_triangles(lanes, lane, rows, row, {fastest, first_reach, second_reach}, critical);

@@ -17,16 +17,16 @@ namespace {
 using Cut = Workspace::Scratch::Cut;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMaxAdvances = 512;  // along one direction
-constexpr int kMet = 3;          // triangles that are looked at in one place, since the last of many takes long to find
-constexpr double kClear = 0.25;  // of a nudge: more than what rounding does to poses
-constexpr double kRounded = 64;  // nudges: a way that is no longer is rounding, and so would be a shorter one
-constexpr double kGain = 1e-6;   // less is no gain
-constexpr double kSame = 1 - 1e-9;            // cosine of directions that count as one
-constexpr std::uint64_t kTestsPerShifts = 4;  // of the walk, that take as long as MeetingShifts
-constexpr double kWayRounding = 1e-12;        // of the bodies' size: the rounding of shifts
+constexpr int kMaxAdvances = 512;   // the number of steps along one direction
+constexpr int kMet = 3;             // the number of pairs examined in one place: to find the last of many takes long
+constexpr double kClear = 0.25;     // a fraction of a nudge, above the rounding error of poses
+constexpr double kRounded = 64;     // in nudges: a way that is no longer is a matter of rounding
+constexpr double kGain = 1e-6;      // the fraction by which a way has to be shorter to replace the best one
+constexpr double kSame = 1 - 1e-9;  // the cosine of directions that count as the same
+constexpr std::uint64_t kTestsPerShifts = 4;  // so many tests of the walk take as long as MeetingShifts
+constexpr double kWayRounding = 1e-12;        // relative to the bodies' size: the rounding error of shifts
 
-// A point of a piece in the frame of a box, and how it moves there for each unit of the way of the second body.
+// A point of a piece of a surface, in the frame of a box, and its velocity there per unit of the second body's way.
 struct MovingPoint {
   Vec3 start, velocity;
 
@@ -58,8 +58,8 @@ struct MovingPoint {
   }
 };
 
-// When the last of the pieces that are inside boxes at `at` has left them by its point, or minus infinity if there is
-// none.
+// Returns the way after which the last piece has left its box, of the pieces whose points are inside boxes at `at`.
+// Returns minus infinity if there is none.
 double leaves_boxes(const MinimumTranslationSearch& search, const Vec3& u, double at) noexcept {
   double last = -std::numeric_limits<double>::infinity();
   for (const SolidBox& solid : search.solids) {
@@ -72,16 +72,16 @@ double leaves_boxes(const MinimumTranslationSearch& search, const Vec3& u, doubl
   return last;
 }
 
-// How far a shift can grow between the planes of the two triangles: no less than while these meet.
+// Returns how far a shift along u can go until it leaves the planes of both triangles: an upper bound on the way after
+// which they still meet.
 double exit_of(const std::array<ShiftPlanes, 2>& faces, const Vec3& u, double slack) noexcept {
   return std::min(faces[0].exit(u, slack), faces[1].exit(u, slack));
 }
 
-// The triangles that meet after a part of a way, as far as some of them can move on together. Ends at the first pair
-// that can do so to `limit` of the way.
+// The triangles that meet after a part of a way, and how far the second body can go on until they part.
 struct Meeting {
   bool any = false;
-  bool clear = true;  // those that do not meet are farther apart than rounding
+  bool clear = true;  // if none meet: all are farther apart than rounding could close
   double farthest = -kInfinity;
   Vec3 normal;
 };
@@ -107,13 +107,14 @@ Meeting meeting_at(const MinimumTranslationSearch& search, const Vec3& u, double
   return meeting;
 }
 
-// What the triangles that meet now tell about directions, without a look at any others.
+// The triangles that meet at the present place. They give lower bounds on ways without a search for others.
 class Obstacles {
  public:
   explicit Obstacles(const MinimumTranslationSearch& search) noexcept
       : room_(search.room), cuts_(search.cuts), slack_(kWayRounding * search.size) {}
 
-  // How far all of them are left behind, and what the last one is left at. Ends once that is `enough`.
+  // Returns the way along u after which none of them meet, and the normal at which the last pair parts. It may stop at
+  // a way of at least `enough`.
   MeetingShifts::Exit exit(const Vec3& u, double enough) noexcept {
     MeetingShifts::Exit last{0, u};
     for (std::size_t i = 0; i < cuts_.size() && last.way < enough; ++i) {
@@ -124,7 +125,8 @@ class Obstacles {
     return last;
   }
 
-  // Whether one of them is in the way of all directions, and often is among the first.
+  // Returns whether one of the first eight pairs alone makes ways in all directions at least `limit` long. Such a pair
+  // is often among the first.
   bool block_all(double limit) noexcept {
     constexpr std::size_t kFirst = 8;
     for (std::size_t i = 0; i < std::min(kFirst, kept()); ++i) {
@@ -160,8 +162,8 @@ class Obstacles {
   MeetingShifts other_;
 };
 
-// To where the bodies' extents along a direction part, or some 1 % of the bodies beyond: always an end, seldom the
-// first one.
+// Returns the way along u after which the extents of the bodies along u do not overlap, or a way that is longer by
+// about 1 % of the bodies' size. The bodies are apart there, but usually earlier, too.
 double way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
   const Pose& relative = search.pair.relative;
   const Pose back = inverse(Pose{.rotation = relative.rotation});
@@ -170,7 +172,7 @@ double way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept 
   return std::max(0.0, reach - dot(u, relative.translation));
 }
 
-// The same by the triangles.
+// Computes the same from the triangles, without that error.
 double exact_way_past(const MinimumTranslationSearch& search, const Vec3& u) noexcept {
   const TreeView &first = search.pair.first.tree, &second = search.pair.second.tree;
   const Pose &relative = search.pair.relative, back = inverse(Pose{.rotation = relative.rotation});
@@ -180,7 +182,8 @@ double exact_way_past(const MinimumTranslationSearch& search, const Vec3& u) noe
   return std::max(0.0, reach - dot(u, relative.translation)) + kWayRounding * search.size + search.nudge;
 }
 
-// The corners of a grid on a cube: 98 directions, at most 27 degrees from each other.
+// Visits the directions to the points of a grid on a cube: 98 directions, of which neighbours along the grid are at
+// most 27 degrees apart.
 template <typename Visit>
 void each_direction_around(Visit&& visit) noexcept {
   for (int x = -2; x <= 2; ++x) {
@@ -193,8 +196,9 @@ void each_direction_around(Visit&& visit) noexcept {
   }
 }
 
-// Directions in the order of what is known of their ways: first as long as the triangles that meet now take, then
-// longer by what else gets in the way, until a way is free and no other one can be shorter.
+// A best-first search for the shortest way. It keeps a list of directions, each with a lower bound on its way: at
+// first, from the triangles that meet now; later, also from others that are found on the way. The direction with the
+// least bound is advanced, until its way is free and no other one can be shorter.
 class WaySearch {
  public:
   WaySearch(const MinimumTranslationSearch& search, std::uint32_t refinements) noexcept
@@ -207,13 +211,13 @@ class WaySearch {
   Obstacles& obstacles() noexcept { return obstacles_; }
   void limit_to(double way) noexcept { limit_ = std::min(limit_, way); }
 
-  // Lists a direction.
   void add(const Vec3& direction) noexcept {
     Plane plane;
     list(direction, plane);
   }
 
-  // Lists a direction and the ways across what is in the way of it.
+  // Adds a direction. Then, up to refinements_ times, it adds the normal of the plane at which the last direction
+  // became free, and the shortest way past this plane and the one before it.
   void add_with_refinements(const Vec3& direction) noexcept {
     Vec3 next = direction;
     Plane before{};
@@ -245,7 +249,7 @@ class WaySearch {
     double nudge;
     int advances = 0;
   };
-  struct Plane {  // that a direction is left at: no shorter way leads past it
+  struct Plane {  // a direction becomes free at it; shifts shorter than `height` do not lead past it
     Vec3 normal;
     double height;
   };
@@ -273,12 +277,13 @@ class WaySearch {
     std::push_heap(listed_.begin(), listed_.begin() + static_cast<std::ptrdiff_t>(count_), longer);
   }
 
-  // One step along a direction, to where what is in the way there has been left.
+  // Takes one step along a direction, to where the triangles and pieces found at the present place no longer meet the
+  // other body. If there are none, the way is the best so far.
   void advance(Listed next) noexcept {
     const double at = next.way + next.nudge;
     const Meeting meeting = meeting_at(search_, next.u, at, limit_);
     const double further = meeting.any ? at + meeting.farthest : leaves_boxes(search_, next.u, at);
-    if (!meeting.any && further < 0) {  // the way includes the nudge, since only there it is known to have ended
+    if (!meeting.any && further < 0) {  // the way includes the nudge, because only its end is known to be free
       best_ = {next.u, at, next.normal, true, meeting.clear};
       limit_ = at * (1 - kGain);
       if (refinements_ > 0) add_with_refinements(next.normal);
@@ -289,34 +294,34 @@ class WaySearch {
       next.way = further, next.nudge = search_.nudge;
       if (meeting.any) next.normal = meeting.normal;
     } else {
-      next.nudge *= 4;  // they touch but for rounding
+      next.nudge *= 4;  // they touch up to rounding
     }
     push(next);
   }
 
-  // The shortest way that reaches two planes; 0 of parallel ones.
+  // Returns the shortest shift that reaches two planes; 0 if these are parallel.
   static Vec3 past_both(const Plane& p, const Plane& q) noexcept {
     const double c = dot(p.normal, q.normal), across = 1 - c * c;
     if (!(across > 1e-9)) return {};
     return ((p.height - c * q.height) / across) * p.normal + ((q.height - c * p.height) / across) * q.normal;
   }
 
-  static constexpr std::size_t kCutsPerTest = 8;  // that take as long to look at as a test of the walk
+  static constexpr std::size_t kCutsPerTest = 8;  // so many cuts take as long as a test of the walk
 
   const MinimumTranslationSearch& search_;
   Obstacles obstacles_;
   std::uint32_t refinements_;
-  std::uint64_t last_listing_;  // work of the walk from which on no direction is listed any more
+  std::uint64_t last_listing_;  // no direction is listed once the work has reached this
   MinimumTranslation best_{{}, kInfinity, {}, false};
-  double limit_ = kInfinity;  // of ways that count
+  double limit_ = kInfinity;  // ways that are at least so long do not count
   std::array<Listed, 192> listed_;
   std::size_t count_ = 0;
   std::array<Vec3, 64> tried_{};
   std::size_t tried_count_ = 0;
 };
 
-// Whether a way is so long, beside the smaller body or beside the curves in which the surfaces cut each other, that a
-// shorter one is likely to lead elsewhere.
+// Returns whether a way is so long, compared with the smaller body or with the curves in which the surfaces cut each
+// other, that a shorter one probably leads in another direction.
 bool is_doubtful(const MinimumTranslationSearch& search, double way) noexcept {
   constexpr double kDeep = 0.01, kBeyondContact = 2;
   const PlacedPair& pair = search.pair;
@@ -331,7 +336,7 @@ bool is_doubtful(const MinimumTranslationSearch& search, double way) noexcept {
   return way * way > kBeyondContact * kBeyondContact * square;
 }
 
-// For any way shorter than a doubtful one, else for one that is shorter by far.
+// Does part 2 of the search, as minimum_translation.h describes it.
 void look_around(const MinimumTranslationSearch& search, WaySearch& ways) noexcept {
   constexpr double kShorterByFar = 0.85;
   const MinimumTranslation first = ways.best();
@@ -350,7 +355,8 @@ void look_around(const MinimumTranslationSearch& search, WaySearch& ways) noexce
   ways.settle();
 }
 
-// The shortest way to where the bodies' extents part, along one of the directions or of a grid of them.
+// Does part 3 of the search: returns the shortest way after which the extents of the bodies do not overlap, along one
+// of `directions` or a direction of the grid.
 MinimumTranslation shortest_past(const MinimumTranslationSearch& search, std::span<const Vec3> directions) noexcept {
   Vec3 nearest = directions[0];
   double least = kInfinity;

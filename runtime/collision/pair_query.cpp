@@ -11,7 +11,7 @@ namespace orchard::runtime {
 
 namespace {
 
-constexpr double kMinOpposition = 1e-6;  // between unit normals: less says nothing about a direction
+constexpr double kMinOpposition = 1e-6;  // shorter differences of unit normals give no direction
 
 }  // namespace
 
@@ -19,7 +19,7 @@ PairQuery::PairQuery(std::size_t room) noexcept {
   if (room > 0) reserve(room);
 }
 
-// Nothing is known of what is bound now. False if there is no memory for its stack.
+// Forgets what was known about the previous pair. Returns false if there is no memory for the stack.
 bool PairQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   trees_.bind(a, b);
   known_ = {};
@@ -40,7 +40,7 @@ void PairQuery::reset() noexcept {
   out_of_room_ = exact_started_ = false;
 }
 
-// What deeper levels need.
+// Resets what only levels below the roots use.
 void PairQuery::forget() noexcept {
   spheres_.forget(known_.separation_bound);
   triangles_.forget_found();
@@ -150,7 +150,7 @@ Contact PairQuery::contact() const noexcept {
     contact.triangle_a = exchanged ? found.second : found.first;
     contact.triangle_b = exchanged ? found.first : found.second;
   }
-  // A "yes" whose triangles say nothing about a direction has that of the spheres.
+  // If the triangles of a "yes" give no direction, that of the spheres is used.
   if (known_.answer != Answer::yes || !(length(normal) > 0)) add_ball(contact, normal);
   contact.center = trees_.in_world(contact.center);
   if (exchanged) normal = Vec3() - normal;
@@ -159,8 +159,8 @@ Contact PairQuery::contact() const noexcept {
   return contact;
 }
 
-// The ball around the common part of the best pair's spheres, unless triangles meet, and the direction from one to the
-// other.
+// Sets `normal` to the direction from the first sphere of the best pair to the second one. Unless triangles meet, the
+// contact becomes the smallest ball around the common part of these spheres.
 void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
   const TreeView &first = trees_.first().tree, &second = trees_.second().tree;
   const auto [a, b] = spheres_.best().pair;
@@ -174,8 +174,8 @@ void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
   if (known_.answer == Answer::yes) return;
   const double ra = detail::block_of(first, a).radius[a % kBlockWidth];
   const double rb = detail::block_of(second, b).radius[b % kBlockWidth] * relative.scale;
-  // The smallest ball around the common part of two balls: one of them if it is less than half cut off, otherwise the
-  // ball on the circle in which the spheres cut each other, `at` away from p.
+  // The smallest ball around the common part of two balls is one of them if less than half of it is cut off. Otherwise,
+  // it is the ball on the circle in which the spheres cut each other, `at` away from p.
   const double at = distance > 0 ? (distance * distance + ra * ra - rb * rb) / (2 * distance) : 0;
   double share = 0;  // of the way from p to q
   if (distance == 0 || at <= 0 || at >= distance) {
@@ -188,9 +188,10 @@ void PairQuery::add_ball(Contact& contact, Vec3& normal) const noexcept {
   contact.center = detail::along(p, way, share);
 }
 
-// From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.
+// Returns the direction from the first solid to the second one: the first triangle's outward normal less the second
+// one's. Returns 0 if it is unknown.
 Vec3 PairQuery::triangle_normal() const noexcept {
-  const auto unit = [](Vec3 v, double least) {  // 0 if it is no longer than that
+  const auto unit = [](Vec3 v, double least) {  // 0 if it is no longer than `least`
     const double size = length(v);
     for (double& component : v) component = size > least ? component / size : 0;
     return v;

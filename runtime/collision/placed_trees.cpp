@@ -11,31 +11,30 @@
 #include "tree/tree_nodes.h"
 
 // Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
-// float, a a centre of the first tree, u = 2^-24, E1 and E2 the trees' extents, T the relative translation.
-//  (1) |c' - c| <= sigma. A row of the rotation has length 1, so per component rounding its entries costs u|q| and the
-//      three products and three sums 4.1 u (|q| + |T_i|): together, with the rounding of T itself, at most
-//      sqrt(3) 5.2 u |q| + 5.2 u |T| <= u (10 E2 + 6 |T|). What double arithmetic and poses that are rigid only to
-//      kRigidTolerance add is exact_error below.
-//  (2) square = |c' - a|^2 (1 + 5.1 u) at most and reach = (r1 + r2 + slack)(1 - 2 u) at least. If the balls touch,
-//      |c' - a| <= r1 + r2 + sigma, so square <= reach * reach, as computed, holds if slack - sigma >= 5.2 u (r1 +
-//      r2).
-//  (3) If the test fails, the true gap |c - a| - r1 - r2 is at least sqrt(square) - reach, evaluated exactly, if
-//      slack - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
+// float, a a centre of the first tree, u = 2^-24, E1 and E2 the trees' extents, and T the relative translation.
+//  (1) |c' - c| <= sigma. A row of the rotation has length 1. So, per component, rounding its entries costs u|q|, and
+//      the three products and three sums cost 4.1 u (|q| + |T_i|). With the rounding of T itself, this is at most
+//      sqrt(3) 5.2 u |q| + 5.2 u |T| <= u (10 E2 + 6 |T|) in all. exact_error below is what double arithmetic adds, and
+//      poses that are rigid only to kRigidTolerance.
+//  (2) square is at most |c' - a|^2 (1 + 5.1 u), and reach is at least (r1 + r2 + slack)(1 - 2 u). If the balls touch,
+//      |c' - a| <= r1 + r2 + sigma, so square <= reach * reach, as computed, holds if slack - sigma >= 5.2 u (r1 + r2).
+//  (3) If the test fails, the true gap |c - a| - r1 - r2 is at least sqrt(square) - reach, evaluated exactly, if slack
+//      - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
 //  (4) |c - a| <= sqrt(square) + slack if slack - sigma >= 3 u |c' - a|.
-// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them. E2, r2 and
-// what follows are the second tree's times its relative scale; rounding that product costs r2 another u.
-//  (5) Gaps between ball slabs: a moved normal is within 10 u of the true one, and every normal's length within 8.4 u
-//  of 1.
-//      A height over a ball slab's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most
-//      the sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by
-//      4 u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
-//  (6) Gaps between boxes: one of them is turned into the other one's axes, in the first tree's units, and (1) holds
-//  for
-//      either with sigma + 16 u D. Along a unit vector v the points of a box reach at most the sum of its half sizes
-//      times |v . axis|, and besides what the axes lack to be orthonormal (to 1e-6, so 17 u each) times the radius: 51
-//      u. An axis is within 10 u of the true one, a product of axes within 25 u, a cosine thus within 30 u, and the sum
-//      of three of them, times half sizes of at most a radius each, within 60 u of a radius: 111 u for a radius and so
-//      for D. A height is off by sigma + 22 u D, the rest by 6 u D: box_margin = 2 sigma + 192 u D leaves room.
+// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D is enough for all of them. E2,
+// r2 and the second tree's lengths below are those of the second tree times its relative scale; rounding that product
+// costs r2 another u.
+//  (5) Triangles against planes of boxes: a moved normal is within 10 u of the true one, and the length of every normal
+//      is within 8.4 u of 1. A height over a middle plane of a box is off by at most sigma + 22 u |c' - a|, and the
+//      sums by 4 u D. margin = 2 sigma + 96 u D leaves room, also for two moved points and eight roundings of a
+//      triangle test.
+//  (6) Gaps between boxes: one of the boxes is turned into the other one's axes, in the first tree's units, and (1)
+//      holds for either with sigma + 16 u D. Along a unit vector v, the points of a box reach at most the sum of its
+//      half sizes times |v . axis|, and in addition what the axes lack to be orthonormal (1e-6, so 17 u each) times the
+//      radius: 51 u. An axis is within 10 u of the true one, a product of axes within 25 u, a cosine thus within 30 u,
+//      and the sum of three of them, times half sizes of at most a radius each, within 60 u of a radius. This makes 111
+//      u for a radius and so for D. A height is off by sigma + 22 u D, the rest by 6 u D: box_margin = 2 sigma + 192 u
+//      D leaves room.
 namespace orchard::runtime {
 
 using detail::minus;
@@ -45,12 +44,12 @@ using detail::turned_back;
 namespace {
 
 constexpr double kFloatUnit = 0x1p-24;
-// Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
+// Keeps the squares of the smallest reach above the numbers that a flush-to-zero mode drops.
 constexpr double kMinSlack = 1e-15;
-constexpr double kCoarse = 0x1p-9;    // of the smaller body's radius; leaves of 1,000 triangles have some 2^-5
+constexpr double kCoarse = 0x1p-9;    // of the smaller body's radius; leaves of 1,000 triangles have about 2^-5 of it
 constexpr double kMinSize = 1e-18;    // below it Placement::unit stays as it is: margins are far larger
 constexpr double kMinError = 1e-150;  // of a length: covers the underflow of its square
-constexpr int kRootDirections = 5;    // tried at most, to part the hulls
+constexpr int kRootDirections = 5;    // the number of directions that are tried to separate the hulls
 
 template <typename Container>
 int compare_bytes(const Container& a, const Container& b) noexcept {
@@ -91,8 +90,8 @@ void OrderedTrees::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_->root[i], second_->root[i]};
 }
 
-// Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,
-// each keeps its own.
+// Equal trees are exchanged together with their poses. So, even if the fingerprints of different trees should ever
+// agree, each tree keeps its own pose.
 bool OrderedTrees::order_at(const Pose& a, const Pose& b) noexcept {
   if (one_tree_) return before(b, a);
   if (!equal_ || before(b, a) == exchanged_) return exchanged_;
@@ -107,11 +106,11 @@ void PlacedTrees::find_exact_error(const Pose& of_first, const Pose& of_second) 
                  1e-14 * (one_norm(of_first.translation) + one_norm(of_second.translation)) + kMinError;
 }
 
-// Nothing is done here that only deeper levels need. In double and in the world: bodies that are far apart must not
-// overflow. Exchanging the bodies changes no bit of any result, so that equal trees need no order yet.
+// Computes only what this test needs; place() does the rest. It works in double and in world coordinates, so that
+// bodies that are far apart do not overflow. Exchanging the bodies changes no bit of any result, so equal trees need no
+// order yet.
 Roots::Answer PlacedTrees::test_roots(const Pose& a, const Pose& b, Roots& result) noexcept {
   result = {};
-  // Nothing below holds otherwise, and the hulls' tables have no place for directions that are no directions.
   const bool exchanged = trees_.exchanged();
   const Pose &of_first = exchanged ? b : a, &of_second = exchanged ? a : b;
   const PreparedTree &first = trees_.first(), &second = trees_.second();
@@ -120,6 +119,8 @@ Roots::Answer PlacedTrees::test_roots(const Pose& a, const Pose& b, Roots& resul
     keep(a, b);
     return Roots::Answer::refused;
   };
+  // Nothing below holds for other poses, and the tables of the hulls have no entries for directions that are not
+  // numbers.
   if (!poses.rotate()) return refuse();
   const auto lanes = [](const std::array<double, 2>& pair) { return detail::Two{pair[0], pair[1]}; };
   const detail::Two roots[3] = {lanes(trees_.roots(0)), lanes(trees_.roots(1)), lanes(trees_.roots(2))};
@@ -140,7 +141,7 @@ Roots::Answer PlacedTrees::test_roots(const Pose& a, const Pose& b, Roots& resul
   double gap = ball_gap;
   Vec3 along = way;
   if (gap <= 0 && square > 0 && have_triangles(*this)) {
-    // How far the bodies' convex hulls are apart, at least: along the line through the roots' centres first.
+    // A lower bound on the distance of the bodies' convex hulls, first along the line through the roots' centres.
     const auto reach = [](const PreparedTree& of, const Pose& pose, const Vec3& u) {
       const Vec3 direction = turned_back(pose, u);
       return pose.scale * (detail::reach_along(of.tree.supports, direction) - dot(direction, of.middle));
@@ -168,9 +169,10 @@ void PlacedTrees::keep(const Pose& a, const Pose& b) noexcept {
   placed_ = false;
 }
 
-// Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the
-// distance of the roots' centres: reaches are proportional to the direction's length, and reflecting keeps it. `u`: the
-// way at first, and the direction of a gap at last.
+// Returns a lower bound on the distance of the hulls, times the distance of the roots' centres. It tries directions
+// that the points in the way suggest (Chung and Wang 1996), as long as the bounds improve. Reaches are proportional to
+// the length of the direction, which is that distance, and reflections keep it. `u` is `way` at first, and the
+// direction of the best gap in the end.
 double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const Vec3& way, Vec3& u) const noexcept {
   const auto support_of = [](const PreparedTree& side, const Pose& pose, const Vec3& v) {
     const Vec3 direction = turned_back(pose, v);
@@ -186,7 +188,8 @@ double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const
     if (gap > 0) return gap;
     if (gap <= best) break;
     best = gap;
-    // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
+    // This leads from the support point of the first body to that of the second one. Reflecting the direction in the
+    // plane across it turns these points apart.
     const Vec3 between = way + (q.point - p.point);
     const double square = dot(between, between), component = dot(between, u);
     if (component >= 0 || !(square > 0)) break;
@@ -195,12 +198,12 @@ double PlacedTrees::hulls_gap(const Pose& of_first, const Pose& of_second, const
   return best;
 }
 
-// The second tree's frame in the first one's, both relative to the trees' origins: these enter here, so that everything
-// below works on the trees' own small coordinates.
+// Both frames are relative to the trees' origins, so that everything below works with the small coordinates of the
+// trees.
 Pose PlacedTrees::relative_pose() const noexcept {
   const double shrink = 1 / first_pose_.scale;
-  // What is below this is no more than rounding, and without it no product of three coordinates underflows:
-  // exact_sign.h.
+  // Smaller values are no more than rounding, and without them no product of three coordinates underflows
+  // (exact_sign.h).
   const auto settled = [](double value, double least) { return std::fabs(value) < least ? 0.0 : value; };
   Pose relative;
   relative.scale = second_pose_.scale * shrink;
@@ -212,7 +215,6 @@ Pose PlacedTrees::relative_pose() const noexcept {
   return relative;
 }
 
-// Not needed where the roots decide.
 void PlacedTrees::place() noexcept {
   if (placed_) return;
   placed_ = true;
@@ -240,10 +242,10 @@ void PlacedTrees::place() noexcept {
   placement_.whole = static_cast<float>(detail::scaled(1, exponent));
 }
 
-// Whether floats can hold the square of every distance in the pair's frame, and doubles the exact level's products.
-// With T and the second extent, origins and errors included, at most 4 L and the first extent below 2.8 L, L =
-// kCoordinateLimit, no float sum of squares or of products of two lengths exceeds 120 L^2, a third of the largest
-// float.
+// Returns whether floats can hold the square of every distance in the pair's frame, and doubles the products of the
+// exact level. T and the second extent, origins and errors included, are at most 4 L, and the first extent is below 2.8
+// L, with L = kCoordinateLimit. So no float sum of squares, or of products of two lengths, exceeds 120 L^2, a third of
+// the largest float.
 bool PlacedTrees::in_range() const noexcept {
   const double relative = second_pose_.scale / first_pose_.scale;
   if (!(relative >= 1 / kMaxRelativeScale && relative <= kMaxRelativeScale)) return false;

@@ -6,11 +6,11 @@
 #include "collision/ray_walk.h"
 #include "orchard/runtime/shape_query.h"
 
-// The boxes of a ray index are those around the triangles below each node of the tree, from the leaves up.
+// The boxes of a ray index are computed from the leaves up: the box of a node contains all triangles below it.
 namespace orchard::runtime {
 namespace {
 
-constexpr double kOutward = 1 + 0x1p-23;  // more than what rounding to float takes away
+constexpr double kOutward = 1 + 0x1p-23;  // a factor above the rounding to float
 
 struct Box {
   std::array<float, 3> low, high;

@@ -12,7 +12,7 @@ namespace orchard::runtime {
 
 using namespace detail;
 
-// The triangles of an index, as those of a tree: TreeTriangles.
+// The triangles of a ray index, with the same functions as TreeTriangles.
 struct detail::IndexTriangles {
   const RayIndex& index;
 
@@ -33,15 +33,16 @@ struct detail::IndexTriangles {
 
 namespace {
 
-// Up to where a ray goes.
+// The end of a ray.
 struct RayEnd {
   const Direction& direction;
   double longest;
 
-  // Whether a ray that meets the triangle's plane, or the triangle, after `at` steps gets as far: as it is told how
-  // far that is, or exactly.
+  // Returns whether the ray, which meets the triangle or its plane after `at` steps, gets so far: it does if the
+  // distance that the query reports is at most `longest`. If it is longer by no more than rounding, an exact test of
+  // the ray's last point decides.
   bool reaches(const RayStart& ray, const TrianglePoints& t, double at) const noexcept {
-    constexpr double kExact = 1 - 0x1p-48, kPlace = 0x1p-38;  // kPlace: of the whole way, what a place may be off by
+    constexpr double kExact = 1 - 0x1p-48, kPlace = 0x1p-38;  // kPlace: the error of a place, of the whole way
     if (at <= ray.end * kExact || direction.along(at) <= longest) return true;
     if (at > ray.end + kPlace * (ray.steps_to(ray.to) + one_norm(ray.from) * ray.slowness)) return false;
     const Vec3 last = settled(along(ray.from, ray.step, ray.end));
@@ -57,8 +58,8 @@ struct Nearest {
   Vec3 point{};
   std::uint32_t triangle = kNoTriangle;
 
-  // Whether the triangle is nearer; of equally near ones the first in the tree's own order. `sure`: that the line runs
-  // through it.
+  // Makes a triangle the nearest one if it is nearer or, among equally near ones, has the smaller number. Returns
+  // whether it did. `sure` is whether the line certainly passes through it.
   bool offer(const RayStart& ray, const RayEnd& limit, const TrianglePoints& t, std::uint32_t number,
              bool sure) noexcept {
     Vec3 common{};
@@ -71,14 +72,14 @@ struct Nearest {
   }
 };
 
-// The first triangle along rays in one body's frame.
+// Finds the first triangles along rays in the frame of a body.
 template <typename Triangles>
 class Caster {
  public:
   Caster(const Triangles& triangles, const Pose& pose) noexcept
       : triangles_(triangles), frame_(triangles.frame(pose)), ball_(triangles.ball()) {}
 
-  // What is before the walk for several rays at once.
+  // Casts all rays. It computes the starts of several rays at a time, and then walks along each of them.
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const noexcept {
     RayStarts starts;
     std::array<int, RayStarts::kCount> powers;

@@ -5,7 +5,7 @@ namespace orchard::runtime::detail {
 namespace {
 
 ORCHARD_INLINE void make_all(const Frame& given, const Ball& ball, RayStarts& starts) noexcept {
-  const Frame frame = given;  // copies, which no row can be part of
+  const Frame frame = given;  // copies, with which the rows cannot overlap
   const Ball around = ball;
   for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
     const RayStart start = start_of(frame, around, {starts.origin[0][i], starts.origin[1][i], starts.origin[2][i]},

@@ -7,21 +7,22 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// The plain evaluation below. Differences of the coordinates are right to u = 2^-53 of themselves. Where a, b, c are
-// the largest components of three such vectors, a component of the product of the first two is at most 2 a b and off by
-// less than 8 u a b, so a triple product is off by less than 3 (8 u + 4 * 2 u) a b c = 48 u a b c, if nothing
-// underflows or overflows on the way. That is so where a b and a b c are within kLeast and 1 / kLeast: what underflows
-// is below 2^-1074 of a term that then is less than 2^-53 u of a b.
+// The error of the plain evaluation below. Differences of the coordinates are right to u = 2^-53 of themselves. Let a,
+// b, c be the largest components of three such vectors. A component of the product of the first two is at most 2 a b
+// and off by less than 8 u a b, so a triple product is off by less than 3 (8 u + 4 * 2 u) a b c = 48 u a b c, if
+// nothing underflows or overflows on the way. This holds if a b and a b c are between kLeast and 1 / kLeast: what
+// underflows is below 2^-1074 of a term that then is less than 2^-53 u of a b.
 constexpr double kPlainError = 64 * 0x1p-53;
 constexpr double kLeast = 0x1p-900;
 
 bool within_range(double ab, double abc) noexcept { return min(ab, abc) > kLeast && max(ab, abc) < 1 / kLeast; }
 
-// Heights whose sum is larger than this part of a b c tell a place on the segment to 2^-40 of its length.
+// If the sum of two heights is larger than this part of a b c, it determines a place on the segment to 2^-40 of its
+// length.
 constexpr double kTells = kPlainError * 0x1p40;
 
-// Of a segment's ends over a triangle's plane, times twice its area; `clear` where their signs are certain, `tell`
-// where they say where it passes.
+// The heights of a segment's ends over a triangle's plane, times twice the triangle's area. `clear` means that their
+// signs are certain, and `tell` that they also determine where the segment passes through the plane.
 struct Heights {
   double from, to;
   bool clear, tell;
@@ -46,8 +47,9 @@ Vec3 crossing_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t)
   return crossing(from, minus(to, from), volume(t[0], t[1], t[2], from), volume(t[0], t[1], t[2], to));
 }
 
-// The first point of a segment that it has in common with a triangle in whose plane it runs, or which is flat: its
-// begin, or where it meets the boundary. Where it runs along an edge, that is at a corner. Exact but for rounding.
+// Returns the first point of a segment that it shares with a triangle, for a segment in the triangle's plane, or a
+// triangle without area. It is the segment's begin or a point in which the segment meets the boundary; if the segment
+// runs along an edge, a corner. It is correct up to rounding. `any` is a common point.
 Vec3 first_common(const Vec3& from, const Vec3& to, const TrianglePoints& t, const Vec3& any) noexcept {
   if (triangles_intersect({from, from, from}, t, nullptr)) return from;
   const TrianglePoints segment = {from, to, to};
@@ -65,7 +67,7 @@ Vec3 first_common(const Vec3& from, const Vec3& to, const TrianglePoints& t, con
   return first;
 }
 
-// The same by exact signs, and on common planes as triangles_intersect() does it.
+// Does the same as segment_meets(), with exact signs only.
 bool meets_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
   if (!triangles_intersect({from, to, to}, t, &common)) return false;
   const bool in_plane = orientation(t[0], t[1], t[2], from) == 0 && orientation(t[0], t[1], t[2], to) == 0;
@@ -84,7 +86,7 @@ bool segment_passes(const Vec3& from, const Vec3& to, const TrianglePoints& t, V
 }
 
 bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
-  // Most are plain: no sign is in doubt.
+  // For most segments and triangles, no sign is in doubt in plain double arithmetic.
   const Heights heights(from, to, t);
   if (heights.clear && !heights.differ()) return false;
   const Vec3 way = minus(to, from), a = minus(t[0], from), b = minus(t[1], from), c = minus(t[2], from);

@@ -16,9 +16,10 @@ using namespace detail;
 
 namespace {
 
-constexpr int kRays = 16;  // directions tried before contains() adds up angles
+constexpr int kRays = 16;  // the number of directions that contains() tries before it adds up angles
 
-// Unit vectors without a pattern, along no axis or diagonal: the multiples of three irrational numbers, modulo 1.
+// Returns unit vectors without a pattern, along no axis or diagonal. Their components are proportional to multiples of
+// three irrational numbers, modulo 1.
 Vec3 ray_direction(int i) noexcept {
   const auto part = [i](double step) {
     const double x = (i + 1) * step;
@@ -51,8 +52,9 @@ double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
   return sum;
 }
 
-// The surface point nearest to a segment within `limit`, or the first one found, if `any` will do; `guess` is looked at
-// first, and is enough where it meets the segment. `beyond`: see NearestToSegment. `rigid`: whether the pose is.
+// Returns the surface point nearest to a segment within `limit` or, if `any` is true, the first one found. The triangle
+// `guess` is tested first; if it meets the segment, the search ends. `beyond` is set as in NearestToSegment. `rigid` is
+// whether the pose is rigid.
 SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, const Vec3& p, const Vec3& q,
                             double limit, bool any, std::uint32_t guess = kNoTriangle,
                             double* beyond = nullptr) noexcept {
@@ -65,7 +67,7 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, 
   if (!within_reach(from) || !within_reach(to)) return unknown;
   const Segment segment(from, to);
   double least = limit / pose.scale, rest = std::numeric_limits<double>::infinity();
-  // False once nothing nearer is wanted.
+  // Compares a triangle with the best one so far. Returns false if the search can end.
   const auto compare = [&](const TrianglePoints& t, std::uint32_t triangle, bool may_meet) {
     Vec3 common{};
     const NearestPoints near =

@@ -7,7 +7,7 @@
 #include "collision/kernels/sphere_block.h"
 #include "tree/tree_nodes.h"
 
-// Why the sphere tests are conservative: placed_trees.cpp, (1) to (4).
+// The sphere tests are conservative; placed_trees.cpp, (1) to (4), has the proof.
 namespace orchard::runtime {
 
 using detail::block_of;
@@ -21,8 +21,9 @@ namespace {
 
 constexpr std::size_t kBlockPairs = std::size_t{kBlockWidth} * kBlockWidth;
 
-// sqrt(s^2 + x) - s falls with s and grows with x: with the largest reach and the least excess over all the pairs that
-// missed, it is at most any of their gaps.
+// Returns a lower bound on the gaps of all pairs that missed. The gap of a pair with the reach s and the excess x is
+// sqrt(s^2 + x) - s. This falls with s and grows with x, so with the largest reach and the least excess it is at most
+// any of the gaps.
 double gap_of(const detail::LevelState& state) noexcept {
   const auto largest = [](const auto& v) { return double{*std::max_element(v.begin(), v.end())}; };
   const double reach = (largest(state.row_radius) + largest(state.lane_radius)) * (1 + 1e-6);
@@ -74,7 +75,7 @@ bool SphereLevels::roots_are_leaves(const PlacedTrees& trees) noexcept {
   return is_leaf(trees.first().tree, 0) && is_leaf(trees.second().tree, 0);
 }
 
-// A group of nodes of each tree, to be compared: the children of a pair, or of one node of it and the other, a leaf.
+// The two groups of nodes that are compared for a pair: the children of each node, or the node itself if it is a leaf.
 struct SphereLevels::Groups {
   Groups(const PlacedTrees& trees, const NodePair& pair) noexcept
       : lanes_are_second(!is_leaf(trees.second().tree, pair.b)),
@@ -85,7 +86,7 @@ struct SphereLevels::Groups {
         lanes(group_of(lane_tree, (lanes_are_second ? trees.second() : trees.first()).bits,
                        lanes_are_second ? pair.b : pair.a)) {}
 
-  // Up to eight rows and eight lanes from these on.
+  // Returns up to eight rows and eight lanes, from row `inner` and lane `outer` of the groups on.
   BlockPair block(std::uint32_t outer, std::uint32_t inner) const noexcept {
     const std::uint32_t row = rows.first + inner, lane = lanes.first + outer;
     BlockPair result{&block_of(row_tree, row), &block_of(lane_tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
@@ -93,14 +94,15 @@ struct SphereLevels::Groups {
     result.row_end = std::min(kBlockWidth, result.row_begin + rows.count - inner);
     return result;
   }
-  // The pair of a bit of BlockHits.
+  // Returns the pair that a bit of BlockHits stands for.
   NodePair pair(std::uint32_t outer, std::uint32_t inner, std::uint32_t bit) const noexcept {
     const std::uint32_t row = rows.first + inner;
     const NodePair result{row - row % kBlockWidth + bit / kBlockWidth, lanes.first + outer + bit % kBlockWidth};
     return lanes_are_second ? result : NodePair{result.b, result.a};
   }
 
-  // The lanes are the children of b, the rows those of a, or a itself; if b is a leaf, a's children are the lanes.
+  // The lanes are the children of b, and the rows are those of a, or a itself. If b is a leaf, the children of a are
+  // the lanes.
   bool lanes_are_second;
   const TreeView &row_tree, &lane_tree;
   Group rows, lanes;
@@ -152,8 +154,8 @@ void SphereLevels::improve(const PlacedTrees& trees, NodePair pair, double squar
   if (bound >= best.bound) return;
   best = {bound, pair};
   least_bound_ = std::min(least_bound_, bound);
-  // Slack covers the rounding of the block's own comparison: a pair that would be taken here is never withheld, so what
-  // is best does not depend on how the level was cut into calls.
+  // The slack covers the rounding of the block's own comparison, so it leaves out no pair that would be accepted here.
+  // So the best pair does not depend on how a level is divided into calls.
   (leaves ? seen_.best_leaf : seen_.best_inner) = static_cast<float>(bound + slack);
 }
 

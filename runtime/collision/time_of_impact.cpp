@@ -10,14 +10,14 @@ namespace detail {
 
 namespace {
 
-constexpr double kMinTolerance = 1e-9;  // of the bodies' size
-constexpr double kShorter = 1 - 1e-9;   // of a step: its own rounding
+constexpr double kMinTolerance = 1e-9;  // relative to the bodies' size
+constexpr double kShorter = 1 - 1e-9;   // a factor for steps, which covers their own rounding
 constexpr double kMaxQuantity = 1e18;   // of speeds and reaches, in the first tree's units: floats hold their products
-constexpr int kFineSteps = 12;          // nearer than the tolerance
-constexpr int kProbes = 24;             // for a contact after the last certified time
-constexpr int kHalvings = 8;            // of the bracket
+constexpr int kFineSteps = 12;          // the number of steps within the tolerance
+constexpr int kProbes = 24;   // the number of times after the last certified one that are tested for a contact
+constexpr int kHalvings = 8;  // of the interval in which the contact begins
 
-// Of a point of the surface from the centre of rotation, at most.
+// Returns a bound on the distance of points of the surface from the centre of rotation.
 double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
   const Ball all = ball_around(tree.tree);
   return (length(minus(center, all.middle)) + all.radius) * (1 + kImpactRounding);
@@ -32,7 +32,8 @@ bool ImpactSearch::prepare() noexcept {
   return scratch != nullptr && !a.obb_nodes.empty() && !b.obb_nodes.empty() && scratch->timed.reserve(a, b);
 }
 
-// False where nothing can be said.
+// Places the bodies at a time, and computes their motion and the limits. Returns false if the poses are refused or the
+// motion is out of range.
 bool ImpactSearch::place(double time) noexcept {
   const Pose pose_a = a_.at(time), pose_b = b_.at(time);
   Roots roots;
@@ -79,7 +80,7 @@ bool ImpactSearch::place(double time) noexcept {
   return true;
 }
 
-// In the frames in which nodes of either tree are tested.
+// Converts the motion to float, in the frames in which the nodes of either tree are tested.
 void ImpactSearch::find_closing() noexcept {
   const Pose& relative = trees_.relative();
   const Vec3 back = turned_back(relative, motion_.velocity);
@@ -95,7 +96,8 @@ void ImpactSearch::find_closing() noexcept {
   motion_.of_second.single = motion_.first.from(relative).in_float();
 }
 
-// Until when the balls in which the bodies turn, whatever way, do not meet.
+// Returns a time before which the bodies cannot meet however they turn, because the balls in which they turn do not
+// meet.
 double ImpactSearch::without_turning() const noexcept {
   const double scale = trees_.relative().scale;
   const Vec3 way = minus(motion_.second.center, motion_.first.center);
@@ -106,7 +108,7 @@ double ImpactSearch::without_turning() const noexcept {
   const double gap = distance * (1 - kImpactRounding) - reach_of(p, motion_.first.center) -
                      scale * reach_of(q, center) - limits_.margin - limits_.error;
   if (!(gap > 0)) return 0;
-  // The direction is fixed, so this holds for balls that pass each other, too.
+  // This also holds for balls that pass each other, because the direction is fixed.
   const double rate =
       motion_.speed - dot(motion_.velocity, way) / distance + kImpactRounding * length(motion_.velocity);
   return rate > 0 ? gap / rate : std::numeric_limits<double>::infinity();
@@ -122,7 +124,7 @@ void ImpactSearch::report(const Critical& critical) noexcept {
   std::swap(result_.triangle_a, result_.triangle_b);
 }
 
-// False where the budget ends it.
+// Returns whether the bodies are no farther apart than the margin at a time; false if the budget ends the test.
 bool ImpactSearch::touching(PairBudget& tracker, double time) noexcept {
   if (tracker.exhausted()) return false;
   const std::uint64_t left = options_.budget.work - tracker.spent();
@@ -131,7 +133,8 @@ bool ImpactSearch::touching(PairBudget& tracker, double time) noexcept {
   return answer == Answer::yes;
 }
 
-// From a time at which they nearly touch: when they do, if they do soon.
+// Searches for a contact soon after a time at which the bodies nearly touch. If it finds one, it bisects the time at
+// which the contact begins.
 void ImpactSearch::find_contact(PairBudget& tracker) noexcept {
   const double begin = result_.t0, end = options_.end;
   double step = 0, miss = begin;
@@ -153,7 +156,7 @@ void ImpactSearch::find_contact(PairBudget& tracker) noexcept {
   }
 }
 
-// One step. False where there is none left, or the budget ended it.
+// Takes one step. Returns false if it was the last one, or if the budget has ended it.
 bool ImpactSearch::advance(PairBudget& tracker) noexcept {
   if (!place(result_.t0)) {
     result_.finished = result_.refused = true;
@@ -165,7 +168,7 @@ bool ImpactSearch::advance(PairBudget& tracker) noexcept {
   const bool skip = critical.time > left / 64;
   bool all = true;
   if (!skip) {
-    // What happens exactly at the end counts: one more than what is left.
+    // A contact exactly at the end counts, so the limit is the next number above the remaining time.
     critical = Critical{std::nextafter(left, std::numeric_limits<double>::infinity())};
     all = find_critical(tracker, critical);
     critical.time = std::min(critical.time, critical.left_out);
@@ -178,7 +181,7 @@ bool ImpactSearch::advance(PairBudget& tracker) noexcept {
     return false;
   }
   if (all && found) report(critical);
-  // Nearer than asked for, a few more steps tell a contact from a near miss.
+  // Within the tolerance, a few more steps distinguish a contact from a near miss.
   if (all && found && critical.distance <= limits_.margin + limits_.tolerance) {
     const double soon = critical.rate > 0 ? (critical.distance + limits_.finest) / critical.rate : left;
     if (++near_ > kFineSteps || critical.distance <= limits_.margin + limits_.finest) {
@@ -188,7 +191,7 @@ bool ImpactSearch::advance(PairBudget& tracker) noexcept {
     soon_ = soon;
   }
   const double next = std::min(options_.end, result_.t0 + critical.time * kShorter);
-  if (!(next > result_.t0)) {  // no time left between two numbers
+  if (!(next > result_.t0)) {  // the step is too short to change the time
     result_.finished = all;
     return false;
   }

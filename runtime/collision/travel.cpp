@@ -13,7 +13,7 @@ using detail::minus;
 
 namespace {
 
-// By the angle |v| about v (Rodrigues).
+// Returns the rotation about v by the angle |v| (Rodrigues' formula).
 Matrix rotation_by(const Vec3& v) noexcept {
   const double angle = std::sqrt(dot(v, v));
   if (!(angle > 0)) return {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -25,14 +25,15 @@ Matrix rotation_by(const Vec3& v) noexcept {
       c * k[0] * k[2] - s * k[1],          c * k[1] * k[2] + s * k[0],          1 - c * (k[0] * k[0] + k[1] * k[1])};
 }
 
-// The axis times the angle, from 0 to pi.
+// Returns the axis of a rotation times its angle, which is from 0 to pi.
 Vec3 rotation_vector(const Matrix& r) noexcept {
   const Vec3 twice_sine = {r[7] - r[5], r[2] - r[6], r[3] - r[1]};
   const double sine = std::sqrt(dot(twice_sine, twice_sine)) / 2, cosine = (r[0] + r[4] + r[8] - 1) / 2;
   const double angle = std::atan2(sine, cosine);
   if (sine > 1e-4) return along({0, 0, 0}, twice_sine, angle / (2 * sine));
   if (cosine > 0) return along({0, 0, 0}, twice_sine, 0.5);
-  // Half a turn, nearly: R + R^T = 2 cos I + 2 (1 - cos) k k^T, of which the longest column is the best.
+  // The rotation is nearly half a turn. R + R^T = 2 cos I + 2 (1 - cos) k k^T, so every column of (1 - cos) k k^T is
+  // parallel to the axis k; the longest one is the most accurate.
   std::size_t largest = 0;
   for (std::size_t i = 1; i < 3; ++i) {
     if (r[4 * i] > r[4 * largest]) largest = i;
@@ -51,7 +52,7 @@ Pose Travel::at(double time) const noexcept {
   if (pose_at != nullptr) return pose_at(context, time);
   Pose pose = start;
   pose.rotation = detail::product(rotation_by(along({0, 0, 0}, spin, time)), start.rotation);
-  if (is_rigid(start) && !is_rigid(pose)) pose = made_rigid(pose).value_or(pose);  // both roundings together
+  if (is_rigid(start) && !is_rigid(pose)) pose = made_rigid(pose).value_or(pose);  // for the sum of roundings
   const Vec3 place = along(transform(start, center), velocity, time), arm = rotate(pose, center);
   pose.translation = along(place, arm, -pose.scale);
   return pose;

@@ -11,16 +11,16 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kNear = 1e-10;       // of the triangles' size: closer is touching
-constexpr double kOn = 1e-12;         // the same, for what is said to be common to both
-constexpr double kInclusive = 1e-12;  // of products of two lengths: what counts as parallel
-constexpr double kSliding = 1e-12;    // cosine of what counts as along a plane
-constexpr double kParallel = 1e-24;   // the square of the sine of what counts as parallel
-constexpr double kShift = 1e-13;      // of the triangles' size: the rounding of shifts
+constexpr double kNear = 1e-10;       // of the triangles' size: a set of shifts that is thinner is flat
+constexpr double kOn = 1e-12;         // of the triangles' size: the tolerance for common points
+constexpr double kInclusive = 1e-12;  // the square of the sine of edges that count as parallel
+constexpr double kSliding = 1e-12;    // the cosine of a direction that counts as along a plane
+constexpr double kParallel = 1e-24;   // the square of the sine of edges that give no plane of MeetingShifts
+constexpr double kShift = 1e-13;      // of the triangles' size: the rounding error of shifts
 
 double square(const Vec3& v) noexcept { return dot(v, v); }
 
-// The two of all points offered that are farthest apart, nearly: the farthest from the first, and the farthest from it.
+// Collects points and finds the two that are farthest apart.
 class Ends {
  public:
   void add(const Vec3& p) noexcept {
@@ -44,8 +44,8 @@ class Ends {
   std::size_t count_ = 0;
 };
 
-// Whether a point of the triangle's plane is no farther than `slack` from the triangle. Beyond a sharp corner it may be
-// close to the lines of both edges, and far from the triangle: then the distance decides.
+// Returns whether a point of the triangle's plane is no farther than `slack` from the triangle. Beyond a sharp corner,
+// a point may be close to the lines of both edges and far from the triangle, so the distance decides.
 bool holds(const TrianglePoints& t, const Vec3& normal, const Vec3& p, double slack, double size) noexcept {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -55,7 +55,8 @@ bool holds(const TrianglePoints& t, const Vec3& normal, const Vec3& p, double sl
   return least >= -slack * size && nearest_points(p, p, t).distance <= slack;
 }
 
-// Where the edges of one cross the plane of the other, in it.
+// Adds the points in which the edges of one triangle cross or touch the plane of the other one, if they are in the
+// other one.
 void add_crossings(const TrianglePoints& edges, const TrianglePoints& t, const Vec3& normal, double size,
                    Ends& ends) noexcept {
   const double slack = kOn * size;
@@ -72,7 +73,7 @@ void add_crossings(const TrianglePoints& edges, const TrianglePoints& t, const V
   }
 }
 
-// Where edges cross or touch edges: for triangles in one plane.
+// Adds the points in which edges cross or touch edges; for triangles in one plane.
 void add_edge_contacts(const TrianglePoints& a, const TrianglePoints& b, double slack, Ends& ends) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -101,7 +102,7 @@ double size_of(const TrianglePoints& a, const TrianglePoints& b) noexcept {
   return std::sqrt(most);
 }
 
-// Two triangles relative to a corner of the first one, so that little is lost far from the origin.
+// Two triangles relative to a corner of the first one, so that little is lost to rounding far from the origin.
 struct NearPair {
   Vec3 a1, a2, b0, b1, b2;
   NearPair(const TrianglePoints& a, const TrianglePoints& b) noexcept
@@ -154,7 +155,8 @@ bool are_parted_by(const TrianglePoints& a, const TrianglePoints& b, double gap)
 }
 
 double ShiftPlanes::exit(const Vec3& direction, double slack) const noexcept {
-  // Along the planes of faces that slide on each other all of it is rounding: then nothing ends there.
+  // Along the planes of faces that slide on each other, the result would be nothing but rounding, so such planes end no
+  // shift.
   const double along = dot(normal, direction);
   if (!(std::fabs(along) > kSliding)) return std::numeric_limits<double>::infinity();
   return ((along > 0 ? ahead : behind) + slack) / std::fabs(along);
@@ -183,7 +185,7 @@ MeetingShifts::MeetingShifts(const TrianglePoints& a, const TrianglePoints& b) n
                                         [&](const ShiftPlanes& p) { return !(p.ahead + p.behind > kNear * size); });
   flat_ = count_ == 0 || flat != planes_.begin() + static_cast<std::ptrdiff_t>(count_);
   if (count_ == 0 || !flat_) return;
-  const Vec3 normal = flat->normal;  // the set's plane, and in it what bounds a polygon
+  const Vec3 normal = flat->normal;  // the plane of the flat set; the planes that are added below bound a polygon in it
   count_ = 0;
   add(normal, 0);
   for (const std::array<Vec3, 3>& edges : {of_a, of_b}) {

@@ -9,16 +9,17 @@
 #include "simd/machine.h"
 #include "simd/vector_support.h"
 
-// Corners and edges of a triangle, three of each, side by side: a lane each. Of what is equally near in different lanes
-// the first lane's counts, and in a lane what was tried first.
+// The three corners or edges of a triangle are processed side by side, one in each lane. Of equally near points in
+// different lanes, those of the first lane count; in one lane, those that were tried first.
 namespace orchard::runtime::detail {
 namespace {
 
-// Sines below this count as parallel. At this sine the place on a line is known to 2 % and moves the distance by 2e-9
-// of the length; below it, no place on the line is farther than 1e-7 of the length from the best one.
+// Edges with a smaller square of the sine between them count as parallel. At this sine, the place on a line is known to
+// 2 % and moves the distance by 2e-9 of the length; below it, no place on the line is farther than 1e-7 of the length
+// from the best one.
 constexpr double kParallelSineSquare = 1e-14;
 
-// Three lanes, and a fourth that repeats the last: as one vector, or as several narrower ones or numbers.
+// Three lanes, and a fourth one that repeats the last, in one vector, in several narrower ones, or in single numbers.
 template <typename Part>
 struct FourDoubles {
   using Numbers = Several<Part, 4 * sizeof(double) / sizeof(Part)>;
@@ -99,7 +100,7 @@ struct Near {
     ORCHARD_INLINE Edge(const Three& begin, const Three& direction) noexcept
         : from(begin), way(direction), square(dot(direction, direction)) {}
   };
-  // The best s for the line, then the best t for that s, then the best s for that t.
+  // Finds the best s for the lines, then the best t for that s, then the best s for that t.
   ORCHARD_INLINE void edges(const Edge& a, const Edge& b) noexcept {
     const Three w = minus(a.from, b.from);
     const Numbers uv = dot(a.way, b.way), uw = dot(a.way, w), vw = dot(b.way, w);
@@ -113,8 +114,9 @@ struct Near {
   ORCHARD_INLINE static Three foot(const Edge& edge, const Three& point) noexcept {
     return along(edge.from, edge.way, unit(dot(minus(point, edge.from), edge.way), edge.square));
   }
-  // Where points project into a triangle, which is that of b or of a; beside it an edge is nearer. Feet are made of the
-  // corners, so that they are in the triangle even where it is a needle, whose normal is mostly rounding.
+  // Offers the projections of points to a triangle that lie inside of it; if a projection does not, an edge is nearer.
+  // `of_b` is whether the triangle is b. The feet are computed from the corners, so that they are in the triangle even
+  // if it is a needle, whose normal is mostly rounding.
   ORCHARD_INLINE void face(const Three& point, const TrianglePoints& t, const TrianglePoints& edge,
                            bool of_b) noexcept {
     const Vec3 n = detail::cross(edge[0], edge[1]);
@@ -141,7 +143,7 @@ struct NearestPair {
   Vec3 p, q;
 };
 
-// Of the lanes the first of the nearest.
+// Returns the nearest points of all lanes, those of the first lane if several are equally near.
 template <typename Kind>
 ORCHARD_INLINE NearestPair first_of(const Near<Kind>& near) noexcept {
   const auto square = [&](std::size_t i) ORCHARD_INLINE_LAMBDA { return Kind::lane(near.square, i); };
@@ -188,7 +190,8 @@ ORCHARD_INLINE NearestPair near_segment(const Vec3& p, const Vec3& q, const Tria
   const typename N::Edge of_t(lanes_of<Kind>(t), lanes_of<Kind>(edge)), segment(N::all(p), N::all(minus(q, p)));
   N best;
   best.edges(segment, of_t);
-  // Parallel ones, too, from each corner.
+  // For an edge that is parallel to the segment, the nearest points include a corner or an end, so these are tried,
+  // too.
   best.offer(N::foot(segment, of_t.from), of_t.from);
   for (const Vec3& end : {p, q}) best.offer(N::all(end), N::foot(of_t, N::all(end)));
   best.face(N::lanes(p, q, q), t, edge, true);

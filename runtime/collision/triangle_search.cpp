@@ -8,13 +8,13 @@ namespace orchard::runtime {
 using detail::BoxGaps;
 
 bool TriangleSearch::reserve(const PlacedTrees& trees) noexcept {
-  // Two expanded pairs leave up to eight each in their place; what lies below them is no deeper than they were, so that
-  // no depth ever has more than these.
+  // A step replaces two pairs by up to eight children of each. The pairs below them on the stack are no deeper than
+  // they were, so no depth ever has more than these.
   return !have_triangles(trees) ||
          stack_.reserve(trees.first().tree, trees.second().tree, 2 * std::size_t{kBlockWidth});
 }
 
-// In place of a pair, those of its children that may meet, the deepest last.
+// Replaces a pair by those of its children that may meet, the deepest overlap last.
 inline void TriangleSearch::push_children(const NodePair& pair, const detail::Opened& opened,
                                           const BoxGaps& gaps) noexcept {
   tests_.pairs += static_cast<std::uint64_t>(std::bit_width(gaps.used));
@@ -23,7 +23,7 @@ inline void TriangleSearch::push_children(const NodePair& pair, const detail::Op
       [&](const NodePair&, std::uint32_t lane) ORCHARD_INLINE_LAMBDA { return gaps.gap[lane]; });
 }
 
-// Two pairs at a time: what one waits for, the other one computes.
+// Two pairs are opened at a time: while one waits for memory, the processor computes the other one.
 bool TriangleSearch::refine(const detail::PlacedViews& trees, PairBudget& tracker) noexcept {
   while (!stack_.empty()) {
     if (tracker.exhausted()) return false;

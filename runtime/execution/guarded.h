@@ -2,8 +2,8 @@
 
 namespace orchard::runtime::detail {
 
-// What `work` gives; or, where there is no memory for it, what `otherwise` does, which allocates nothing. Where
-// exceptions are off (-fno-exceptions) lack of memory ends the program, as it does everywhere in such a one.
+// Returns what work() returns or, if there is no memory for it, what otherwise() returns, which must not allocate.
+// Without exceptions (-fno-exceptions), lack of memory ends the program, as it does everywhere in such programs.
 template <typename Work, typename Otherwise>
 auto guarded(const Work& work, const Otherwise& otherwise) noexcept -> decltype(work()) {
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
@@ -18,7 +18,7 @@ auto guarded(const Work& work, const Otherwise& otherwise) noexcept -> decltype(
 #endif
 }
 
-// What `make` gives, or `otherwise` if there is no memory for it.
+// Returns what make() returns, or `otherwise` if there is no memory for it.
 template <typename Result, typename Make>
 Result made_or(const Result& otherwise, const Make& make) noexcept {
   return guarded([&]() -> Result { return make(); }, [&] { return otherwise; });

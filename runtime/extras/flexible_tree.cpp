@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-// At least `value` + `by`, rounding of a few operations in double included; infinity stays.
+// Returns at least `value` + `by`, including the rounding of a few operations in double. Infinity stays infinity.
 float raised(float value, double by) noexcept {
   return by > 0 && std::isfinite(value) ? std::nextafter(static_cast<float>(double{value} + by), kMaxFloat) : value;
 }
@@ -21,7 +21,7 @@ double distance_of(const std::array<float, 3>& p, const std::array<float, 3>& q)
   return length(Vec3(p[0], p[1], p[2]) - Vec3(q[0], q[1], q[2])) * (1 + 1e-15);
 }
 
-// visit(block, lane) for every node, the last one first: children come after their parents.
+// Calls visit(block, lane) for every node, the last one first: children come after their parents.
 template <typename Blocks, typename Visit>
 void each_node_from_the_leaves(const Blocks& blocks, const Visit& visit) {
   for (std::size_t b = blocks.size(); b-- > 0;) {
@@ -43,7 +43,7 @@ FlexibleTree::FlexibleTree(const PackedSphereTree& rest, double max_displacement
   if (valid_) enlarge_permanently();
 }
 
-// What every query reads of the whole tree, and may keep: it holds for all that the tree can become.
+// Enlarges what queries read of the whole tree and may keep, so that it holds for every shape that the tree can take.
 void FlexibleTree::enlarge_permanently() {
   const Vec3 root_center = detail::center_of(tree_, 0);
   const float root_before = tree_.blocks[0].radius[0];

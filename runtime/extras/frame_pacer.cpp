@@ -7,7 +7,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kMeanGain = 1.0 / 8, kDeviationGain = 1.0 / 4;  // RFC 6298
-constexpr double kForget = 1.0 / 64;                             // of the largest one lately, per frame
+constexpr double kForget = 1.0 / 64;                             // how fast the largest value decays, per frame
 constexpr double kShareOfLargest = 0.9;
 
 }  // namespace

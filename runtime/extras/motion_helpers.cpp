@@ -15,7 +15,8 @@ Motion bounded(const Vec3& position, const Vec3& velocity, double radius, double
   return {.position = position, .velocity = velocity, .radius = radius, .acceleration = acceleration, .expiry = expiry};
 }
 
-// The acceleration stays on `direction`'s side for `lasting` seconds.
+// Adds a half-space to a motion whose acceleration stays on the side of `direction` for `lasting` seconds, if this is
+// long enough to be worthwhile.
 void keep_to_side(Motion& motion, const Vec3& direction, double lasting, double time, double horizon) noexcept {
   if (!(lasting >= kWorthwhile * horizon)) return;
   motion.half_space = -1.0 * direction;
@@ -57,13 +58,14 @@ Motion dragged_motion(const Dragged& d, double time, double horizon) noexcept {
 }
 
 Motion spring_motion(const SpringDragged& d, double time, double horizon) noexcept {
-  // e = sqrt(|y'|^2 + k |y - cursor|^2) grows by k * cursor_reach per second at most: damping only takes.
+  // e = sqrt(|y'|^2 + k |y - cursor|^2) grows by at most k * cursor_reach per second, because damping only reduces it.
   const Vec3 pull = d.cursor - d.position;
   const double stretch = length(pull), feed = d.stiffness * d.cursor_reach;
   const double e = std::sqrt(dot(d.velocity, d.velocity) + d.stiffness * stretch * stretch) + feed * horizon;
   const double acceleration = e * std::sqrt(d.stiffness + d.damping * d.damping) + feed;
   Motion motion = bounded(d.position, d.velocity, d.radius, acceleration, time + horizon);
-  // No faster than e, the object stays behind the cursor so long that the spring outweighs the damper.
+  // The object is no faster than e. So it stays so far behind the cursor that the spring outweighs the damper, for at
+  // least `reserve` / e seconds.
   const double reserve = stretch - d.cursor_reach - d.damping * e / d.stiffness;
   if (stretch > 0 && e > 0) keep_to_side(motion, pull, reserve / e, time, horizon);
   return motion;
@@ -72,10 +74,10 @@ Motion spring_motion(const SpringDragged& d, double time, double horizon) noexce
 namespace {
 
 constexpr double kFloatUnit = 0x1p-24;    // half of a float's last place, relative
-constexpr double kMinFloat = 0x1p-150;    // the same of the smallest floats, absolute
-constexpr double kRoundings = 9;          // of a change: eight, and their products
+constexpr double kMinFloat = 0x1p-150;    // the same for the smallest floats, absolute
+constexpr double kRoundings = 9;          // the roundings of a change: eight, and their products
 const double kDiagonal = std::sqrt(3.0);  // of a cube of edge 1
-constexpr double kOutward = 1 + 0x1p-50;  // for the roundings here
+constexpr double kOutward = 1 + 0x1p-50;  // covers the roundings here
 
 // c of the proof in the header, by Integrator: how much of M dt^2 a step may add to a position beyond dt v.
 constexpr std::array<double, 10> kOwnShare = {0, 1, 1, 0.5, 0.5, 1, 1, 0.5, 0.5, 0.5};

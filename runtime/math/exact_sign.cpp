@@ -8,7 +8,7 @@ static_assert(FLT_EVAL_METHOD == 0, "the error-free transformations below need p
 namespace orchard::runtime::detail {
 namespace {
 
-// With pairs of doubles a step's relative error is at most 2^-102, and there are fewer than 30 of them.
+// With pairs of doubles, the relative error of a step is at most 2^-102, and there are fewer than 30 steps.
 constexpr double kPairError = 0x1p-96;
 
 int sign(double value) noexcept { return (value > 0) - (value < 0); }
@@ -24,7 +24,7 @@ Pair two_sum(double a, double b) noexcept {
 
 Pair two_product(double a, double b) noexcept {
   const double product = a * b;
-#ifdef __MINGW32__  // its std::fma() rounds twice; so by halves of the digits (Dekker 1971)
+#ifdef __MINGW32__  // its std::fma() rounds twice, so each number is split in halves of its digits (Dekker 1971)
   const auto high_part = [](double x) {
     const double shifted = 134217729.0 * x;  // 2^27 + 1
     return shifted - (shifted - x);
@@ -50,8 +50,8 @@ Pair multiply(Pair a, Pair b) noexcept {
   return two_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 
-// An exact sum of doubles, kept as parts that do not overlap, in increasing size: adding a number to such a list by a
-// chain of two_sum gives such a list again (Shewchuk 1997, theorem 10), so the last part has the sign of the sum.
+// An exact sum of doubles. It is kept as parts that do not overlap, in increasing size. Adding a number to such a list
+// by a chain of two_sum gives such a list again (Shewchuk 1997, theorem 10), so the last part has the sign of the sum.
 class ExactSum {
  public:
   void add(double value) noexcept {
@@ -121,7 +121,7 @@ ExactSum exact_determinant(const PairVector& u, const PairVector& v, const PairV
   return exact;
 }
 
-// In plain double, and the sum of its terms' sizes.
+// The determinant in plain double, and the sum of the sizes of its terms.
 struct PlainDeterminant {
   double value, permanent;
   PlainDeterminant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept {
@@ -147,7 +147,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noex
 }
 
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept {
-  constexpr double kPlain = 0x1p-9, kClose = 0x1p-56;  // of the permanent: beyond these the error is small enough
+  constexpr double kPlain = 0x1p-9, kClose = 0x1p-56;  // of the permanent: values above these have small enough errors
   const PlainDeterminant plain(a, b, c, d);
   if (std::fabs(plain.value) > kPlain * plain.permanent) return plain.value;
   const PairVector u = difference(a, d), v = difference(b, d), w = difference(c, d);

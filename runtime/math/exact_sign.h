@@ -5,30 +5,32 @@
 
 #include "orchard/runtime/pose.h"
 
-// Signs of determinants of double coordinates. Exact if these are multiples of 2^-357, as all are that are 0 or at
-// least 2^-305, and at most 1e100: no product of three differences, and no part of one, then underflows or overflows.
-// The usual case costs one evaluation in double; close ones are repeated with twice the digits, ties in full.
+// Signs of determinants of double coordinates. They are exact if the coordinates are at most 1e100 and multiples of
+// 2^-357, as all doubles are that are 0 or at least 2^-305: then no product of three differences, and no part of one,
+// underflows or overflows. The usual case costs one evaluation in double. Close cases are repeated with twice the
+// digits, and ties are evaluated in full.
 namespace orchard::runtime::detail {
 
-// > 0 if a, b, c appear counterclockwise when seen from the side of their plane away from d, 0 if all four are
-// coplanar.
+// Returns a value > 0 if a, b, c appear counterclockwise when seen from the side of their plane away from d, 0 if all
+// four are coplanar, and otherwise a value < 0.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept;
 
-// Its determinant, six times the volume, right to 2^-40 of itself.
+// Returns the determinant whose sign orientation(a, b, c, d) is, six times the volume, right to 2^-40 of itself.
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept;
 
-// The sign in the plane that remains when `axis` is dropped: > 0 if a, b, c turn counterclockwise, 0 if collinear.
+// Returns the orientation in the plane that remains when `axis` is dropped: > 0 if a, b, c turn counterclockwise, 0 if
+// they are collinear.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis) noexcept;
 
-// Whether three points lie on one line: so in every plane.
+// Returns whether three points lie on one line. They do if they do in every plane that remains when an axis is dropped.
 bool in_line(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
-// Plain evaluation: every difference, product and sum has a relative error of a unit, 2^-53, and no term passes through
-// more than eight of them, so that a determinant is off by at most 8.1 units times the sum of the terms' sizes (the
-// permanent), which is itself computed to 8.1 units. Twice that leaves room.
+// The error of plain evaluation: every difference, product and sum has a relative error of a unit, 2^-53, and no term
+// passes through more than eight of them. So a determinant is off by at most 8.1 units times the sum of the terms'
+// sizes (the permanent), which is itself computed to 8.1 units. Twice that leaves room.
 inline constexpr double kPlainDeterminantError = 16 * 0x1p-53;
 
-// orientation(a, b, c, d) of three points and any d.
+// Computes orientation(a, b, c, d) for three fixed points and any d.
 class PlaneOrientation {
  public:
   explicit PlaneOrientation(const std::array<Vec3, 3>& points) noexcept : points_(points) {

@@ -16,7 +16,7 @@ double defect_of(const std::array<double, 9>& rotation) noexcept {
   return detail::rotation_defect<double>([&rotation](std::size_t i) { return rotation[i]; });
 }
 
-// One step of Newton and Schulz towards the nearest orthogonal matrix: X (3 I - X^T X) / 2.
+// Takes one step of the Newton-Schulz iteration towards the nearest orthogonal matrix: X (3 I - X^T X) / 2.
 detail::Matrix nearer_rotation(const detail::Matrix& x) noexcept {
   detail::Matrix factor = detail::product(detail::transposed(x), x);
   for (std::size_t i = 0; i < 9; ++i) factor[i] = ((i % 4 == 0 ? 3.0 : 0.0) - factor[i]) / 2;

@@ -2,8 +2,8 @@
 #include "orchard/runtime/pose.h"
 #include "simd/vector_support.h"
 
-// Whether poses may be asked about. Every query begins with this, and many end soon after, so that two poses are looked
-// at side by side.
+// Tests whether poses are rigid. Every query begins with this, and many end soon after, so two poses are tested side by
+// side.
 namespace orchard::runtime::detail {
 
 #ifdef ORCHARD_VECTORS
@@ -12,8 +12,9 @@ using Two __attribute__((vector_size(16))) = double;
 using Two = Several<double, 2>;
 #endif
 
-// 0 for a proper rotation: how far the first two rows are from unit vectors across each other, and the third one from
-// their cross product, as a sum of squares. Not a number, or infinite, if an entry is. T: a double, or several.
+// Returns how far a matrix is from a proper rotation: how far the first two rows are from unit vectors perpendicular to
+// each other, and the third one from their cross product, as a sum of squares. The result is not a number, or infinite,
+// if an entry is. `T` is double or a vector of doubles.
 template <typename T, typename At>
 ORCHARD_INLINE T rotation_defect(At&& r) noexcept {
   const T a0 = r(0), a1 = r(1), a2 = r(2), b0 = r(3), b1 = r(4), b2 = r(5);
@@ -26,7 +27,7 @@ ORCHARD_INLINE T rotation_defect(At&& r) noexcept {
 
 inline constexpr double kMaxRotationDefect = kRigidTolerance * kRigidTolerance;
 
-// Two poses, number by number.
+// Two poses, with the numbers of both side by side.
 struct PoseLanes {
   Two rotation[9], translation[3], scale;
 
@@ -35,14 +36,14 @@ struct PoseLanes {
     for (std::size_t i = 0; i < 3; ++i) translation[i] = Two{p.translation[i], q.translation[i]};
     scale = Two{p.scale, q.scale};
   }
-  // As is_rigid() says of both, but for translations.
+  // Returns whether is_rigid() holds for both, except that translations are not tested.
   ORCHARD_INLINE bool rotate() const noexcept {
     const Two defect = rotation_defect<Two>([this](std::size_t i) ORCHARD_INLINE_LAMBDA -> Two { return rotation[i]; });
     const auto good = (defect <= spread<Two>(kMaxRotationDefect)) & (spread<Two>(1 / kScaleLimit) <= scale) &
                       (scale <= spread<Two>(kScaleLimit));
     return (good[0] & good[1]) != 0;
   }
-  // Where each puts its point, component by component: transform()'s operations in its order.
+  // Returns component i of the points, each moved by its pose. The operations and their order are those of transform().
   ORCHARD_INLINE Two placed(std::size_t i, const Two (&point)[3]) const noexcept {
     const Two turned = rotation[3 * i] * point[0] + rotation[3 * i + 1] * point[1] + rotation[3 * i + 2] * point[2];
     return scale * turned + translation[i];

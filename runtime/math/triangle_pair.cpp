@@ -6,17 +6,19 @@
 #include "math/vector_functions.h"
 
 // Two closed triangles meet iff an edge of one meets the other one: their common part is convex, and each of its
-// extreme points lies on an edge of one of them, since interior points of both can be moved both ways along the common
-// line or plane. A triangle of zero area is the union of its edges. So segments against triangles and segments suffice.
+// extreme points lies on an edge of one of them, because interior points of both can be moved both ways along the
+// common line or plane. A triangle of zero area is the union of its edges. So tests of segments against triangles and
+// against segments are enough.
 namespace orchard::runtime::detail {
 namespace {
 
 Vec3 between(const Vec3& a, const Vec3& b, double t) noexcept { return along(a, minus(b, a), t); }
 double ratio(double part, double whole) noexcept { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
-// ---- Witnesses: only ever used after the exact tests said yes.
+// ---- Witnesses. These are used only after the exact tests have answered yes.
 
-// In planes that nearly are one, plain heights would be rounding and nothing else, and so would be the place.
+// Returns the point in which a segment crosses the plane of a triangle. The heights are those of volume(): in planes
+// that are nearly the same, plain heights would be nothing but rounding, and so would the point.
 Vec3 crossing_point(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   const double hp = std::fabs(volume(t[0], t[1], t[2], p)), hq = std::fabs(volume(t[0], t[1], t[2], q));
   return between(p, q, ratio(hp, hp + hq));
@@ -27,7 +29,8 @@ Vec3 closest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) noexcep
   return between(a, b, ratio(dot(minus(point, a), ab), dot(ab, ab)));
 }
 
-// The point of pq closest to ab, for segments that meet: at an end of one of them, or where their lines cross.
+// Returns the point of pq closest to ab, for segments that meet. It is at an end of one of them, or where their lines
+// cross.
 Vec3 meeting_point(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
   const Vec3 u = minus(q, p), v = minus(b, a), w = minus(a, p), n = cross(u, v);
   const Vec3 candidates[] = {p, q, closest_on_segment(a, p, q), closest_on_segment(b, p, q),
@@ -46,16 +49,17 @@ bool boxes_overlap(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, s
   return std::max(p[i], q[i]) >= std::min(a[i], b[i]) && std::max(a[i], b[i]) >= std::min(p[i], q[i]);
 }
 
-// Segments in the plane without `axis`.
+// Returns whether two segments meet in the plane that remains when `axis` is dropped.
 bool segments_meet_2d(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, std::size_t axis) noexcept {
   if (!boxes_overlap(p, q, a, b, (axis + 1) % 3) || !boxes_overlap(p, q, a, b, (axis + 2) % 3)) return false;
-  // With overlapping boxes this settles collinear segments and points, too: they overlap as their boxes do.
+  // If the boxes overlap, this is also right for collinear segments and for points, which meet if their boxes do.
   return orientation(p, q, a, axis) * orientation(p, q, b, axis) <= 0 &&
          orientation(a, b, p, axis) * orientation(a, b, q, axis) <= 0;
 }
 
-// Segments in space. If the four points lie in one plane, projecting along an axis keeps what meets, and at least one
-// axis does not flatten that plane; if they lie on one line, their boxes tell. So they meet iff all projections do.
+// Returns whether two segments in space meet. If the four points lie in one plane, a projection along an axis keeps
+// what meets, and at least one axis does not flatten that plane. If they lie on one line, their boxes decide. So the
+// segments meet iff all projections do.
 bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
   if (orientation(p, q, a, b) != 0) return false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -71,7 +75,7 @@ bool holds_2d(const TrianglePoints& t, const Vec3& p, std::size_t axis) noexcept
          turn * orientation(t[2], t[0], p, axis) >= 0;
 }
 
-// A segment in the plane of a triangle that is not degenerate.
+// Returns whether a segment meets a triangle in whose plane it lies. The triangle is not degenerate.
 bool coplanar_meet(const Vec3& p, const Vec3& q, const TrianglePoints& t, Vec3* witness) noexcept {
   std::size_t axis = 0;
   while (axis < 2 && orientation(t[0], t[1], t[2], axis) == 0) ++axis;
@@ -86,7 +90,8 @@ bool coplanar_meet(const Vec3& p, const Vec3& q, const TrianglePoints& t, Vec3* 
   return true;
 }
 
-// An edge whose ends lie on the sides `side_p`, `side_q` of the plane of `t`, which is not degenerate.
+// Returns whether an edge meets `t`, which is not degenerate. `side_p` and `side_q` are the sides of its plane on which
+// the ends of the edge lie.
 bool edge_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const TrianglePoints& t, Vec3* witness) noexcept {
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) return coplanar_meet(p, q, t, witness);
@@ -135,7 +140,7 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, Vec3*
   if (on_one_side(b_sides)) return false;
   const Sides a_sides = sides(b, a);
   if (on_one_side(a_sides)) return false;
-  // Some side differs from 0 only if the plane exists.
+  // Sides other than 0 exist only if the triangle has a plane, so in_line() is needed only if all are 0.
   const bool a_flat = in_plane(b_sides) && in_line(a[0], a[1], a[2]),
              b_flat = in_plane(a_sides) && in_line(b[0], b[1], b[2]);
   if (a_flat && b_flat) return segments_of_both_meet(a, b, witness);

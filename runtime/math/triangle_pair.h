@@ -7,8 +7,9 @@ namespace orchard::runtime::detail {
 
 using TrianglePoints = std::array<Vec3, 3>;
 
-// Whether two closed triangles share a point: exact for the doubles given, be they coplanar, touching, or degenerate to
-// a segment or a point. If so, and `witness` is not null, it gets a common point, correct up to rounding.
+// Returns whether two closed triangles share a point. The result is exact for the given doubles, also for triangles
+// that are coplanar, touch, or are degenerate to a segment or a point. If they do, and `witness` is not null, it is set
+// to a common point, correct up to rounding.
 bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, Vec3* witness) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -4,20 +4,21 @@
 
 #include "simd/vector_support.h"
 
-// Inner loops compiled for several machines of one architecture, and the choice among them when the program runs. All
-// do the same operations in the same order and none fuses them, so all give the same bits. The choice is ordinary code,
-// made at the first call: no resolver runs before main(), where neither sanitizers nor other libraries are ready.
+// Inner loops are compiled for several machines of one architecture, and the program chooses among them when it runs.
+// All do the same operations in the same order and fuse none of them, so all give the same bits. The choice is made in
+// ordinary code at the first call. A resolver would run before main(), when neither sanitizers nor other libraries are
+// ready.
 namespace orchard::runtime::detail {
 
-// Each has what those before it have. `portable` is the base of the architecture, with the loops of one number at a
-// time that other compilers get: tests choose it to compare these loops with the others.
+// The machines. Each has the instructions of those before it. `portable` is the base of the architecture, with the
+// loops of one number at a time that other compilers get; tests choose it to compare these loops with the others.
 enum class Machine : std::uint8_t { unknown, portable, base, avx2, avx512 };
 
 inline std::atomic<Machine> chosen_machine{Machine::unknown};
 
-Machine best_machine() noexcept;  // that this program was compiled for and this processor runs
+Machine best_machine() noexcept;  // the best one that this program is compiled for and this processor has
 
-// From now on, in all threads: for tests. Precondition: at most best_machine().
+// Chooses a machine for all threads. This is for tests. Precondition: it is at most best_machine().
 inline void use_machine(Machine machine) noexcept { chosen_machine.store(machine, std::memory_order_relaxed); }
 
 inline Machine machine() noexcept {
@@ -25,22 +26,21 @@ inline Machine machine() noexcept {
   if (chosen != Machine::unknown) [[likely]]
     return chosen;
   const Machine best = best_machine();
-  use_machine(best);  // threads that come here together find the same
+  use_machine(best);  // threads that do this at the same time find the same one
   return best;
 }
 
-// Not where the whole build is for such a machine anyway, nor for Windows with GCC, whose stack aligns vectors of eight
-// to half their size only (bug 54412 of GCC).
+// There is no choice if the whole build is for such a machine anyway, nor on Windows with GCC, whose stack aligns
+// vectors of eight to half their size only (bug 54412 of GCC).
 #if defined(ORCHARD_VECTORS) && defined(__x86_64__) && !defined(__AVX2__) && !defined(__MINGW32__)
 #define ORCHARD_MACHINES 1
 #define ORCHARD_FOR_AVX2 __attribute__((target("avx2"), noinline))
 #define ORCHARD_FOR_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq"), noinline))
 #endif
 
-// PerMachine<kernel>::call(..) is kernel(..) for the machine chosen. The kernel is ORCHARD_INLINE, so that it becomes
-// part of a function for each.
-// `base`: the same for the base of the architecture, where that is better served by other code; `portable`: one number
-// at a time.
+// PerMachine<kernel>::call(..) calls kernel(..) as compiled for the chosen machine. The kernel is ORCHARD_INLINE, so it
+// becomes part of a function for each machine. `base` does the same for the base of the architecture, if other code is
+// better there. `portable` does it one number at a time.
 template <auto kernel, auto base = kernel, auto portable = base>
 struct PerMachine;
 
@@ -64,7 +64,8 @@ struct PerMachine<kernel, base, portable> {
 #endif
 };
 
-// The same for work that needs a class's own names: per_machine([&]() ORCHARD_INLINE_LAMBDA { .. }).
+// per_machine() does the same for work that uses the private names of a class: per_machine([&]() ORCHARD_INLINE_LAMBDA
+// { .. }).
 #ifdef ORCHARD_MACHINES
 template <typename Work>
 ORCHARD_FOR_AVX2 void work_with_avx2(const Work& work) {

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <type_traits>
 
-// With GCC and Clang several numbers are one value (vector_size), which the compiler maps to what the target has: SSE,
-// AVX, NEON. For x86-64 the inner loops are compiled for AVX2 and AVX-512 as well: machine.h.
-// ORCHARD_NO_VECTORS: one number at a time, as other compilers do it.
+// With GCC and Clang, several numbers are one value (vector_size), which the compiler maps to the vectors of the
+// target: SSE, AVX, NEON. For x86-64, the inner loops are also compiled for AVX2 and AVX-512 (machine.h). With
+// ORCHARD_NO_VECTORS, and for other compilers, they process one number at a time.
 #if defined(__GNUC__) && !defined(ORCHARD_NO_VECTORS)
 #define ORCHARD_VECTORS 1
 #define ORCHARD_INLINE [[gnu::always_inline]] inline
@@ -38,7 +38,7 @@ ORCHARD_INLINE void store(const Vector& from, Array& to) noexcept {
   std::memcpy(&to, &from, sizeof from);
 }
 
-// What a comparison of two numbers or of two vectors gives: all ones, or zero.
+// Returns the result of a comparison of two numbers or of two vectors: all ones, or zero.
 template <typename Part, typename Holds>
 ORCHARD_INLINE auto compared(const Part& a, const Part& b, const Holds& holds) noexcept {
   if constexpr (std::is_arithmetic_v<Part>) {
@@ -49,7 +49,7 @@ ORCHARD_INLINE auto compared(const Part& a, const Part& b, const Holds& holds) n
   }
 }
 
-// N numbers, or N vectors of a width that every machine has, with the operators that one vector of all of them has.
+// N numbers, or N vectors of a width that every machine has, with the operators of a single vector of all of them.
 template <typename Part, std::size_t N>
 struct Several {
   Part part[N];
@@ -120,7 +120,7 @@ ORCHARD_INLINE std::uint32_t bits_of(const QuadMask& mask) noexcept {
 }
 #endif
 
-// Eight floats at a time: the kinds that the inner loops are compiled for. All give the same bits.
+// The kinds of eight floats for which the inner loops are compiled. All give the same bits.
 template <typename Part>
 struct SeveralFloats {
   static constexpr std::size_t kParts = 8 * sizeof(float) / sizeof(Part);
@@ -140,8 +140,8 @@ struct SeveralFloats {
 };
 using PlainFloats = SeveralFloats<float>;
 #ifdef ORCHARD_VECTORS
-// For machines that have no wider vectors: compilers split vectors of eight there, but comparisons and choices of them
-// one number at a time.
+// For machines without wider vectors. Compilers split vectors of eight there, but process comparisons and choices of
+// them one number at a time.
 using FourFloats = SeveralFloats<Quad>;
 #endif
 
@@ -175,7 +175,7 @@ ORCHARD_INLINE Vector spread(T value) noexcept {
   } else if constexpr (std::is_arithmetic_v<Vector>) {
     return value;
   } else if constexpr (sizeof(Vector) == 4 * sizeof(T)) {
-    return Vector{value, value, value, value};  // of which compilers make one instruction, not of copies
+    return Vector{value, value, value, value};  // compilers make one instruction of this, but not of copies
   } else {
     std::array<T, sizeof(Vector) / sizeof(T)> copies;  // NOLINT(bugprone-sizeof-expression): vectors are no pointers
     for (T& copy : copies) copy = value;

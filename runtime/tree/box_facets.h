@@ -6,7 +6,7 @@
 // A box around the origin as a mesh.
 namespace orchard::runtime::detail {
 
-// Corner i is on the upper side of axis k where bit k of i is set.
+// Returns the corners of a box around the origin. Corner i is on the upper side of axis k if bit k of i is set.
 inline std::array<std::array<double, 3>, 8> box_corners(const std::array<double, 3>& half) noexcept {
   std::array<std::array<double, 3>, 8> corners{};
   for (std::size_t i = 0; i < 8; ++i) {
@@ -15,7 +15,7 @@ inline std::array<std::array<double, 3>, 8> box_corners(const std::array<double,
   return corners;
 }
 
-// Of these corners, two to a side, counterclockwise seen from outside.
+// The triangles of a box, by the numbers of these corners: two for each side, counterclockwise as seen from outside.
 inline constexpr std::array<std::array<std::uint32_t, 3>, 12> kBoxFacets = {{{0, 2, 1},
                                                                              {1, 2, 3},
                                                                              {4, 5, 6},

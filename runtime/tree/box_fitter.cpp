@@ -7,14 +7,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// To a float and back, through memory: where GCC 12 makes vectors of several such lines (-O2 and above) it leaves both
-// conversions out, and a ball slab would be measured from another centre than the one that is stored.
+// Rounds a number to float, through memory. When GCC 12 makes vectors of several such lines (-O2 and above), it omits
+// both conversions, and a ball slab would be measured from another centre than the one that is stored.
 double rounded(double value) {
   const volatile float stored = static_cast<float>(value);
   return double{stored};
 }
 
-// A unit vector rounded to float, or the x axis for one that has no direction.
+// Returns the unit vector along v rounded to float, or the x axis if v has no direction.
 Vec3 direction(const Vec3& v) {
   const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   if (!(largest > 0)) return {1, 0, 0};
@@ -25,7 +25,7 @@ Vec3 direction(const Vec3& v) {
   return result;
 }
 
-// As queries find it, in float.
+// Returns the cross product as queries compute it, in float.
 Vec3 float_cross(const Vec3& p, const Vec3& q) {
   Vec3 result{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -35,8 +35,9 @@ Vec3 float_cross(const Vec3& p, const Vec3& q) {
   return result;
 }
 
-// Cosines and sines of the directions tried for a box within its first plane, an eighth of a quarter turn from each
-// other: more make it hardly smaller. Written out, as libraries differ in last digits.
+// Cosines and sines of the directions that are tried for a box within its first plane, an eighth of a quarter turn
+// apart. More directions make it hardly smaller. The values are written out because libraries differ in the last
+// digits.
 constexpr std::array<std::array<double, 2>, 8> kBoxTurns = {{{1, 0},
                                                              {0.9807852804032304, 0.19509032201612825},
                                                              {0.9238795325112867, 0.3826834323650898},
@@ -71,7 +72,7 @@ Part BoxFitter::measured(const Range& range) const {
   return part;
 }
 
-// Of the corners, scaled to be free of overflow.
+// Returns the covariance of the corners up to a factor, scaled so that nothing overflows.
 std::array<double, 6> BoxFitter::covariance(const Part& part) const {
   std::array<double, 6> m{};
   if (!(part.radius > 0)) return m;
@@ -89,7 +90,7 @@ std::array<double, 6> BoxFitter::covariance(const Part& part) const {
   return m;
 }
 
-// A small ball (Ritter's): from a long chord, grown to reach every corner.
+// Finds a small ball by Ritter's algorithm: the ball around a long chord grows until it contains every corner.
 void BoxFitter::find_ball(Part& part) const {
   const auto farthest = [&](const Vec3& from) {
     Vec3 best = from;
@@ -115,7 +116,7 @@ void BoxFitter::find_ball(Part& part) const {
   part.radius = radius;
 }
 
-// Between the planes across `normal`, centred between them.
+// Returns the part's ball slab with the normal `normal`, without its radius. Its centre is halfway between its planes.
 ObbNode BoxFitter::obb_node_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
   double low = kInfinity, high = -kInfinity;
   each_corner(part, [&](const Vec3& p) {
@@ -125,8 +126,8 @@ ObbNode BoxFitter::obb_node_across(const Range& part, const Vec3& middle, const 
   return {.center = along(middle, normal, (low + high) / 2), .normal = normal, .radius = 0, .height = (high - low) / 2};
 }
 
-// The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean
-// normal.
+// Starts with the flatter one of two ball slabs, across the corners' thinnest direction and across the surface's mean
+// normal, and makes it a box.
 ObbNode BoxFitter::obb_node_of(const Part& part) {
   Vec3 mean{};
   for (std::size_t i = part.begin; i < part.end; ++i) {
@@ -142,8 +143,8 @@ ObbNode BoxFitter::obb_node_of(const Part& part) {
   return slab;
 }
 
-// The other two pairs of planes: across the directions, among a few, that make the smallest box, which is centred
-// between all of them. Everything is measured last, from what is stored.
+// Adds the other two pairs of planes, across those of a few directions that make the smallest box, and centres the box
+// between all planes. All sizes are measured at the end, from the values that are stored.
 void BoxFitter::find_box(const Range& part, ObbNode& slab) {
   const Vec3 u = direction(cross(slab.normal, least_axis(slab.normal))), v = cross(slab.normal, u);
   across_.clear();
@@ -173,7 +174,8 @@ void BoxFitter::find_box(const Range& part, ObbNode& slab) {
   measure_box(part, slab);
 }
 
-// The axes of one of the frames in place of those found, if the box is smaller then; the thinnest way comes first.
+// Replaces the axes by those of the frame with the smallest box, if this is smaller than `smallest`, the area of the
+// box so far. The axis along which the box is thinnest comes first.
 void BoxFitter::take_smaller_frame(const Range& part, double smallest, ObbNode& slab) const {
   for (const std::array<Vec3, 3>& frame : frames_) {
     const Extent extent = extent_of(part, frame);

@@ -9,7 +9,7 @@
 
 #include "math/vector_functions.h"
 
-// The balls and boxes of a tree of triangles: small ones around given triangles. Deterministic.
+// Small balls and boxes around given triangles, for the nodes of a triangle BVH. The results are deterministic.
 namespace orchard::runtime::detail {
 
 struct Range {
@@ -17,14 +17,14 @@ struct Range {
   std::size_t size() const { return end - begin; }
 };
 
-// A range and what is measured of it, once.
+// A range of triangles, and measures of it that are computed once.
 struct Part : Range {
   Vec3 middle{};
   double radius = 0;           // of a small ball around the middle
-  std::array<Vec3, 3> axes{};  // principal ones of the corners, the longest first
+  std::array<Vec3, 3> axes{};  // the principal axes of the corners, the longest first
 };
 
-// A triangle as the order has it: what the loops over a part read lies side by side.
+// A triangle in the order of the builder. What the loops over a part read lies side by side in memory.
 struct Triangle {
   std::array<std::array<float, 3>, 3> corners;
   std::uint32_t number;
@@ -39,7 +39,7 @@ struct ObbNode {
 
 inline Vec3 as_doubles(const std::array<float, 3>& p) noexcept { return {double{p[0]}, double{p[1]}, double{p[2]}}; }
 
-// A box along three axes; empty at first.
+// A box along three axes. It is empty at first.
 struct Extent {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
@@ -56,7 +56,8 @@ struct Extent {
   }
 };
 
-// Fits them around ranges of `order`. `frames`: axes that boxes may have besides those found; both may change later.
+// Fits balls and boxes around ranges of `order`. `frames` are further axes that boxes may have. Both are referred to,
+// and may change later.
 class BoxFitter {
  public:
   using Frames = std::vector<std::array<Vec3, 3>>;
@@ -82,7 +83,7 @@ class BoxFitter {
 
   const std::vector<Triangle>& order_;
   const Frames& frames_;
-  std::vector<std::array<double, 2>> across_;  // corners, while a box is looked for
+  std::vector<std::array<double, 2>> across_;  // the corners in the plane of the normal, while find_box() runs
 };
 
 }  // namespace orchard::runtime::detail

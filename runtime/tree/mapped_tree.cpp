@@ -16,7 +16,7 @@
 namespace orchard::runtime {
 namespace {
 
-// The bytes of a file, as long as `mapped` is there; cannot_map where files cannot be mapped.
+// Maps a file. `bytes` are valid as long as `mapped` exists. Returns cannot_map on systems that cannot map files.
 LoadStatus map_file([[maybe_unused]] const char* path, [[maybe_unused]] std::shared_ptr<const void>& mapped,
                     [[maybe_unused]] std::span<const std::byte>& bytes) {
 #ifdef ORCHARD_CAN_MAP

@@ -9,12 +9,12 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kNormalTolerance = 1e-6;  // on products of a ball slab's normals, which are rounded to float
+constexpr double kNormalTolerance = 1e-6;  // for products of a ball slab's normals, which are rounded to float
 
 // Comparisons are written so that a NaN fails them.
 bool in_range(float value) noexcept { return std::fabs(value) <= kCoordinateLimit; }
 
-// Sums of three coordinates and distances between them.
+// Returns whether a length is in the range of sums of three coordinates and of distances between points.
 bool is_length(double value) noexcept { return value >= 0 && value <= 4 * double{kCoordinateLimit}; }
 
 const char* node_fault(const SiblingBlock& block, std::uint32_t lane) noexcept {
@@ -27,7 +27,8 @@ const char* node_fault(const SiblingBlock& block, std::uint32_t lane) noexcept {
   return nullptr;
 }
 
-// How many lanes hold a node: those before the first empty one. All behind it must be marked empty, too.
+// Returns how many lanes hold a node: those before the first empty one. All lanes behind it must be marked empty, too;
+// otherwise the result is larger than kBlockWidth.
 template <typename Block>
 std::uint32_t used_lanes(const Block& block) noexcept {
   const auto first = std::find(block.radius.begin(), block.radius.end(), -1.0f);
@@ -177,7 +178,8 @@ bool is_aligned(std::span<const Block> blocks) noexcept {
 }  // namespace
 
 const char* structure_fault(const TreeView& tree) noexcept {
-  // What allocated them did not see to it: a file that was read to any place, or a compiler's std::vector.
+  // The memory of the blocks may not be aligned: a file may have been read to any place, and a std::vector may ignore
+  // the alignment of its elements.
   if (!is_aligned(tree.blocks) || !is_aligned(tree.obb_nodes) || !is_aligned(tree.triangle_blocks))
     return "blocks do not lie at multiples of 32 bytes in memory";
   for (const double coordinate : tree.origin) {

@@ -8,7 +8,8 @@ namespace orchard::runtime {
 
 namespace {
 
-// Of the stored bytes, eight at a time: equal for copies, and different for others but for one in 2^64.
+// A fingerprint of the stored bytes, eight at a time. It is equal for copies; trees that differ have the same one with
+// a probability of 2^-64.
 class Fingerprint {
  public:
   template <typename Container>

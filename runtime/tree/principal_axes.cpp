@@ -7,7 +7,7 @@ namespace orchard::runtime::detail {
 
 std::array<Vec3, 3> axes_of(const std::array<double, 6>& m) noexcept {
   double a[3][3] = {{m[0], m[3], m[4]}, {m[3], m[1], m[5]}, {m[4], m[5], m[2]}};
-  std::array<Vec3, 3> v = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  // rows
+  std::array<Vec3, 3> v = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  // the eigenvectors, as rows
   constexpr int sweeps = 8;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (std::size_t p = 0; p < 2; ++p) {
@@ -31,7 +31,7 @@ std::array<Vec3, 3> axes_of(const std::array<double, 6>& m) noexcept {
     }
   }
   std::array<std::size_t, 3> order = {0, 1, 2};
-  // In place, unlike std::stable_sort().
+  // This sorts in place; std::stable_sort() may allocate memory.
   for (std::size_t i = 1; i < 3; ++i) {
     for (std::size_t k = i; k > 0 && a[order[k]][order[k]] > a[order[k - 1]][order[k - 1]]; --k)
       std::swap(order[k], order[k - 1]);

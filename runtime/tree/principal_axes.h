@@ -5,7 +5,8 @@
 
 namespace orchard::runtime::detail {
 
-// Eigenvectors of a symmetric matrix {xx, yy, zz, xy, xz, yz} by Jacobi rotations, the largest eigenvalue's first.
+// Returns the eigenvectors of a symmetric matrix {xx, yy, zz, xy, xz, yz} by Jacobi rotations, that of the largest
+// eigenvalue first.
 std::array<Vec3, 3> axes_of(const std::array<double, 6>& matrix) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -21,13 +21,13 @@ namespace {
 using Point = std::array<double, 3>;
 using HullTriangle = std::array<std::uint32_t, 3>;
 
-// `depth`: an upper bound on the signed distance of the root's centre.
+// Sets the bounds of the root. `depth` is an upper bound on the signed distance of its centre.
 void set_depth(PackedSphereTree& tree, double depth) {
   tree.blocks[0].depth[0] = stored_above(depth);
   tree.blocks[0].error[0] = stored_above(tree.bounding_radius + std::max(0.0, depth));
 }
 
-// One sphere around everything, a leaf.
+// Returns a tree with one sphere around everything, which is a leaf.
 PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const HullTriangle> triangles, double depth) {
   PackedSphereTree tree;
   if (vertices.empty()) return tree;
@@ -60,8 +60,8 @@ PackedSphereTree tree_of(std::span<const Point> vertices, std::span<const HullTr
   return tree;
 }
 
-// The convex hull, one point after the other: what a point sees of the hull so far is replaced by triangles to its
-// edge. Points in a facet's plane do not see it, so that no facet is ever without area.
+// Computes a convex hull by adding one point after the other. The facets that a point sees are replaced by triangles
+// between the point and their outline. Points in the plane of a facet do not see it, so no facet is ever without area.
 class Hull {
  public:
   explicit Hull(std::span<const Point> points) : points_(points) {}
@@ -154,7 +154,8 @@ std::optional<PackedSphereTree> hull_tree(std::span<const Point> points) {
       v = place[v];
     }
   }
-  // The middle of the hull's box may be outside of it, but no farther from it than from its corners.
+  // The middle of the hull's bounding box may be outside of the hull, but it is no farther from the hull than from its
+  // corners.
   PackedSphereTree tree = tree_of(corners, triangles, 0);
   double depth = -std::numeric_limits<double>::infinity();
   for (const HullTriangle& t : triangles) {

@@ -1,5 +1,4 @@
-// One file: reading and writing share the table of fields and sections, and every check that reading makes is the other
-// side of a line that writes.
+// Reading and writing share the table of fields and sections. For every check when reading there is a line that writes.
 #include "orchard/runtime/tree_file.h"
 
 #include <algorithm>
@@ -23,9 +22,9 @@ constexpr std::uint32_t kVersion = 4;
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kSections = 7;
 
-// docs/reference/formats.md describes it.
+// The header of a file. docs/reference/formats.md describes it.
 struct Header {
-  struct Preamble {  // enough to tell how long the file must be
+  struct Preamble {  // enough to find out how long the file must be
     std::array<unsigned char, 8> magic;
     std::uint32_t version, header_size;
     std::uint64_t checksum, file_size;
@@ -46,11 +45,12 @@ static_assert(sizeof(Header) == 320 && offsetof(Header, origin) == 48 && offseto
 
 constexpr std::uint64_t aligned(std::uint64_t size) noexcept { return (size + kAlignment - 1) & ~(kAlignment - 1); }
 
-// Files hold what is in memory. Big-endian machines would need copies, which no machine here can test.
+// Files contain the bytes that are in memory. Big-endian machines would need converted copies, which are not tested.
 static_assert(std::endian::native == std::endian::little, "orchard runs on little-endian machines");
 
-// A step is a bijection of the state for a given word and of the word for a given state: a change within one
-// eight-byte word is always noticed, any other with probability 1 - 2^-64. `size` is a multiple of 8.
+// Returns the checksum of a file, without the field that stores it. A step is a bijection of the state for a given
+// word, and of the word for a given state. So a change within one eight-byte word is always noticed, any other with a
+// probability of 1 - 2^-64. `size` is a multiple of 8.
 std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
   std::uint64_t state = 0x6f72636861726421u;
   for (std::size_t i = 0; i < size; i += 8) {
@@ -70,7 +70,7 @@ void each_section(Tree& tree, Visit&& visit) {
   visit(3, tree.leaf_triangles), visit(4, tree.obb_nodes), visit(5, tree.triangle_blocks), visit(6, tree.supports);
 }
 
-// Calls visit(number of the header, number of the tree) for all that both have.
+// Calls visit(number in the header, number in the tree) for all numbers that both have.
 template <typename HeaderOrConst, typename Numbers, typename Visit>
 void each_number(HeaderOrConst& header, Numbers& tree, const Visit& visit) {
   visit(header.branching, tree.branching), visit(header.depth, tree.depth);
@@ -93,8 +93,9 @@ bool all_zero(std::span<const std::byte> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
-// The sections must follow one another in order without gaps and end with the file, and what belongs to none is zero:
-// one form for one tree, and a sum of sizes that no crafted table can push beyond the file.
+// Returns whether the sections follow one another in order without gaps and end with the file, and all bytes that
+// belong to no section are zero. So a tree has only one form as a file, and no crafted table leads beyond the end of
+// the file.
 bool is_table_valid(std::span<const std::byte> file, const Header& header) noexcept {
   std::uint64_t end = sizeof header;
   bool valid = header.section_count == kSections && header.reserved == 0 && all_zero(header.unused);
@@ -121,7 +122,7 @@ LoadStatus check_file(std::span<const std::byte> file, Header& header) noexcept 
   return valid ? LoadStatus::ok : LoadStatus::invalid_structure;
 }
 
-// Fills a tree by a header and by place(array, section), unless what results is none that queries can walk.
+// Fills a tree from a header and by place(array, section). Fails if queries could not walk the result.
 template <typename Tree, typename Place>
 LoadStatus fill(const Header& header, Tree& out, const Place& place) {
   Tree tree;
@@ -136,8 +137,8 @@ struct Close {
   void operator()(std::FILE* file) const noexcept { std::fclose(file); }
 };
 
-// Appends what the stream has, up to `size` bytes in all, in pieces: a header that promises more than there is costs
-// at most one piece of memory.
+// Appends the bytes of a stream, until there are `size` bytes in all or the stream ends. It reads in pieces, so a
+// header that states a size beyond the end costs at most one piece of memory.
 LoadStatus read_up_to(std::FILE* stream, std::uint64_t size, std::vector<std::byte>& bytes) {
   constexpr std::uint64_t piece = std::uint64_t{1} << 20;
   while (bytes.size() < size) {
@@ -223,7 +224,7 @@ LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept {
     Header header;
     LoadStatus status = read_up_to(stream.get(), sizeof(Header::Preamble), bytes);
     if (status == LoadStatus::ok) status = check_preamble(bytes, header);
-    // One byte more than promised, so that a longer file is noticed.
+    // One byte more than the header states is read, so that a longer file is noticed.
     if (status == LoadStatus::ok) {
       status = read_up_to(stream.get(), std::max(header.preamble.file_size, header.preamble.file_size + 1), bytes);
     }

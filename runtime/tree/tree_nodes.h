@@ -7,14 +7,16 @@
 #include "math/triangle_pair.h"
 #include "orchard/runtime/packed_tree.h"
 
-// How queries read a packed tree. All of it relies on structure_fault() being nullptr.
+// Functions by which queries read a packed tree. Precondition of all of them: structure_fault() is nullptr for the
+// tree.
 namespace orchard::runtime::detail {
 
-// A bound is stretched by this, since distances under poses rigid to kRigidTolerance are off by up to 3e-12 of them.
+// Bounds are made larger or smaller by this fraction, because distances under poses that are rigid to kRigidTolerance
+// are off by up to 3e-12 of themselves.
 inline constexpr double kStretch = 1e-11;
 
-// How far two solids are apart at most, by a pair of their spheres. Also right for spheres that do not meet: a point
-// between them is within `errors` plus their gap of both solids.
+// Returns an upper bound on the distance of two solids, from a pair of their spheres. It also holds for spheres that do
+// not meet: the distances of a point between them from both solids add up to at most `errors` plus the gap.
 inline double pair_bound(double distance, double radii, double errors, double depths) noexcept {
   const double bound = std::min(errors + std::max(0.0, distance - radii), depths + distance);
   return std::max(0.0, bound) * (1 + kStretch);
@@ -24,7 +26,7 @@ inline const SiblingBlock& block_of(const TreeView& tree, std::uint32_t node) no
   return tree.blocks[node / kBlockWidth];
 }
 
-// The same of the triangles' own tree.
+// The block of a node of the triangle BVH, and its child.
 inline const ObbNodeBlock& slab_block(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.obb_nodes[node / kBlockWidth];
 }
@@ -42,7 +44,7 @@ inline Vec3 center_of(const TreeView& tree, std::uint32_t node) noexcept {
   return {block.x[lane], block.y[lane], block.z[lane]};
 }
 
-// How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at most.
+// Returns an upper bound on how far a ball slab reaches along a unit vector, from its centre.
 inline double reach_along(const ObbNodeBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
   const Vec3 normal = {double{block.nx[lane]}, double{block.ny[lane]}, double{block.nz[lane]}};
   const double radius = double{block.radius[lane]}, cosine = std::fabs(dot(n, normal));
@@ -54,7 +56,7 @@ struct Group {  // consecutive nodes: the children of a node, or one leaf
   std::uint32_t first, count;
 };
 
-// `bits`: link_bits(tree.branching).
+// Returns the group of a node. `bits` is link_bits(tree.branching).
 inline Group group_of(const TreeView& tree, int bits, std::uint32_t node) noexcept {
   const std::uint32_t link = block_of(tree, node).link[node % kBlockWidth];
   if (link & kLeafBit) return {node, 1};
@@ -81,7 +83,8 @@ inline Ball ball_around(const TreeView& tree) noexcept {
   return {{root.x[0], root.y[0], root.z[0]}, double{root.radius[0]}};
 }
 
-// As index_triangles(), but cut along the coordinates' axes, for boxes along them; without a table of supports.
+// Does the same as index_triangles(), except that the triangles are divided across the coordinate axes, for boxes along
+// these, and that there is no table of supports.
 void index_for_rays(PackedSphereTree& tree);
 
 }  // namespace orchard::runtime::detail

@@ -1,5 +1,5 @@
-// One file: the builder is one pass down the tree, and what it measures of a part of the triangles (extents, moments,
-// balls, ball slabs) goes by the order that the pass itself makes.
+// The builder makes one pass down the tree, and orders the triangles as it divides them. Everything that it measures
+// (extents, moments, balls, ball slabs) refers to ranges of this order.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,9 +10,9 @@
 #include "tree/box_fitter.h"
 #include "tree/tree_nodes.h"
 
-// The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
-// triangles. Where all leaves fit in one block (a box, a wall, a simple hull), triangles are few and large beside what
-// comes near them, and leaves hold what is flat together instead: see divide().
+// The triangle BVH. Triangles are divided in two across a principal direction; nodes have up to eight children, and
+// leaves have up to eight triangles. If all leaves fit in one block (a box, a wall, a simple hull), the triangles are
+// few, and large compared with what comes near them. Leaves then hold triangles that are flat together; see divide().
 namespace orchard::runtime {
 namespace {
 
@@ -22,17 +22,19 @@ using detail::ObbNode, detail::BoxFitter, detail::Extent, detail::Part, detail::
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::array<Vec3, 3> kAxes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
-// Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
+// Below this level, parts are halved by the number of their triangles: 31 more levels are enough for every number, and
+// kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
 
 // A tree of at most so many triangles has room for all of its leaves in one block.
 constexpr std::size_t kFew = std::size_t{kBlockWidth} * kBlockWidth;
-// A cut of few triangles is worth a leaf if the boxes of both parts, times their triangles, are less than this share of
-// the whole part's. A smaller share would end too soon: of the four sides of a box, no single one is worth it.
+// If triangles are few, a cut is worth a leaf if the areas of the boxes of both parts, times the numbers of their
+// triangles, are less than this fraction of the same for the whole part. With a smaller fraction, cutting would end too
+// soon: of the four sides of a box, no single one is worth it.
 constexpr double kWorthCutting = 1 - 1e-3;
 
 enum class Cuts {
-  principal,  // across principal directions, so that leaves are full
+  principal,  // across principal directions, such that leaves are full
   aligned     // across the coordinates' axes, wherever boxes along them are smallest
 };
 
@@ -69,13 +71,13 @@ class Builder {
   }
 
  private:
-  // A node whose children are not there yet.
+  // A node that has no children yet.
   struct Pending {
     Part part;
     std::size_t block;
     std::uint32_t lane;
   };
-  // Where a triangle of a part is along an axis. Equal ones go by their triangles' numbers.
+  // The place of a triangle of a part along an axis. Equal places are ordered by the numbers of their triangles.
   struct PlaceAlong {
     double at;
     std::uint32_t number, from;
@@ -83,7 +85,7 @@ class Builder {
       return at < other.at || (!(other.at < at) && number < other.number);
     }
   };
-  // The cheapest first, and of equal ones the more even one.
+  // A cut of a part. The cheapest cut comes first; among equally cheap ones, the most even one.
   struct Cut {
     double cost = kInfinity;
     std::size_t unevenness = 0, frame = 0, axis = 0, at = 0;
@@ -92,10 +94,10 @@ class Builder {
              std::tie(other.cost, other.unevenness, other.frame, other.axis, other.at);
     }
   };
-  // A part, and what a cut of it gains; minus infinity: it stays whole.
+  // A part, and what a cut of it gains; minus infinity if it stays whole.
   struct Piece : Part {
     double worth = -kInfinity;
-    Cut cut{};  // of few triangles
+    Cut cut{};  // if triangles are few
   };
 
   void add_block() { tree_.obb_nodes.emplace_back().radius.fill(-1); }
@@ -130,9 +132,9 @@ class Builder {
     }
   }
 
-  // Cuts what is most worth it until there are eight pieces or none is. Of many triangles this is the widest piece, and
-  // what fits a leaf stays whole. Of few it is what gains most, and leaves need not be full, for all of them fit in the
-  // block.
+  // Cuts the piece that is most worth it, until there are eight pieces or none is worth it. If triangles are many, this
+  // is the widest piece, and pieces that fit in a leaf stay whole. If they are few, it is the piece whose cut gains
+  // most, and leaves need not be full, because all of them fit in the block.
   std::vector<Piece> divide(const Part& node) {
     std::vector<Piece> pieces = {piece_of(node)};
     while (pieces.size() < kBlockWidth) {
@@ -160,9 +162,10 @@ class Builder {
     return (count + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
   }
 
-  // Across a principal axis, where the boxes of the two parts, times their triangles, are smallest (MacDonald and Booth
-  // 1990), the more even parts of equal ones; far down in half, which limits the depth. At a multiple of eight
-  // triangles, so that leaves are full.
+  // Cuts a part across one of three axes and returns the end of the first half. The place is the one at which the areas
+  // of the boxes of both halves, times the numbers of their triangles, are smallest (MacDonald and Booth 1990); among
+  // equal places, the most even one. Far down in the tree, parts are halved by number, which limits the depth. Cuts
+  // across principal axes are at multiples of eight triangles, so that leaves are full.
   std::size_t halve(const Part& part) {
     const bool aligned = cuts_ == Cuts::aligned;
     const std::size_t half = aligned ? part.size() / 2 : multiple_of_width(part.size() / 2);
@@ -177,7 +180,7 @@ class Builder {
     return part.begin + best.at;
   }
 
-  // The cheapest cut across any of three axes at a multiple of `step` triangles, if it is better than `best`.
+  // Sets `best` to the cheapest cut across any of three axes at a multiple of `step` triangles, if that is better.
   void find_cut(const Part& part, const std::array<Vec3, 3>& axes, std::size_t frame, std::size_t half,
                 std::size_t step, Cut& best) {
     const std::size_t size = part.size();
@@ -203,7 +206,7 @@ class Builder {
     }
   }
 
-  // Where the centroids are along an axis, in their order.
+  // Finds the places of the centroids along an axis, and sorts them.
   void find_places(const Part& part, const Vec3& along, std::size_t axis) {
     std::vector<PlaceAlong>& places = places_[axis];
     places.resize(part.size());
@@ -221,8 +224,8 @@ class Builder {
 
   bool is_few() const { return order_.size() <= kFew; }
 
-  // Axes that boxes of few triangles may have: those of the coordinates, and of the largest triangles that differ in
-  // them, across the triangle and along its shortest edge. Principal axes of few corners are tilted against all faces.
+  // Finds the axes that boxes may have if triangles are few: those of the coordinates, and, for the largest triangles
+  // that differ in them, the normal and the shortest edge. Principal axes of few corners are tilted against all faces.
   void find_frames() {
     constexpr std::size_t kMaxFrames = 8;
     frames_ = {kAxes};
@@ -251,7 +254,7 @@ class Builder {
     return {v[0] / length, v[1] / length, v[2] / length};
   }
 
-  // Whether each axis of one is an axis of the other, nearly, whatever their order and signs.
+  // Returns whether each axis of one frame is nearly an axis of the other one, in any order and with any signs.
   static bool are_same(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) {
     constexpr double kNearlyOne = 1 - 1e-12;
     return std::all_of(p.begin(), p.end(), [&](const Vec3& u) {
@@ -286,7 +289,7 @@ class Builder {
     put(slab.normal, block.nx, block.ny, block.nz);
     put(slab.second, block.mx, block.my, block.mz);
     block.radius[lane] = stored_above(slab.radius);
-    // What cancels in a height is of the size of the distances from the centre.
+    // The numbers that cancel in a height are as large as distances from the centre.
     block.height[lane] = stored_above(slab.height + 1e-15 * slab.radius);
     block.width[lane] = stored_above(slab.width + 1e-15 * slab.radius);
     block.length[lane] = stored_above(slab.length + 1e-15 * slab.radius);
@@ -297,12 +300,12 @@ class Builder {
   std::vector<Triangle> order_;
   BoxFitter fitter_{order_, frames_};
   std::vector<Vec3> centroids_;  // by the triangles' numbers
-  // While a part is halved:
-  std::vector<Triangle> before_;  // as it was ordered
+  // These are used while a part is cut:
+  std::vector<Triangle> before_;  // its triangles in the order before
   std::vector<Extent> extents_;   // of its triangles
-  std::vector<double> behind_;    // what a cut costs behind it
+  std::vector<double> behind_;    // the costs of the triangles behind each place
   std::array<std::vector<PlaceAlong>, 3> places_;
-  std::vector<std::array<Vec3, 3>> frames_;  // of few triangles: find_frames()
+  std::vector<std::array<Vec3, 3>> frames_;  // if triangles are few: see find_frames()
 };
 
 }  // namespace
@@ -329,7 +332,7 @@ void index_triangles(PackedSphereTree& tree) {
     for (std::size_t i = 0; i < kSupportCount; ++i) most[i] = std::max(most[i], dot(directions[i], p));
   }
   for (const double reach : most) {
-    const double above_all = reach + 1e-15 * 3 * largest;  // the sum's rounding
+    const double above_all = reach + 1e-15 * 3 * largest;  // covers the rounding of the sum
     tree.supports.push_back(detail::next_float(above_all));
   }
 }

@@ -6,13 +6,13 @@
 #include "collision/kernels/eight.h"
 #include "simd/machine.h"
 
-// Rates are rounded up: their own rounding is below 40 u of the sum of their parts' sizes, u = 2^-24, and kRateError is
-// more.
+// Rates are rounded up. Their own rounding error is below 40 u of the sum of the sizes of their parts, with u = 2^-24,
+// and kRateError is more.
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kRateError = 0x1p-17f;
-constexpr float kMinRate = 1e-30f;  // gaps are below 1e20: a time far beyond every end, or infinite
+constexpr float kMinRate = 1e-30f;  // gaps are below 1e20, so with this rate, times are beyond every end, or infinite
 constexpr float kTimeError = 1 - 0x1p-20f;
 
 template <typename Kind>
@@ -29,7 +29,7 @@ struct Turns {
     const Floats reach = (Kind::sqrt(E::dot(from, from)) + boxes.radius) * E::all(1 + 0x1p-18f) + E::all(rounding);
     spin = reach * E::all(turning.spin), steady = reach * E::all(turning.turning);
   }
-  // How fast a point comes closer along u at most.
+  // Returns a bound on the speed at which a point of the box comes closer along u.
   ORCHARD_INLINE Floats rate(const Vectors& u) const noexcept {
     const Vectors across = E::cross(axis, u);
     return spin * (Kind::sqrt(E::dot(across, across)) + E::all(kRateError)) + steady;

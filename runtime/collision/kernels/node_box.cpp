@@ -10,7 +10,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// A box in double. Its axes are unit and across each other to 1e-6 only.
+// A box in double. Its axes are orthonormal only to 1e-6.
 struct WideBox {
   Vec3 center;
   std::array<Vec3, 3> axes;
@@ -30,7 +30,7 @@ struct WideBox {
     radius *= pose.scale;
   }
 
-  // How far it reaches along a vector of length 1 to within 1e-6, at least.
+  // Returns an upper bound on how far the box reaches along a vector whose length is 1 to within 1e-6.
   double reach(const Vec3& u) const noexcept {
     constexpr double kSkew = 0x1p-18;
     double sum = kSkew * radius;
@@ -45,7 +45,8 @@ struct WideBox {
   }
 };
 
-// Along an axis of its own a box reaches exactly as far as is stored.
+// Returns whether an axis of the first box separates the boxes by more than `error`. Along its own axes, a box reaches
+// exactly as far as is stored.
 bool parted_by_axis(const WideBox& of, const WideBox& other, double error) noexcept {
   const Vec3 d = minus(other.center, of.center);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -74,8 +75,8 @@ ORCHARD_INLINE void find_gaps(const NodeBox& single, const ObbNodeBlock& lanes, 
 
 bool boxes_are_apart(const NodeBox& first, const NodeBox& second, const Pose& relative) noexcept {
   const WideBox p(first), q(second, relative);
-  // Some operations on the coordinates of centres, and what a rotation lacks to be one (kRigidTolerance), which turns
-  // the boxes.
+  // The error covers a few operations on the coordinates of the centres, and how far a rotation may be from a proper
+  // one (kRigidTolerance), which turns the boxes.
   double error = 0x1p-36 * (p.radius + q.radius);
   for (std::size_t i = 0; i < 3; ++i) error += 0x1p-46 * (std::fabs(p.center[i]) + std::fabs(q.center[i]));
   return parted_by_axis(p, q, error) || parted_by_axis(q, p, error);

@@ -14,7 +14,7 @@ struct Placement {
   std::array<float, 3> translation;
   float scale;
   float slack;           // is added to a sum of radii
-  float margin;          // is subtracted from a gap between ball slabs, or between triangles
+  float margin;          // is subtracted from a gap between triangles, or to a plane of a box
   float unit = 1;        // a power of two; every coordinate of the pair's frame, times this, is at most 1
   float whole = 1;       // 1 / unit
   float box_margin = 0;  // is subtracted from a gap between boxes

@@ -7,27 +7,27 @@
 #include "collision/kernels/eight.h"
 #include "simd/machine.h"
 
-// Rounding, u = 2^-24. Let D be the size of the tree's coordinates and of s. Ball slabs: the distance of a centre from
-// the line is the length of a cross product of differences below 2 D and of a unit vector, and a height over the middle
-// plane is such a dot product: off by less than 16 u D, which FloatRay::margin covers besides the line's own error.
-// Half the length of what a ball cuts off the line is the root of a difference of squares, and kGrazing of the greater
-// of them covers its rounding. Triangles: corners relative to a point of the line nearby are off by at most the margin,
-// and longer than L nowhere. A product of three such vectors, one of them of length 1, is off by less than 4 L margin +
-// 16 u L^2. Sheared onto a plane, by slopes of at most 1, their two components are at most 2 L and off by less than two
-// margins and 4 u L, so a product of two of them by less than 4 * 2 L * (2 margin + 4 u L) + 3 u * 8 L^2 < 16 L margin
-// + 64 u L^2.
+// Rounding, with u = 2^-24. Let D be the size of the tree's coordinates and of s.
+// Ball slabs: the distance of a centre from the line is the length of a cross product of differences below 2 D and of a
+// unit vector, and a height over the middle plane is such a dot product. Both are off by less than 16 u D, which
+// FloatRay::margin covers besides the line's own error. Half the length of the part of the line inside a ball is the
+// square root of a difference of squares; kGrazing times the greater square covers its rounding.
+// Triangles: corners relative to a point of the line nearby are off by at most the margin, and nowhere longer than L. A
+// product of three such vectors, one of them of length 1, is off by less than 4 L margin + 16 u L^2. After shearing
+// onto a plane, by slopes of at most 1, the two components are at most 2 L and off by less than two margins and 4 u L,
+// so a product of two of them is off by less than 4 * 2 L * (2 margin + 4 u L) + 3 u * 8 L^2 < 16 L margin + 64 u L^2.
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kGrazing = 0x1p-20f;
 constexpr float kProductError = 0x1p-20f;
 constexpr float kShearedError = 0x1p-18f;
-constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
+constexpr float kMinRoom = 1e-33f;  // covers the underflow of a product
 
 using RayEntries = std::array<float, kBlockWidth>;
 
-// The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it
-// meets between begin and end.
+// Stores lower bounds on the s at which the ray enters each ball slab, but at least `begin`. Returns the bits of the
+// ball slabs that the ray may meet between begin and end.
 template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
           typename Vectors = typename E::Vectors>
 ORCHARD_INLINE std::uint32_t find_obb_nodes(const FloatRay& ray, const ObbNodeBlock& obb_nodes, float begin, float end,
@@ -42,21 +42,22 @@ ORCHARD_INLINE std::uint32_t find_obb_nodes(const FloatRay& ray, const ObbNodeBl
   const Floats square = r * r, apart = E::dot(across, across), inside = square - apart;
   const Floats middle = E::dot(to, d);
   const Floats half = Kind::sqrt(E::max(inside, zero) + square * E::all(kGrazing)) + margin;
-  // Between the planes: |s (n . d) - n . to| <= h.
+  // The ray is between the planes where |s (n . d) - n . to| <= h.
   const Floats slope = E::dot(n, d), height = E::dot(n, to);
   const Floats steep = E::max(E::abs(slope), E::all(kMinSlope));
   const Floats rise = Kind::choose(slope < zero, -height, height);
   const Floats low = (rise - h) / steep, high = (rise + h) / steep;
-  // An infinite `low` makes no number of the first: max() gives the second one then.
+  // If `low` is infinite, the first argument is not a number, and max() returns the second one.
   const Floats enter = E::max(E::max(low - E::abs(low) * E::all(kGrazing), middle - half), E::all(begin));
   const Floats leave = E::min(middle + half, high + E::abs(high) * E::all(kGrazing));
   store(enter, entries);
-  // Written so that what is not a number, from infinite quotients, counts as met.
+  // The comparisons are written so that values that are not numbers, from infinite quotients, count as met.
   const auto missed = (inside < zero) | (leave < enter) | (E::all(end) < enter);
   return Kind::bits(zero <= radius) & ~Kind::bits(missed);
 }
 
-// From the products of each two neighbouring corners, off by less than `room`: on which side of the edges the line is.
+// Decides on which side of the edges the line passes, from the products for each two neighbouring corners. These are
+// off by less than `room`.
 template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE RayLeaf told_apart(const TriangleBlock& block, const typename Kind::Floats& p,
                                   const typename Kind::Floats& q, const typename Kind::Floats& r,
@@ -71,7 +72,8 @@ template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E:
           typename Vectors = typename E::Vectors>
 ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
   const Vectors d = E::all_of(ray.direction);
-  // From a point of the line near the first triangle, so that products are as small as the leaf.
+  // Coordinates are relative to a point of the line near the first triangle, so that products are only as large as the
+  // leaf.
   float at = 0;
   for (std::size_t i = 0; i < 3; ++i) at += (block.corner[0][i][0] - ray.origin[i]) * ray.direction[i];
   const Vectors from = {E::all(ray.origin[0] + at * ray.direction[0]), E::all(ray.origin[1] + at * ray.direction[1]),
@@ -84,14 +86,15 @@ ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& 
   return told_apart<Kind>(block, p, q, r, room);
 }
 
-// Leaves the smaller one where it is and returns the other, without a branch.
+// Stores the smaller number in `least` and returns the other one, without a branch.
 ORCHARD_INLINE std::uint64_t put_in_order(std::uint64_t& least, std::uint64_t other) noexcept {
   const std::uint64_t change = (least ^ other) & (0 - std::uint64_t{other < least});
   least ^= change;
   return other ^ change;
 }
 
-// `Nodes` says which nodes of a block are met, and where, and which triangles of a leaf.
+// Continues a walk up to the next leaf with triangles that may be met. `Nodes` tests the nodes of a block and the
+// triangles of a leaf.
 template <typename Nodes>
 ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
   const float end = walk.end;
@@ -110,7 +113,8 @@ ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlo
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits)) % kBlockWidth;
         return RayWalk::entry(entries[lane], block.child[lane]);
       };
-      // The nearest one goes on, the others wait. No branch tells one from two: it could not be predicted.
+      // The walk goes on with the nearest node, and the others are pushed. No branch distinguishes one node from two,
+      // because it could not be predicted.
       next = at(left);
       left &= left - 1;
       const std::uint64_t none = 0 - std::uint64_t{left == 0};
@@ -142,9 +146,10 @@ struct ObbNodes {
   }
 };
 
-// The ray against boxes: where it crosses their planes. The near ones are looked at from `margin` further on, the far
-// ones from `margin` further back, which covers all rounding: what is in doubt is as much as the planes' own places.
-// Triangles are sheared along the ray onto a plane across the axis that it is steepest to.
+// Tests a ray against boxes by the places at which it crosses their planes. For near planes, these places are computed
+// from `margin` further on; for far planes, from `margin` further back. This covers all rounding, which has the effect
+// of planes at slightly wrong places. Triangles are sheared along the ray onto a plane across the axis along which the
+// ray is steepest.
 template <typename Kind>
 struct Boxes {
   using E = Eight<Kind>;
@@ -181,8 +186,8 @@ struct Boxes {
     return Kind::bits(enter <= leave);
   }
 
-  // From where the ray enters the leaf's box, or from no more than the margin beside it: no corner is farther than the
-  // box's diagonal and some margins.
+  // Coordinates are relative to the point at which the ray enters the leaf's box, or passes it within the margin. So no
+  // corner is farther away than the box's diagonal and some margins.
   ORCHARD_INLINE RayLeaf triangles(const TriangleBlock& block, std::uint64_t leaf) const noexcept {
     const float reach = tree.sizes[RayWalk::child_of(leaf) & ~kLeafBit] + 8 * ray.margin;
     const Floats room = E::all(reach * (16 * ray.margin + reach * kShearedError) + kMinRoom);

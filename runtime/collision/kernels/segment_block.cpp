@@ -3,17 +3,19 @@
 #include "collision/kernels/triangle_tests.h"
 #include "simd/machine.h"
 
-// Convex sets are as far apart as they are along some vector: a triangle and a segment along the triangle's normal,
-// where an end is nearest to its inside, or else along the way between the nearest points of the segment and an edge.
-// Any vector gives a lower bound, so where rounding finds others than the nearest points the bound is only lower.
-// Rounding of what lies along a vector: triangle_tests.h.
+// The distance of two convex sets is the largest gap between them along any vector. For a triangle and a segment, this
+// vector is the triangle's normal, if an end of the segment is nearest to the triangle's inside, or else the way
+// between the nearest points of the segment and an edge. Any vector gives a lower bound, so if rounding finds other
+// points than the nearest ones, the bound is only lower. The rounding of projections to a vector is analysed in
+// triangle_tests.h.
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kMinSquare = 1e-37f;          // keeps quotients finite
-constexpr float kParallelSineSquare = 1e-5f;  // below it, floats do not know where lines are nearest
+constexpr float kParallelSineSquare = 1e-5f;  // below it, floats cannot determine where lines are nearest
 
-// The way from the nearest point of the segment from the origin to `w` to that of an edge, and its square's size.
+// The way from the nearest point of the segment from the origin to `w` to the nearest point of an edge, and the square
+// of its length.
 template <typename Kind>
 struct EdgeWay {
   using E = Eight<Kind>;
@@ -22,7 +24,8 @@ struct EdgeWay {
   Vectors way;
   Floats square;
 
-  // Ericson 2005, 5.1.9: the best place on the one's line, then the best on the other for that, and back.
+  // Ericson 2005, 5.1.9: finds the best place on the line of the segment, then the best one on the edge for that, then
+  // the best one on the segment again.
   ORCHARD_INLINE EdgeWay(bool moves, const Vectors& w, const Floats& ww, const Vectors& from,
                          const Vectors& edge) noexcept {
     const Floats zero = E::all(0.0f), one = E::all(1.0f), least = E::all(kMinSquare);
@@ -54,7 +57,7 @@ ORCHARD_INLINE void find_segment_gaps(const std::array<float, 3>& p, const std::
   const Vectors t[3] = {corner(0), corner(1), corner(2)};
   const Vectors edge[3] = {E::minus(t[1], t[0]), E::minus(t[2], t[1]), E::minus(t[0], t[2])};
   const Floats ww = E::dot(w, w);
-  const bool moves = p != q;  // else it is a point
+  const bool moves = p != q;  // otherwise, the segment is a point
   EdgeWay<Kind> best(moves, w, ww, t[0], edge[0]);
   for (std::size_t i = 1; i < 3; ++i) {
     const EdgeWay<Kind> other(moves, w, ww, t[i], edge[i]);

@@ -15,7 +15,7 @@ constexpr std::uint64_t in_row(std::uint32_t row, std::uint32_t lanes) noexcept 
   return std::uint64_t{lanes} << (kBlockWidth * row);
 }
 
-// The lanes whose links end in a leaf, as bits.
+// Returns the lanes that are leaves, as bits.
 ORCHARD_INLINE std::uint32_t leaves_of(const SiblingBlock& block) noexcept {
   std::uint32_t leaves = 0;
   for (std::uint32_t i = 0; i < kBlockWidth; ++i) leaves |= std::uint32_t{(block.link[i] & kLeafBit) != 0} << i;
@@ -29,7 +29,8 @@ ORCHARD_INLINE typename Eight<Kind>::Vectors centers_of(const SiblingBlock& bloc
   return move ? E::move(placement, centers) : centers;
 }
 
-// Of the pairs that meet, those whose errors or depths may give a lower separation bound than the best one so far.
+// Returns those of the pairs that meet whose errors or depths may give a lower separation bound than the best one so
+// far.
 template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats>
 ORCHARD_INLINE std::uint64_t find_improving(const BlockPair& pair, const Placement& placement, const LevelState& level,
                                             const BlockHits& hits) noexcept {

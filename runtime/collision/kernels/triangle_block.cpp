@@ -10,7 +10,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// For each row the lanes whose boxes, grown by the margin, meet its own; all of them together.
+// Finds, for each row, the lanes whose boxes meet the box of the row. The lanes' boxes already contain the margin.
+// Returns the rows that have such lanes, as bits.
 template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t lanes, const Box<Kind>& row_box,
                                        std::uint32_t rows, std::uint32_t (&near)[kBlockWidth]) noexcept {
@@ -67,7 +68,7 @@ ORCHARD_INLINE bool find_candidates(const LeafPair& pair, const Placement& place
   return false;
 }
 
-// Between all triangles of the lanes and all of the rows, along a direction.
+// Returns the gap along a direction between all triangles of the lanes and all triangles of the rows.
 template <typename Kind, typename E = Eight<Kind>>
 ORCHARD_INLINE typename Eight<Kind>::Floats gap_of_all(const typename Eight<Kind>::Vectors& u,
                                                        const typename Eight<Kind>::Vectors (&lane)[3],
@@ -78,7 +79,7 @@ ORCHARD_INLINE typename Eight<Kind>::Floats gap_of_all(const typename Eight<Kind
 }
 
 // Axes are normalised in float, so they are longer than 1 by less than 4 u, and a projection of D is off by less than
-// 12 u D and the points' own errors: twice the margin is plenty.
+// 12 u D and the points' own errors. So twice the margin is enough.
 template <typename Kind, typename E = Eight<Kind>, typename Floats = typename E::Floats,
           typename Vectors = typename E::Vectors>
 ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
@@ -94,7 +95,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   const Vectors row[3] = {row_corner(0), row_corner(1), row_corner(2)};
   const Vectors given = E::all_of(direction);
   const Floats margin = E::all(2 * placement.margin * placement.unit), limit = E::all(reach);
-  // All of them together, along the direction that has parted others.
+  // First, all triangles together are tested along the direction that has separated others.
   const Floats all_beyond = (gap_of_all<Kind>(given, lane, row) - margin) * whole;
   if (Kind::bits(all_beyond <= limit) == 0) {
     for (std::uint32_t r = 0; r < kBlockWidth; ++r) store(all_beyond, result.lower[r]), result.near[r] = 0;
@@ -106,7 +107,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   const Box<Kind> lane_box = box_of<Kind>(lane, E::all(0.0f)), row_boxes = box_of<Kind>(row, E::all(0.0f));
   const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
   Floats beyond = infinite;
-  std::uint32_t open = 0;  // rows that boxes do not settle
+  std::uint32_t open = 0;  // rows that boxes leave undecided
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
     result.near[r] = 0;
     if (rows.triangle[r] == kNoTriangle) continue;
@@ -133,7 +134,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
       beyond = E::min(beyond, Kind::choose(near, infinite, lower));
     }
   }
-  result.beyond = least_of<Kind>(beyond);  // what is not used repeats the first lane
+  result.beyond = least_of<Kind>(beyond);  // unused lanes repeat the first one
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 // The tests that the inner loops over triangles (triangle_block.cpp, segment_block.cpp) consist of.
 //
-// Rounding. For ball slabs, see placed_trees.cpp, (5). For triangles, any fixed vector can be an axis, so an axis
+// Rounding. For planes of boxes, see placed_trees.cpp, (5). For triangles, any fixed vector can be an axis, so an axis
 // itself need not be accurate; only the projections to it must be. Let points be placed with an error of at most sigma.
 // Points that are more than the margin apart along a coordinate are apart. A projection a . (p - q) is computed with an
 // error of at most |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, where |a|_1 is the sum of the absolute
