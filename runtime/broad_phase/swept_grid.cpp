@@ -349,7 +349,8 @@ ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Over
 }
 
 void SweptGrid::remove(std::span<const BodyIndex> bodies, std::span<const PackedAabb> boxes) noexcept {
-  constexpr std::size_t kMostLines = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis;  // at most, of a body
+  constexpr std::size_t kMostLines =
+      std::size_t{kMaxCellsPerAxis} * kMaxCellsPerAxis * kMaxCellsPerAxis;  // at most, of a body
   std::array<Removal, kRemovedAtOnce * kMostLines + 1> removals;
   Removal* end = removals.data();
   for (const BodyIndex body : bodies) end = list_removals(body, boxes[body].whole(), end);

@@ -135,9 +135,10 @@ std::span<const BodyId> WorldQueries::touching_sphere(const Vec3& center, double
 }  // namespace detail
 
 std::optional<WorldPoint> Detector::cast_ray(const Ray& ray, const QueryFilter& filter) {
+  constexpr Vec3 no_direction{};
   State& s = *state_;
   if (!s.takes_changes() || !detail::is_finite(ray.origin) || !detail::is_finite(ray.direction) ||
-      ray.direction == Vec3{} || !(ray.longest >= 0))
+      ray.direction == no_direction || !(ray.longest >= 0))
     return std::nullopt;
   return s.queries.cast_ray(ray, filter);
 }

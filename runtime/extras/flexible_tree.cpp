@@ -139,7 +139,7 @@ void FlexibleTree::refit_spheres() noexcept {
       }
     } else {
       const Children children = children_of(tree_.branching, link);
-      const auto first = spheres_growth_.begin() + static_cast<std::ptrdiff_t>(children.first * kBlockWidth);
+      const auto first = spheres_growth_.begin() + static_cast<std::ptrdiff_t>(children.first) * kBlockWidth;
       growth = *std::max_element(first, first + children.count);
     }
     if (std::exchange(spheres_growth_[b * kBlockWidth + lane], growth) == growth || b == 0) return;

@@ -306,8 +306,8 @@ std::size_t memory_where_cancelled(BodyIndex every, double expiry) {
       test::Draw draw(i);
       Motion& m = motions[k] = {};
       m.velocity = 0.2 * draw.direction();
-      m.position = 4.0 * Vec3{1.0 * (i % kPerAxis), 1.0 * (i / kPerAxis % kPerAxis), 1.0 * (i / kPerAxis / kPerAxis)} +
-                   time * m.velocity;
+      const BodyIndex row = i / kPerAxis, layer = row / kPerAxis;
+      m.position = 4.0 * Vec3{1.0 * (i % kPerAxis), 1.0 * (row % kPerAxis), 1.0 * layer} + time * m.velocity;
       m.radius = 1.5;
       m.acceleration = 0.5;
       m.expiry = expiry;
