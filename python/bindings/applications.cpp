@@ -91,9 +91,9 @@ py::list neck_rows(const SurfaceParts& parts) {
 
 SurfacePointer surface_of(TriangleMesh mesh) { return std::make_shared<Surface>(std::move(mesh)); }
 
-py::dict offset_to_python(const OffsetMesh& offset, SurfacePointer mesh) {
+py::dict offset_to_python(const OffsetMesh& offset, const SurfacePointer& mesh) {
   py::dict result;
-  result["mesh"] = std::move(mesh);
+  result["mesh"] = mesh;
   result["distance"] = offset.distance;
   result["tolerance"] = offset.tolerance;
   result["cell"] = offset.cell;
@@ -115,7 +115,7 @@ py::dict offset_of(const SurfacePointer& surface, double distance, const std::st
     made = surface_of(std::move(found.mesh));
     return found;
   });
-  return offset_to_python(offset, std::move(made));
+  return offset_to_python(offset, made);
 }
 
 py::dict hollow(const SurfacePointer& surface, double wall, double tolerance, py::object progress) {
@@ -126,7 +126,7 @@ py::dict hollow(const SurfacePointer& surface, double wall, double tolerance, py
     made = surface_of(std::move(hollowed.mesh));
     return hollowed;
   });
-  py::dict result = offset_to_python(found.cavity, std::move(made));
+  py::dict result = offset_to_python(found.cavity, made);
   result["min_wall"] = found.min_wall;
   return result;
 }

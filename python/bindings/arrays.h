@@ -55,10 +55,15 @@ Array view(std::shared_ptr<const void> owner, const T* data, std::vector<py::ssi
   return {std::move(owner), data, format_of<T>(), sizeof(T), std::move(shape), std::move(strides)};
 }
 
+// How many numbers of type T a row has. The check takes a row that is a number itself for a mistake.
+template <class T, class Row>
+inline constexpr auto kColumns = static_cast<py::ssize_t>(sizeof(Row) /
+                                                          sizeof(T));  // NOLINT(bugprone-sizeof-expression)
+
 // A vector of numbers as (n,), or of rows of numbers (points, triangles) as (n, columns), which the owner keeps alive.
 template <class T, class Row>
 Array view_rows(std::shared_ptr<const void> owner, const std::vector<Row>& rows) {
-  constexpr auto columns = static_cast<py::ssize_t>(sizeof(Row) / sizeof(T));
+  constexpr py::ssize_t columns = kColumns<T, Row>;
   const auto count = static_cast<py::ssize_t>(rows.size());
   const T* data = reinterpret_cast<const T*>(rows.data());
   if constexpr (std::is_same_v<T, Row>) return view(std::move(owner), data, {count}, {sizeof(T)});
@@ -79,7 +84,7 @@ Array own(std::vector<T> values) {
 // One field of each of a vector's items, as (n,) or (n, columns): no copy, but strides of a whole item.
 template <class T, class Item, class Field>
 Array field(const std::shared_ptr<const std::vector<Item>>& items, Field Item::*member) {
-  constexpr auto columns = static_cast<py::ssize_t>(sizeof(Field) / sizeof(T));
+  constexpr py::ssize_t columns = kColumns<T, Field>;
   const auto count = static_cast<py::ssize_t>(items->size());
   const T* data = items->empty() ? nullptr : reinterpret_cast<const T*>(&(items->front().*member));
   if constexpr (columns == 1) return view(items, data, {count}, {sizeof(Item)});

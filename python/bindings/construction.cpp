@@ -9,7 +9,7 @@
 namespace orchard::python {
 namespace {
 
-void translate(std::exception_ptr pointer) {
+void translate(std::exception_ptr pointer) {  // NOLINT(performance-unnecessary-value-param): as pybind11 calls it
   try {
     if (pointer) std::rethrow_exception(pointer);
   } catch (const InputError& error) {

@@ -186,7 +186,8 @@ MedialBuildOptions to_build_options(const Tuning& tuning) {
   for (const auto& [name, value] : tuning) {
     for (const apps::TuningFlag& flag : apps::tuning_flags()) {
       if (flag.name != name) continue;
-      if (const std::string fault = flag.fault(value); !fault.empty()) throw py::value_error(name + ": " + fault);
+      if (const std::string fault = flag.fault(value); !fault.empty())
+        throw py::value_error(std::string(name).append(": ").append(fault));
       flag.set(options, value);
     }
   }
@@ -194,7 +195,7 @@ MedialBuildOptions to_build_options(const Tuning& tuning) {
     for (const apps::TuningFlag& flag : apps::tuning_flags()) {
       if (flag.name != name || !flag.unused) continue;
       if (const std::string cause = flag.unused(options); !cause.empty())
-        throw py::value_error(name + " has no effect with " + cause);
+        throw py::value_error(std::string(name).append(" has no effect with ").append(cause));
     }
   }
   return apps::build_options(options);

@@ -132,7 +132,7 @@ AxisPointer pruned(const AxisPointer& axis, const std::map<std::string, double>&
   });
 }
 
-py::dict importance_of_balls(const Axis& axis, const std::vector<std::string>& names, py::object progress) {
+py::dict importance_of_balls(const Axis& axis, const std::vector<std::string>& names, const py::object& progress) {
   if (!axis.build) throw InputError("importance: the contacts of an axis that was not built here are not known");
   py::dict result;
   for (const ImportanceMeasure measure : kImportanceMeasures) {

@@ -17,7 +17,7 @@ std::shared_ptr<const std::vector<Item>> shared(std::vector<Item> items) {
 // A field of a field: `inner` of the member `outer` of each item.
 template <class T, class Item, class Middle, class Field>
 Array field_of(const std::shared_ptr<const std::vector<Item>>& items, Middle Item::*outer, Field Middle::*inner) {
-  constexpr auto columns = static_cast<py::ssize_t>(sizeof(Field) / sizeof(T));
+  constexpr py::ssize_t columns = kColumns<T, Field>;
   const auto count = static_cast<py::ssize_t>(items->size());
   const T* data = items->empty() ? nullptr : reinterpret_cast<const T*>(&((items->front().*outer).*inner));
   if constexpr (columns == 1) return view(items, data, {count}, {sizeof(Item)});

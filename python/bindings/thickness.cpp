@@ -85,7 +85,7 @@ py::dict thin_places(const std::shared_ptr<LocalThickness>& thickness, double be
 }  // namespace
 
 void bind_thickness(py::module_& module) {
-  py::class_<LocalThickness, std::shared_ptr<LocalThickness>>(module, "LocalThickness");
+  const py::class_<LocalThickness, std::shared_ptr<LocalThickness>> without_members(module, "LocalThickness");
   module.def("thickness_at", &thickness_at_points);
   module.def("thickness", &thickness_of);
   module.def("thin_places", &thin_places);
