@@ -1,6 +1,7 @@
-# cmake -DFIRST=program -DSECOND=program -P same_output.cmake: both succeed and print the same, which is something.
+# cmake -DFIRST=program -DSECOND=program [-DEMULATOR=..] -P same_output.cmake: both succeed and print the same, which is
+# something. EMULATOR: a list, the command that runs programs for another machine
 foreach(program IN ITEMS FIRST SECOND)
-  execute_process(COMMAND ${${program}} RESULT_VARIABLE result OUTPUT_VARIABLE ${program}_output)
+  execute_process(COMMAND ${EMULATOR} ${${program}} RESULT_VARIABLE result OUTPUT_VARIABLE ${program}_output)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${${program}} failed: ${result}")
   endif()
