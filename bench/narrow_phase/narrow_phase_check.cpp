@@ -86,7 +86,6 @@ Count compare(const TreeView& tree, PairRival& rival, const Options& options) {
       bool near = touches(pair, query.a, shifted(query.b, way, step)) == theirs ||
                   touches(pair, query.a, shifted(query.b, way, -step)) == theirs;
       if (!near && !ours) {
-        const PreparedTree body(tree);
         DistanceQuery distance(body, body);
         distance.start(query.a, query.b);
         distance.refine();
