@@ -165,11 +165,11 @@ ORCHARD_INLINE bool find_all_times(std::span<const Motion> motions, std::span<co
   return find_times<Kind>(rest.data(), rest_limits.data(), precision, &times.seconds[i], &times.touching[i]);
 }
 
-}  // namespace
-
-static MotionLanes<double> one_of(const Motion& m) noexcept {
+MotionLanes<double> one_of(const Motion& m) noexcept {
   return OneDouble::motions([&m](std::size_t) { return &m; });
 }
+
+}  // namespace
 
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept {
   return slack_of<OneDouble>(one_of(a), one_of(b), duration);

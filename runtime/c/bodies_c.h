@@ -11,7 +11,7 @@ namespace orchard::runtime::detail {
 
 inline BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
 inline orchard_body body_of(BodyId id) noexcept { return {id.index, id.generation}; }
-inline constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
+inline constexpr orchard_body kNoHandle = {ORCHARD_NO_BODY, 0};
 
 // These return the filter of the C++ interface, or the default one if `from` is null.
 inline BodyFilter filter_of(const orchard_body_filter* from) noexcept {

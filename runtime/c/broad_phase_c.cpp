@@ -100,11 +100,11 @@ double orchard_broad_phase_next_time(const orchard_broad_phase* world) { return 
 
 orchard_body orchard_broad_phase_add(orchard_broad_phase* world, uint8_t importance,
                                      const orchard_body_filter* filter) {
-  return made_or(kNobody, [&] { return body_of(world->world.add(importance, filter_of(filter))); });
+  return made_or(kNoHandle, [&] { return body_of(world->world.add(importance, filter_of(filter))); });
 }
 orchard_body orchard_broad_phase_add_static(orchard_broad_phase* world, const orchard_motion* place, uint8_t importance,
                                             const orchard_body_filter* filter) {
-  return made_or(kNobody,
+  return made_or(kNoHandle,
                  [&] { return body_of(world->world.add_static(motion_of(*place), importance, filter_of(filter))); });
 }
 

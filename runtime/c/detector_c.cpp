@@ -131,14 +131,14 @@ orchard_shape orchard_detector_add_box(orchard_detector* detector, const double 
 
 orchard_body orchard_detector_add_body(orchard_detector* detector, const orchard_part* parts, size_t count,
                                        const orchard_body_options* options) {
-  return made_or(kNobody, [&] {
+  return made_or(kNoHandle, [&] {
     return body_of(detector->detector.add_body(parts_of(*detector, parts, count), options_of(options)));
   });
 }
 
 orchard_body orchard_detector_add_static(orchard_detector* detector, const orchard_part* parts, size_t count,
                                          const orchard_pose* pose, const orchard_body_options* options) {
-  return made_or(kNobody, [&] {
+  return made_or(kNoHandle, [&] {
     return body_of(
         detector->detector.add_static(parts_of(*detector, parts, count), pose_of(*pose), options_of(options)));
   });
@@ -146,7 +146,7 @@ orchard_body orchard_detector_add_static(orchard_detector* detector, const orcha
 
 orchard_body orchard_detector_add_half_space(orchard_detector* detector, const double normal[3], double offset,
                                              const orchard_body_options* options) {
-  return made_or(kNobody, [&] {
+  return made_or(kNoHandle, [&] {
     return body_of(detector->detector.add_half_space(vector_of(normal), offset, options_of(options)));
   });
 }

@@ -18,7 +18,7 @@ constexpr double kWantedShare = 0.7;  // of trials that begin where the caller w
 constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
 constexpr double kStayShare = 0.3,
                  kOneRestartShare = 0.45;  // of the others, in which none or one ball starts over, not two
-constexpr double kAllAnewShare = 0.3,
+constexpr double kAllRestartShare = 0.3,
                  kEachRestartShare = 0.4;   // of very few balls, all start over, or each does
 constexpr Index kFewForMoves = 8;           // balls, up to which there is no such move
 constexpr Index kFewAtStake = 128;          // balls, up to which more is put at stake at a time
@@ -84,7 +84,7 @@ class Proposal {
     freed_ = balls_.held_only_by(trial_.chosen);
     if (freed_.empty()) return std::move(trial_);
     copy_chosen();
-    start_some_anew();
+    restart_some();
     if (!share_out() || !(objective_.cost(trial_.balls) < trial_.max_cost)) trial_.balls.clear();
     return std::move(trial_);
   }
@@ -159,7 +159,7 @@ class Proposal {
     trial_.max_cost = cost * (1 - kWorthwhileSaving);
   }
 
-  void start_some_anew() {
+  void restart_some() {
     const bool moves = trial_.moved != kNone;
     if (moves) {
       const std::vector<Index>& there = balls_[trial_.chosen[0]].samples;
@@ -168,7 +168,7 @@ class Proposal {
     if (moves) return;
     const double which = random_.uniform();
     if (very_few()) {
-      const double share = which < kAllAnewShare ? 1.0 : kEachRestartShare;
+      const double share = which < kAllRestartShare ? 1.0 : kEachRestartShare;
       for (LevelBall& ball : trial_.balls)
         if (random_.uniform() < share) restart(ball, freed_);
       return;

@@ -44,7 +44,7 @@ class Crowd {
   void invalidate() {
     for (Actor& actor : actors_) {
       const double luck = draw_.uniform(0, 1);
-      if (luck < 0.01) return_anew(actor);
+      if (luck < 0.01) return_to_start(actor);
       if (actor.is_static) {
         if (luck > 0.02 && luck < 0.06) actor.pose = nudged(actor.pose, 0.3), main_->move_static(actor.id, actor.pose);
       } else {
@@ -92,7 +92,7 @@ class Crowd {
     actor.id = actor.is_static ? detector.add_static(actor.parts, actor.pose) : detector.add_body(actor.parts);
     states[actor.id.index].pose = actor.pose;
   }
-  void return_anew(Actor& actor) {
+  void return_to_start(Actor& actor) {
     main_->remove(actor.id);
     actor.pose = draw_.pose(draw_.uniform(0, 4));
     add(*main_, states_, actor);

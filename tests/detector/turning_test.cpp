@@ -287,7 +287,7 @@ double gap(const Body& a, const Body& b, int step) {
   return least;
 }
 
-TEST(Turning, AsPromisedMissesNobody) {
+TEST(Turning, AsPromisedMissesNoBody) {
   constexpr int kSteps = 40;
   constexpr std::size_t kBodies = 14;
   std::size_t touching = 0, apart = 0;

@@ -75,7 +75,7 @@ TEST_F(AtomicFile, RefusesToReplaceAFolder) {
   EXPECT_TRUE(fs::is_directory(folder_ / "file" / "inner"));
 }
 
-TEST_F(AtomicFile, LeavesAWholeFileWhoeverOfManyThreadsComesLast) {
+TEST_F(AtomicFile, LeavesAWholeFileWhicheverOfManyThreadsComesLast) {
   std::vector<std::thread> threads;
   for (char letter = 'a'; letter < 'e'; ++letter) {
     threads.emplace_back([&, letter] {

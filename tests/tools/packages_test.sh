@@ -82,7 +82,7 @@ Packages.AreInstalledBySudo() {
   expect "run install-packages"
   expect "installed libvtk9-dev && installed g++"
 }
-Packages.ThatNobodyMayInstallAreNamed() {
+Packages.ThatMayNotBeInstalledAreNamed() {
   user_without_sudo
   install "${plain[@]:1}" libvtk9-dev
   expect "! run install-packages"
@@ -121,7 +121,7 @@ Vtk.IsUnpackedOnce() {
   expect "run install-packages"
   expect "[ ! -s '$FAKE/log' ]"
 }
-Vtk.IsUnpackedAnewWhereALinkLeadsNowhere() {
+Vtk.IsUnpackedAgainWhereALinkLeadsNowhere() {
   install python3-paraview
   expect "run install-packages"
   ln -s /nowhere/libvtkCore.so "$FAKE/orchard/build/vtk/usr/lib/libvtkCore.so"
@@ -153,7 +153,7 @@ Vtk.ThatAptDoesNotKnowMeansNoViews() {
   expect "run install-packages"
   expect "said 'No views and pictures' && installed g++"
 }
-Vtk.ThatNobodyMayInstallMeansNoViews() {
+Vtk.ThatMayNotBeInstalledMeansNoViews() {
   user_without_sudo
   install "${plain[@]}"
   expect "run install-packages"

@@ -165,7 +165,7 @@ TEST(CloserThan, IsUnsureOfWhatItCannotKnow) {
 }
 
 // Copies of a tree change places with their poses, which a workspace that is asked about them again does not keep.
-TEST(TreePair, AnswersAsAnewWhereTheWorkspaceHasItsTreesAlready) {
+TEST(TreePair, AnswersAsANewOneWhereTheWorkspaceHasItsTreesAlready) {
   const auto all = bodies();
   const auto copies = bodies();
   const auto trees = prepared(all), others = prepared(copies);

@@ -61,7 +61,7 @@ TEST(ImproperPose, IsAnsweredByMaybeAndNothingElse) {
   }
 }
 
-TEST(ImproperPose, MakesNobodyMissAShape) {
+TEST(ImproperPose, NeverHidesAShape) {
   const auto tree = build_tree(box({0, 0, 0}, {1, 1, 1}));
   Draw draw(1);
   const Vec far = {9, 9, 9}, farther = {10, 9, 9};

@@ -82,7 +82,7 @@ TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnConesOfManyRings) {
   }
 }
 
-TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
+TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAgain) {
   std::uint64_t coplanar = 0;
   const std::vector<std::pair<std::string, test::Points>> sets{
       {"cone", test::cone_ring_points(60, 20)},
@@ -140,7 +140,7 @@ TEST(HighestFirstVoronoi, IsMendedWhereRoundingLeavesSpheresOpen) {
 }
 
 // Rings of a long cylinder and lattices of a torus: thousands of points on each of many spheres, up to rounding.
-TEST(HighestFirstVoronoi, IsNotMadeAnewForLocalDoubts) {
+TEST(HighestFirstVoronoi, IsNotRebuiltForLocalDoubts) {
   const auto ring = [](double radius, int i, int around, double z) {
     const double angle = 2 * std::numbers::pi * i / around;
     return Point(radius * std::cos(angle), radius * std::sin(angle), z);
@@ -162,7 +162,7 @@ TEST(HighestFirstVoronoi, IsNotMadeAnewForLocalDoubts) {
   }
 }
 
-TEST(HighestFirstVoronoi, IsMadeAnewWithExactSignsWhereDoubtsAreEverywhere) {
+TEST(HighestFirstVoronoi, IsRebuiltWithExactSignsWhereDoubtsAreEverywhere) {
   const test::ShakenSet set = test::shaken_set(14);
   const auto [diagram, report] = highest_first_voronoi(set.points);
   EXPECT_TRUE(report.exact_signs) << set.name;
