@@ -31,6 +31,7 @@ class DistanceQuery {
   };
 
   DistanceQuery() noexcept;  // Without bodies; call bind() before start().
+  // Constructs the query of a pair. The prepared trees must outlive the query or its next bind().
   DistanceQuery(const PreparedTree& a, const PreparedTree& b) noexcept : DistanceQuery() { bind(a, b); }
   // Rebinds the query to another pair, as NarrowPhase::bind() does.
   bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;

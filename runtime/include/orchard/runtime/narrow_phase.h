@@ -75,7 +75,8 @@ class NarrowPhase {
   // Constructs a query without bodies. Call bind() before start(). `room` is the number of meeting pairs per level, 24
   // bytes each.
   explicit NarrowPhase(std::size_t room = kDefaultRoom) noexcept;
-  // Constructs the query of a pair; reuse the object for all poses, and for other pairs by bind().
+  // Constructs the query of a pair. The prepared trees must outlive the query or its next bind(). Reuse the object for
+  // all poses, and for other pairs by bind().
   NarrowPhase(const PreparedTree& a, const PreparedTree& b, std::size_t room = kDefaultRoom) noexcept
       : NarrowPhase(room) {
     bind(a, b);
