@@ -40,5 +40,7 @@ def test_examples_run(script, tmp_path, data):
     environment = dict(os.environ, MPLBACKEND="Agg")
     done = subprocess.run([sys.executable, script, "--quick", "--data", data, "--output", tmp_path], cwd=tmp_path,
                           env=environment, capture_output=True, text=True, timeout=600)
+    if "No module named 'matplotlib'" in done.stderr:
+        pytest.skip("matplotlib, which this example draws with, is not installed")
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()

@@ -77,6 +77,13 @@ Packages.ForTheRunTimeHoldNoVtk() {
   expect "installed libgtest-dev"
   expect "! installed libcgal-dev && ! installed libvtk9.1 && ! views_are_unpacked"
 }
+Packages.ForPythonAreAddedToThoseOfTheBuild() {
+  python=(python3-dev python3-numpy pybind11-dev python3-matplotlib python3-setuptools python3-wheel python3-pip
+    python3-pytest python3-hypothesis mypy)
+  for name in "${python[@]}"; do package "$name"; done
+  expect "run install-packages python"
+  for name in "${plain[@]}" "${python[@]}"; do expect "installed $name"; done
+}
 Packages.AreInstalledBySudo() {
   echo 1000 > "$FAKE/user"
   expect "run install-packages"
