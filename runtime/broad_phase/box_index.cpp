@@ -35,7 +35,8 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
 
 void BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantizedAabb& extent) noexcept {
   boxes.store(bodies, boxes_);
-  for (const BodyIndex body : bodies) places_[body] = Place::inside;
+  Place* const places = places_.data();  // a copy, because what is written might be the vector
+  for (const BodyIndex body : bodies) places[body] = Place::inside;
   extent.include(boxes.around);
 }
 

@@ -79,9 +79,7 @@ void BroadPhase::validate_up_to(Step step) {
 bool BroadPhase::may_change() const noexcept { return valid() && !state_->busy; }
 
 Advance BroadPhase::process(double t_now, const Budget* budget, std::uint64_t replay) {
-  if (!(std::fabs(t_now) <= max_time_) || state_->busy) {
-    return {.time = next_time_, .time_refused = true};
-  }
+  if (!(std::fabs(t_now) <= max_time_) || state_->busy) return {.time = next_time_, .time_refused = true};
   // A step that an exception ends half-way cannot be resumed, and later reports would be wrong. So the broad phase is
   // not valid any more.
   const auto fail = [this] {

@@ -39,13 +39,20 @@ void KineticBroadPhase::removed(BodyIndex body) {
 // Makes the bodies due that have changed or were added. The boxes of bodies that are gone leave the grid together.
 void KineticBroadPhase::take_changes() {
   const bool all_alive = state_.pool.size() == state_.pool.slots();
+  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
+  const auto tell_planner = [&](BodyIndex body) {
+    const Window& window = state_.windows[body];
+    if (window.bounded && window.end >= 0) planner_.note_cancelled();
+  };
+  if (all_alive && state_.changes.size() == state_.pool.size()) {  // all bodies, as at the first step
+    state_.changes.take(load, tell_planner);
+    return all_are_due();
+  }
   std::size_t count = due_.bodies.size(), gone = count + state_.changes.size();  // those that are gone, from the end on
   make_room(due_.bodies, gone);
   due_.bodies.resize(gone);
-  const auto load = [&](BodyIndex body) { prefetch(&state_.windows[body]); };
   state_.changes.take(load, [&](BodyIndex body) {
-    const Window& window = state_.windows[body];
-    if (window.bounded && window.end >= 0) planner_.note_cancelled();
+    tell_planner(body);
     if (all_alive || state_.pool.alive(body)) {
       due_.bodies[count++] = body;
       return;
@@ -84,12 +91,13 @@ void KineticBroadPhase::complete_due() {
 }
 
 // Returns whether to rebuild all boxes. If at least half of the bodies are due, that is cheaper, and it lets the plan
-// follow the bodies.
-bool KineticBroadPhase::worth_a_rebuild(std::size_t due) const noexcept {
-  const std::size_t n = state_.pool.size();
+// follow the bodies. If most of the others are due at the next step, a quarter suffices; otherwise prepare() would
+// update those that are due now once more.
+bool KineticBroadPhase::worth_a_rebuild(Step now, std::size_t due) const noexcept {
+  const std::size_t n = state_.pool.size(), least = common_expiry_ == now + 1 ? n / 4 : n / 2;
   if (state_.windows.rounds_run_out()) return true;  // rounds of bodies that seldom update have to stay comparable
   if (due == 0 || n == 0) return false;
-  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(state_.counts);
+  return due >= least || planner_.many_more_bodies() || planner_.crowded(state_.counts);
 }
 
 // Makes a new plan and a new grid if the old ones do not fit any more. Returns false if a budget interrupted it.
@@ -149,7 +157,7 @@ void KineticBroadPhase::step_in_full(Step now, bool completing) {
   }
   bool rebuild_all = completing;
   if (!completing) {
-    rebuild_all = sorting_ || worth_a_rebuild(due_.bodies.size());
+    rebuild_all = sorting_ || worth_a_rebuild(now, due_.bodies.size());
     if (rebuild_all) {
       BudgetTracker unlimited;
       replan(now, unlimited);
@@ -190,7 +198,7 @@ Step KineticBroadPhase::find_common_expiry(Step now) const noexcept {
 unsigned KineticBroadPhase::step_within(Step now, BudgetTracker& tracker) {
   const bool calm = now - interrupted_at_ > kLongestWindow;
   const bool has_to = sorting_ || state_.windows.rounds_run_out();
-  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.bodies.size()));
+  const bool rebuild = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(now, due_.bodies.size()));
   budgeted_.join(due_.bodies, due_.pairs);
   due_.bodies.clear();
   if (rebuild) {

@@ -49,7 +49,7 @@ class KineticBroadPhase final : public BroadPhaseAlgorithm {
   unsigned step_within(Step now, BudgetTracker& tracker);
   void step_by_sorting(Step now);
   Step find_common_expiry(Step now) const noexcept;
-  bool worth_a_rebuild(std::size_t due) const noexcept;
+  bool worth_a_rebuild(Step now, std::size_t due) const noexcept;
   bool worth_sorting(Step now) const noexcept;
   bool prepare(Step now);
 

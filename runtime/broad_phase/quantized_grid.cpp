@@ -90,8 +90,9 @@ ORCHARD_INLINE void tell_extent(BoxBlock& boxes, std::size_t count) noexcept {
 
 // Makes the boxes of as many bodies as the kind has numbers. Along an axis, the offset of the centre is at most v t +
 // wide(t), which is convex and so largest at an end of the duration. The same holds for the least offset. A box that
-// does not lie within the quantized grid becomes the whole grid, because rounding would no longer be bounded. Returns
-// for which bodies the box lies within the grid and the motion is valid.
+// does not lie within the quantized grid becomes the whole grid, because rounding would no longer be bounded, but
+// only if one body is processed at a time. The result is all set if all boxes lie within the grid and all motions are
+// valid, as by are_valid().
 template <typename Kind, typename Row>
 ORCHARD_INLINE typename Kind::Mask QuantizedGrid::make_some(const Row& row, const double* durations, BoxBlock& boxes,
                                                             std::size_t first) const noexcept {
@@ -113,8 +114,12 @@ ORCHARD_INLINE typename Kind::Mask QuantizedGrid::make_some(const Row& row, cons
     inside = both(inside, both(zero <= lower[d], upper[d] <= last));
   }
   for (std::size_t d = 0; d < 3; ++d) {
-    Kind::truncate(Kind::choose(inside, lower[d], zero), &boxes.lower[d][first]);
-    Kind::truncate(Kind::choose(inside, upper[d], last), &boxes.upper[d][first]);
+    if constexpr (Kind::kLanes == 1) {
+      lower[d] = Kind::choose(inside, lower[d], zero);
+      upper[d] = Kind::choose(inside, upper[d], last);
+    }
+    Kind::truncate(lower[d], &boxes.lower[d][first]);
+    Kind::truncate(upper[d], &boxes.upper[d][first]);
   }
   return inside & are_valid<Kind>(of);
 }
@@ -136,6 +141,9 @@ ORCHARD_INLINE bool QuantizedGrid::make_all(std::span<const Motion> motions, std
     for (std::size_t k = 0; k < kLanes; ++k) some[k] = durations[std::min(whole + k, count - 1)];
     const auto row = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return &motions[std::min(whole + k, count - 1)]; };
     good = good & make_some<Kind>(row, some.data(), boxes, whole);
+  }
+  if constexpr (kLanes > 1) {
+    if (!Kind::all(good)) return make_all<OneDouble>(motions, durations, boxes);
   }
   count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
   return Kind::all(good);

@@ -43,7 +43,7 @@ inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 inline constexpr QuantizedAabb kNoBox = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};  // empty
 
-inline constexpr std::size_t kBlock = 64;  // the maximum number of bodies that are processed together
+inline constexpr std::size_t kBlock = 256;  // the maximum number of bodies that are processed together
 // Returns `count` rounded up to a multiple of eight: loops over a block process whole vectors.
 inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
 

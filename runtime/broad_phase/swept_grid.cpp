@@ -114,11 +114,12 @@ void SweptGrid::reset(std::size_t lines, const Executor& executor) {
   // All lines are written in order, because lines that have left the cache are loaded faster this way than one by one
   // later.
   constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
+  if (wanted < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
   const std::size_t size = wanted / kParts;
   auto empty = [&](std::size_t part) {
     std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
   };
-  run_jobs(wanted < kMinToShare ? Executor{} : executor, kParts, empty);
+  run_jobs(executor, kParts, empty);
 }
 
 void SweptGrid::release() {
@@ -137,9 +138,7 @@ void SweptGrid::encode(std::span<const BodyIndex> bodies, const BoxBlock& block,
   const std::size_t count = std::min(bodies.size(), kBlock);
   per_machine([&]() ORCHARD_INLINE_LAMBDA { code(coded, block, bodies, factors_); });
   Visit* visit = visits.append(coded.cells);
-  for (std::size_t i = 0; i < count; ++i) {
-    *visit++ = {coded.entries[i], coded.lines[i] & mask_, 0};
-  }
+  for (std::size_t i = 0; i < count; ++i) *visit++ = {coded.entries[i], coded.lines[i] & mask_, 0};
   const auto add = [&](std::size_t i, std::uint32_t corner) {
     const std::uint32_t fields = kFieldsOf[corner];
     const std::uint32_t from = coded.from[i] & ~fields, below = coded.below[i] & (~coded.beyond[i] | fields);

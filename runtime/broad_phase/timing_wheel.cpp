@@ -74,7 +74,8 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
   for (std::uint32_t part = bucket.events; part != kNone; count = kEventsInPart) {  // the last one added comes first
     const Events& some = events_[part];
     if (some.next != kNone) prefetch(&events_[some.next]);
-    while (count > 0) append(events, some.events[--count]);
+    make_room(events, events.size() + count);
+    events.insert(events.end(), std::make_reverse_iterator(some.events.begin() + count), some.events.rend());
     part = events_.give_back(part);
   }
   bucket = Bucket{};

@@ -23,7 +23,7 @@ void make_room(std::vector<T, Allocator>& v, std::size_t size) {
 }
 // Appends one element to a vector that grows by a sixteenth.
 template <typename T>
-void append(std::vector<T>& v, const T& value) {
+ORCHARD_INLINE void append(std::vector<T>& v, const T& value) {
   if (v.size() == v.capacity()) v.reserve(std::max<std::size_t>(64, v.size() + v.size() / 16));
   v.push_back(value);
 }
@@ -68,11 +68,9 @@ void give_back(std::vector<T, Allocator>& v) noexcept {
 
 // Prefetches a cache line that will be written soon. It has to be inlined: GCC takes it for a function without effects,
 // and removes the calls that are not inlined by then.
-ORCHARD_INLINE void prefetch(const void* where) noexcept {
+ORCHARD_INLINE void prefetch([[maybe_unused]] const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 1);
-#else
-  (void)where;
 #endif
 }
 

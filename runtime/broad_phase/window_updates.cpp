@@ -69,13 +69,25 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   for (const Motion& motion : motions) {
     other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
   }
-  const bool alike = other == 0 && std::isfinite(motions[0].expiry) && !state_.pool.statics.any();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const bool any_static = state_.pool.statics.any();
+  const bool alike = other == 0 && !any_static &&
+                     (std::isfinite(motions[0].expiry) || std::none_of(motions.begin(), motions.end(), rests));
+  if (alike && motions[0].expiry == block.expiry) return true;
+  block.expiry = alike ? motions[0].expiry : kNone;
+  double known = kNone, duration = 0;  // the expiry that `end` and `duration` are for
+  Step end = 0;
   bool all = true;
   for (std::size_t i = 0; i < (alike ? 1 : bodies.size()); ++i) {
-    const Step end = state_.windows.end_of(block.from, bodies[i], motions[i]);
-    block.ends[i] = end;
-    block.durations[i] = end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
-    all = all && !std::isnan(motions[i].expiry);
+    const double expiry = motions[i].expiry;
+    const bool special = any_static || rests(motions[i]);  // the window may have no end
+    if (special || expiry != known) {
+      end = state_.windows.end_of(block.from, bodies[i], motions[i]);
+      duration = end == kNeverStep ? 0 : state_.pool.clock.seconds_between(block.now, end - 1);
+      known = special ? kNone : expiry;
+      all = all && !std::isnan(expiry);
+    }
+    block.ends[i] = end, block.durations[i] = duration;
   }
   if (alike) block.ends.fill(block.ends[0]), block.durations.fill(block.durations[0]);
   return all;
@@ -203,9 +215,7 @@ void WindowUpdates::place_left(Chunk& chunk, Block& block) {
     make_boxes(block, body, {&left.motion, 1});
     state_.windows.set(left.body, block.ends[0]);
     state_.overlaps.mark_updated(body);
-    if (pairs_.spheres().any()) {
-      pairs_.spheres().note(left.body, left.motion, block.quantized_grid, block.durations[0]);
-    }
+    if (pairs_.spheres().any()) pairs_.spheres().note(left.body, left.motion, block.quantized_grid, block.durations[0]);
     const QuantizedAabb box = shrink(block, state_.windows[left.body], left.motion);
     state_.boxes.insert_one(left.body, box, chunk.block_visits, near_, state_.counts);
     const Step end = state_.windows[left.body].end;

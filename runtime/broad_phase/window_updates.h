@@ -68,11 +68,12 @@ class WindowUpdates {
 
 // At most kBlock bodies, whose boxes are made together.
 struct WindowUpdates::Block {
-  Step now;                              // the step of the motions
-  Step from;                             // the step at which the windows begin
-  QuantizedGrid quantized_grid;          // at `now`
-  std::array<Step, kBlock> ends;         // the ends of the windows
-  std::array<double, kBlock> durations;  // the seconds from `now` to the last step before the end
+  Step now;                                                  // the step of the motions
+  Step from;                                                 // the step at which the windows begin
+  QuantizedGrid quantized_grid;                              // at `now`
+  std::array<Step, kBlock> ends;                             // the ends of the windows
+  std::array<double, kBlock> durations;                      // the seconds from `now` to the last step before the end
+  double expiry = std::numeric_limits<double>::quiet_NaN();  // the one that all of `ends` and `durations` are for
   BoxBlock boxes;
   bool by_part = false;  // whether visits are split by the grid's parts, for several threads
 };

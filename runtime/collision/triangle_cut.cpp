@@ -96,9 +96,7 @@ Vec3 normal_of(const TrianglePoints& t) noexcept { return cross(minus(t[1], t[0]
 
 double size_of(const TrianglePoints& a, const TrianglePoints& b) noexcept {
   double most = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    most = std::max({most, square(minus(a[i], a[0])), square(minus(b[i], b[0]))});
-  }
+  for (std::size_t i = 0; i < 3; ++i) most = std::max({most, square(minus(a[i], a[0])), square(minus(b[i], b[0]))});
   return std::sqrt(most);
 }
 

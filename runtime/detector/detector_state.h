@@ -76,8 +76,9 @@ struct Detector::State {
 
   // In answer_step.cpp: the pairs of a step are matched, answered and reported.
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
+  // `begun` is the time of the budget's clock when answer() began.
   void answer_within(const detail::ActivePairs& active, Step step, double begun, detail::StepBudget& budget,
-                     Frame& frame);  // `begun`: the budget's clock when answer() began
+                     Frame& frame);
   void begin_pairs(const detail::ActivePairs& active, Step step);
 };
 

@@ -52,8 +52,8 @@ void StateSampler::ask_all(Step step) {
 // Asks the source for the states of the bodies in asking_. Jobs process the answers if they are many.
 void StateSampler::ask_source(Step step) {
   if (asking_.empty()) return;
-  constexpr std::size_t kAlone = 256,
-                        kPerJob = 256;  // without an executor, answers are processed while they are still in the cache
+  // Without an executor, kAlone answers are processed at a time, while they are still in the cache.
+  constexpr std::size_t kAlone = 256, kPerJob = 256;
   const Executor& executor = world_.options.executor;
   const std::size_t at_once = executor.run == nullptr ? std::min(asking_.size(), kAlone) : asking_.size();
   grow(answers_, at_once);

@@ -146,9 +146,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
 
 Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept {
-  if (!can_travel(from.a, to.a) || !can_travel(from.b, to.b)) {
-    return {.answer = Answer::maybe};
-  }
+  if (!can_travel(from.a, to.a) || !can_travel(from.b, to.b)) return {.answer = Answer::maybe};
   return from.with_half_space() ? sweep_to_half_space(workspace, from, to, most, work)
                                 : sweep_trees(workspace, from, to, most, work);
 }
