@@ -15,6 +15,9 @@ using detail::minus;
 namespace {
 
 constexpr double kMargin = 1 - 1e-9;  // covers the rounding of a few operations
+// If the roots and hulls of a pair have not separated it at kStreak poses in turn, they seldom do so at the next ones:
+// three of four further searches do not test them.
+constexpr int kStreak = 8, kBelowRoots = kStreak + 3;
 
 // Returns a bound on how far any point of the tree's triangles has moved from `before` to `now`. Both are poses in the
 // frame of the other body.
@@ -60,12 +63,19 @@ bool CoherentPair::recall(Verdict& verdict) noexcept {
 }
 
 Verdict CoherentPair::search(const Budget& budget) noexcept {
-  if (!memory_.met || !place_for_triangles()) {
+  if ((!memory_.met && memory_.below_roots <= kStreak) || !place_for_triangles()) {
     narrow_.bind(pair_.a(), pair_.b());
     answer_exactly(narrow_, a_, b_, budget);
+    const bool apart = dot(narrow_.known().apart_along, narrow_.known().apart_along) > 0;
+    memory_.below_roots = apart ? 0 : memory_.below_roots < kStreak ? memory_.below_roots + 1 : kBelowRoots;
     return remember();
   }
   narrow_.trees().place();
+  if (!memory_.met) {
+    --memory_.below_roots;
+    narrow_.refine_exactly(budget);
+    return remember();
+  }
   constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
   if (budget.work == 0) return remember();
   direct_.add_work(tests);

@@ -40,9 +40,7 @@ inline std::array<float, 3> third_normal(const NodeBox& b) noexcept {
 // Sets Placement::rows and columns from `turn`.
 inline void find_rows(Placement& placement) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      placement.rows[i][j] = placement.columns[j][i] = placement.turn[3 * i + j];
-    }
+    for (std::size_t j = 0; j < 3; ++j) placement.rows[i][j] = placement.columns[j][i] = placement.turn[3 * i + j];
   }
 }
 

@@ -115,5 +115,31 @@ TEST(Collide, GivesEveryThreadTheSameAnswersFromSharedTrees) {
   }
 }
 
+// Rings that hang in each other stay near without touching, so their roots are tested at some poses only. In the end
+// they move far apart.
+TEST(CoherentPair, AnswersAsCollideDoesWhileHullsOverlapAndAfterwards) {
+  const PackedSphereTree ring = build_tree(torus(24, 12, 1, 0.4));
+  const PreparedTree tree(ring);
+  Workspace workspace, other;
+  TreePair pair(tree, tree);
+  Draw draw(7);
+  const Pose a;
+  Pose b = *pose_from_quaternion({std::sqrt(0.5), std::sqrt(0.5), 0, 0}, {1, 0, 0});
+  std::array<int, 3> answers{};
+  int searched = 0;
+  for (int step = 0; step < 400; ++step) {
+    const double away = step < 300 ? 0 : 0.05 * (step - 300);
+    b.translation = {1 + away, draw.uniform(-0.1, 0.1), draw.uniform(-0.1, 0.1)};
+    Verdict known;
+    CoherentPair coherent(workspace, pair, a, b);
+    if (!coherent.recall(known)) known = coherent.search(), searched += step < 300;
+    ASSERT_EQ(known.answer, collide(other, TreePair(tree, tree), a, b).answer) << step;
+    ++answers[static_cast<std::size_t>(known.answer)];
+  }
+  EXPECT_GT(searched, 100);
+  EXPECT_GT(answers[static_cast<std::size_t>(Answer::yes)], 0);
+  EXPECT_GT(answers[static_cast<std::size_t>(Answer::no)], 300);
+}
+
 }  // namespace
 }  // namespace orchard::runtime
