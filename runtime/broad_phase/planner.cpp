@@ -108,12 +108,16 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   return true;
 }
 
-// All that is done once, with code and a grid that have left the cache, is done in the step ahead. It takes as long as
-// kOnce updates and kOncePerBody for each of at most kMostOnce bodies, which is a large part if bodies are few.
+// Both steps should take the same time. The one ahead finds only the near pairs among its own bodies: a share s of the
+// bodies costs s + pairs s^2 there, and 1 - s + pairs (1 - s^2) in the other step, in units of one update. All that is
+// done once, with code and a grid that have left the cache, is done in the step ahead. It takes as long as kOnce
+// updates and kOncePerBody for each of at most kMostOnce bodies, which is a large part if bodies are few.
 double Planner::share_ahead() const noexcept {
-  constexpr double kOnce = 20, kOncePerBody = 0.13, kMostOnce = 1000, kLeastShare = 0.1;
+  constexpr double kOnce = 20, kOncePerBody = 0.13, kMostOnce = 1000, kLeastShare = 0.1, kNearPair = 2.7;
   const double bodies = static_cast<double>(std::max<std::size_t>(1, pool_.size()));
-  return std::max(kLeastShare, 0.5 - (kOnce + kOncePerBody * std::min(bodies, kMostOnce)) / bodies);
+  const double pairs = std::max(1e-3, kNearPair * plan_.pairs_per_body);
+  const double share = (std::sqrt(1 + 2 * pairs * (1 + pairs)) - 1) / (2 * pairs);
+  return std::max(kLeastShare, share - (kOnce + kOncePerBody * std::min(bodies, kMostOnce)) / bodies);
 }
 
 }  // namespace orchard::runtime::detail

@@ -88,9 +88,7 @@ class Caster {
       for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
         const Ray& ray = rays[first + i];
         const Direction direction(ray.direction, frame_.pose.scale);
-        for (std::size_t k = 0; k < 3; ++k) {
-          starts.origin[k][i] = ray.origin[k], starts.way[k][i] = direction.way[k];
-        }
+        for (std::size_t k = 0; k < 3; ++k) starts.origin[k][i] = ray.origin[k], starts.way[k][i] = direction.way[k];
         starts.steps[i] = direction.steps(ray.longest), powers[i] = direction.power;
       }
       find_starts(frame_, ball_, starts);
