@@ -94,10 +94,10 @@ void KineticBroadPhase::complete_due() {
 // follow the bodies. If most of the others are due at the next step, a quarter suffices; otherwise prepare() would
 // update those that are due now once more.
 bool KineticBroadPhase::worth_a_rebuild(Step now, std::size_t due) const noexcept {
-  const std::size_t n = state_.pool.size(), least = common_expiry_ == now + 1 ? n / 4 : n / 2;
+  const std::size_t n = state_.pool.size(), parts = common_expiry_ == now + 1 ? 4 : 2;
   if (state_.windows.rounds_run_out()) return true;  // rounds of bodies that seldom update have to stay comparable
   if (due == 0 || n == 0) return false;
-  return due >= least || planner_.many_more_bodies() || planner_.crowded(state_.counts);
+  return parts * due >= n || planner_.many_more_bodies() || planner_.crowded(state_.counts);
 }
 
 // Makes a new plan and a new grid if the old ones do not fit any more. Returns false if a budget interrupted it.

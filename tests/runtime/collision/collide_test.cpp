@@ -116,7 +116,7 @@ TEST(Collide, GivesEveryThreadTheSameAnswersFromSharedTrees) {
 }
 
 // Rings that hang in each other stay near without touching, so their roots are tested at some poses only. In the end
-// they move far apart.
+// they move far apart. Some searches have a budget that is too small.
 TEST(CoherentPair, AnswersAsCollideDoesWhileHullsOverlapAndAfterwards) {
   const PackedSphereTree ring = build_tree(torus(24, 12, 1, 0.4));
   const PreparedTree tree(ring);
@@ -132,13 +132,15 @@ TEST(CoherentPair, AnswersAsCollideDoesWhileHullsOverlapAndAfterwards) {
     b.translation = {1 + away, draw.uniform(-0.1, 0.1), draw.uniform(-0.1, 0.1)};
     Verdict known;
     CoherentPair coherent(workspace, pair, a, b);
-    if (!coherent.recall(known)) known = coherent.search(), searched += step < 300;
+    const Budget budget = step % 7 == 0 ? Budget{.work = static_cast<std::uint64_t>(step)} : Budget{};
+    if (!coherent.recall(known)) known = coherent.search(budget), searched += step < 300;
+    if (step % 7 == 0 && known.answer == Answer::maybe) continue;
     ASSERT_EQ(known.answer, collide(other, TreePair(tree, tree), a, b).answer) << step;
     ++answers[static_cast<std::size_t>(known.answer)];
   }
   EXPECT_GT(searched, 100);
   EXPECT_GT(answers[static_cast<std::size_t>(Answer::yes)], 0);
-  EXPECT_GT(answers[static_cast<std::size_t>(Answer::no)], 300);
+  EXPECT_GT(answers[static_cast<std::size_t>(Answer::no)], 200);
 }
 
 }  // namespace

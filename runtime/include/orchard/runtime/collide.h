@@ -61,7 +61,7 @@ class TreePair {
     double clearance = 0;  // In a's units; 0: none.
     Witness witness;       // If they met last.
     bool met = false;
-    int below_roots = 0;  // Counts searches that the roots did not decide.
+    int below_roots = 0;  // Successive searches that the roots did not decide, up to a limit.
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;
